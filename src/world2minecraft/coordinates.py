@@ -1,0 +1,175 @@
+"""The only file that knows axis conventions.
+
+- **Room frame**: metres, right-handed, z up, walls along x and y; the floor's top face is z = 0.
+- **Camera**: OpenCV axes (x right, y down, z forward); pixel centres at +0.5.
+- **Grid**: ``labels[x, y, z]``; ``origin_m`` is the minimum corner of cell (0, 0, 0).
+- **Blocks**: x east, y up, z south, right-handed too. Room (x, y, z) goes to block (x, z, -y)
+  times ``blocks_per_metre``; the corner (x_min, y_max, 0) of the room's inner box stands at
+  ``ROOM_CORNER_BLOCK``, so the floor is the layer under it.
+- **Angles**: ``yaw_deg`` counter-clockwise from above, 0 looks along room +x. The game's yaw 0
+  looks to +z (south) and grows clockwise from above; its pitch grows downward.
+
+A transform says both its ends (``camera_to_room``); a product reads as a chain of cancelling
+names: ``camera_to_room = scan_to_room @ camera_to_scan``.
+"""
+
+import numpy as np
+
+ROOM_CORNER_BLOCK = (0, 64, 0)
+PLAYER_EYE_BLOCKS = 1.62
+ROOM_AXES_TO_BLOCK = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], np.float64)
+FACING_OF_QUARTER_TURNS = ("east", "north", "west", "south")  # Counter-clockwise from room +x.
+
+# OpenGL cameras (x right, y up, z backward: nerfstudio, Blender) to OpenCV ones.
+OPENGL_TO_OPENCV = np.diag([1.0, -1.0, -1.0, 1.0])
+
+
+def apply(transform: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Carry points [..., 3] by a 4x4 ``a_to_b`` transform from frame a to frame b."""
+    return points @ transform[:3, :3].T + transform[:3, 3]
+
+
+def invert(transform: np.ndarray) -> np.ndarray:
+    """Return ``b_to_a`` of a 4x4 ``a_to_b`` (rigid or scaled)."""
+    return np.linalg.inv(transform)
+
+
+def invert_rigid(transform: np.ndarray) -> np.ndarray:
+    """Return the inverse of a rotation and translation, exactly orthonormal again."""
+    inverse = np.eye(4)
+    inverse[:3, :3] = transform[:3, :3].T
+    inverse[:3, 3] = -transform[:3, :3].T @ transform[:3, 3]
+    return inverse
+
+
+def rotation_about_z(yaw_deg: float) -> np.ndarray:
+    """Return the 4x4 turn by ``yaw_deg`` counter-clockwise from above, exact at quarters."""
+    cosine, sine = np.cos(np.radians(yaw_deg)), np.sin(np.radians(yaw_deg))
+    if yaw_deg % 90 == 0:
+        cosine, sine = np.round(cosine), np.round(sine)
+    turn = np.eye(4)
+    turn[:2, :2] = [[cosine, -sine], [sine, cosine]]
+    return turn
+
+
+def opengl_to_opencv_pose(camera_to_world: np.ndarray) -> np.ndarray:
+    """Turn the pose of an OpenGL camera into that of the same camera with OpenCV axes."""
+    return camera_to_world @ OPENGL_TO_OPENCV
+
+
+def look_at(eye_m: np.ndarray, target_m: np.ndarray) -> np.ndarray:
+    """Return ``camera_to_room`` of an upright OpenCV camera at ``eye_m`` that sees ``target_m``."""
+    forward = np.asarray(target_m, np.float64) - np.asarray(eye_m, np.float64)
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    if np.linalg.norm(right) < 1e-9:
+        right = np.array([0.0, -1.0, 0.0])
+    right /= np.linalg.norm(right)
+    pose = np.eye(4)
+    pose[:3, :3] = np.column_stack([right, np.cross(forward, right), forward])
+    pose[:3, 3] = eye_m
+    return pose
+
+
+# Grid cells and metres.
+
+
+def cell_centers_m(cells: np.ndarray, origin_m: np.ndarray, voxel_m: float) -> np.ndarray:
+    """Return the centres, float64 [..., 3] in metres, of cell indices [..., 3]."""
+    return np.asarray(origin_m) + (np.asarray(cells) + 0.5) * voxel_m
+
+
+def metres_to_cells(points_m: np.ndarray, origin_m: np.ndarray, voxel_m: float) -> np.ndarray:
+    """Return the indices, int64 [..., 3], of the cells that hold points in metres."""
+    return np.floor((np.asarray(points_m) - origin_m) / voxel_m).astype(np.int64)
+
+
+def turn_grid(values: np.ndarray, quarter_turns: int) -> np.ndarray:
+    """Turn a grid [X, Y, Z, ...] counter-clockwise from above by quarter turns.
+
+    Cell (i, j, k) of an X x Y grid goes to (Y-1-j, i, k) with each turn: room +x becomes +y.
+    """
+    return np.rot90(values, quarter_turns, axes=(0, 1))
+
+
+# Room and blocks.
+
+
+def room_to_block(corner_m: np.ndarray, blocks_per_metre: float) -> np.ndarray:
+    """Return the 4x4 from room metres to world block coordinates (a block spans [n, n + 1]).
+
+    Args:
+        corner_m: float64 [2], the corner (x_min, y_max) of the room's inner box, in metres.
+        blocks_per_metre: how many blocks stand for one metre.
+
+    Example:
+        >>> apply(room_to_block(np.array([0.0, 3.0]), 4.0), np.array([1.0, 3.0, 0.5])).tolist()
+        [4.0, 66.0, 0.0]
+    """
+    transform = np.eye(4)
+    transform[:3, :3] = ROOM_AXES_TO_BLOCK * blocks_per_metre
+    transform[:3, 3] = ROOM_CORNER_BLOCK - transform[:3, :3] @ [corner_m[0], corner_m[1], 0.0]
+    return transform
+
+
+def block_to_room(corner_m: np.ndarray, blocks_per_metre: float) -> np.ndarray:
+    """Return the 4x4 from world block coordinates to room metres; see ``room_to_block``."""
+    return invert(room_to_block(corner_m, blocks_per_metre))
+
+
+def grid_to_block_axes(values: np.ndarray) -> np.ndarray:
+    """Carry a grid [X, Y, Z, ...] in room axes to block axes: cell (i, j, k) to (i, k, ny-1-j)."""
+    return np.ascontiguousarray(np.swapaxes(values[:, ::-1], 1, 2))
+
+
+def block_axes_to_grid(values: np.ndarray) -> np.ndarray:
+    """Undo ``grid_to_block_axes``."""
+    return np.ascontiguousarray(np.swapaxes(values, 1, 2)[:, ::-1])
+
+
+def cells_to_block_axes(cells: np.ndarray, y_cells: int) -> np.ndarray:
+    """Carry cell indices [N, 3] of a grid with ``y_cells`` cells along y to block axes."""
+    return np.stack([cells[:, 0], cells[:, 2], y_cells - 1 - cells[:, 1]], axis=1)
+
+
+# Angles.
+
+
+def facing_of_quarter_turns(quarter_turns: int) -> str:
+    """Return the game's facing of a front turned from room +x: 0 east, 1 north, 2 west, 3 south."""
+    return FACING_OF_QUARTER_TURNS[quarter_turns % 4]
+
+
+def game_yaw_of_room_yaw(yaw_deg: float) -> float:
+    """Turn a room yaw into the game's yaw, from -180 up to 180."""
+    return (-90.0 - yaw_deg + 180.0) % 360.0 - 180.0
+
+
+def room_yaw_of_game_yaw(game_yaw_deg: float) -> float:
+    """Turn a game yaw into a room yaw, from -180 up to 180."""
+    return (-90.0 - game_yaw_deg + 180.0) % 360.0 - 180.0
+
+
+def camera_to_block_of_game_pose(
+    eye_block: np.ndarray, game_yaw_deg: float, game_pitch_deg: float
+) -> np.ndarray:
+    """Return the 4x4 pose, in block axes, of the game's camera with its eye at ``eye_block``.
+
+    The rotation's columns are right, down and forward. The paper's matrix is the transpose
+    (world to camera); see ``reference`` in docs/conventions.md.
+    """
+    yaw, pitch = np.radians(game_yaw_deg), np.radians(game_pitch_deg)
+    forward = np.array([-np.sin(yaw) * np.cos(pitch), -np.sin(pitch), np.cos(yaw) * np.cos(pitch)])
+    right = np.array([-np.cos(yaw), 0.0, -np.sin(yaw)])
+    pose = np.eye(4)
+    pose[:3, :3] = np.column_stack([right, np.cross(forward, right), forward])
+    pose[:3, 3] = eye_block
+    return pose
+
+
+def focal_px_of_fov(side_px: int, fov_deg: float) -> float:
+    """Return the focal length in pixels of a field of view across ``side_px`` pixels.
+
+    The game's FOV is vertical: pass the height. The paper passes the width with the same angle.
+    """
+    return side_px / (2 * np.tan(np.radians(fov_deg) / 2))

@@ -1,0 +1,75 @@
+"""The exceptions that the program raises on purpose, one for each way to fail.
+
+::
+
+    World2MinecraftError            exit code 1
+    ├── UsageError                  2   the command or a parameter is wrong
+    │   ├── UnknownNameError        2   a name that no registry holds
+    │   └── MissingExtraError       2   an optional dependency is not installed
+    └── InputError                  3   a file or folder cannot be used
+        ├── DamagedFileError        3   a file is not what its format says
+        ├── LimitError              3   a file asks for more than the program allows
+        ├── CaptureError            3   a capture lacks what a reconstruction needs
+        └── OutputError             3   the output folder cannot be written
+
+Each message says what was expected, what was given and what to type next, on one line.
+"""
+
+import difflib
+from collections.abc import Iterable
+from pathlib import Path
+
+
+class World2MinecraftError(Exception):
+    """The root of the tree."""
+
+    exit_code = 1
+
+
+class UsageError(World2MinecraftError):
+    """A command, an option or a parameter is wrong."""
+
+    exit_code = 2
+
+
+class UnknownNameError(UsageError):
+    """A name that no registry holds; the message suggests the nearest."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]):
+        choices = sorted(known)
+        near = difflib.get_close_matches(name, choices, n=1)
+        hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(choices)}"
+        super().__init__(f"no {kind} is named {name!r}; {hint}")
+
+
+class MissingExtraError(UsageError):
+    """An optional dependency is not installed; the message is the install line."""
+
+    def __init__(self, feature: str, extra: str):
+        super().__init__(f"{feature} needs an extra: pip install 'world2minecraft[{extra}]'")
+
+
+class InputError(World2MinecraftError):
+    """A file or folder cannot be used. The message names it, then the reason."""
+
+    exit_code = 3
+
+    def __init__(self, path: str | Path, reason: str):
+        super().__init__(f"{path}: {reason}")
+        self.path, self.reason = str(path), reason
+
+
+class DamagedFileError(InputError):
+    """A file is not what its format says."""
+
+
+class LimitError(InputError):
+    """A file asks for more memory, depth or size than the program allows."""
+
+
+class CaptureError(InputError):
+    """A capture lacks what a reconstruction needs, or contradicts itself."""
+
+
+class OutputError(InputError):
+    """The output folder is a file, is full or may not be written."""

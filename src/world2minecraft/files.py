@@ -1,0 +1,141 @@
+"""Files written whole or not at all, the same bytes for the same values.
+
+Every file of the program is written through here: to a temporary neighbour, flushed to disk, then
+renamed, so that a crash leaves the old file or the new one. Time stamps inside archives are fixed.
+"""
+
+import io
+import json
+import os
+import tempfile
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.errors import DamagedFileError, InputError, LimitError, OutputError
+
+FIXED_DATE = (2020, 1, 1, 0, 0, 0)
+MAX_ARRAY_BYTES = 4 << 30  # A 400 x 400 x 100 grid of FusedEvidence takes about 1 GiB.
+
+
+def write_bytes(path: str | Path, data: bytes) -> None:
+    """Write ``data`` to ``path`` atomically, making parent folders.
+
+    Raises:
+        OutputError: the folder cannot be written or the disk is full.
+    """
+    target = Path(path)
+    temporary = None
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, target)
+    except OSError as error:
+        if temporary is not None:
+            Path(temporary).unlink(missing_ok=True)
+        raise OutputError(target, f"cannot be written: {error.strerror or error}") from error
+
+
+def write_text(path: str | Path, text: str) -> None:
+    """Write ``text`` as UTF-8, atomically. Raises what ``write_bytes`` raises."""
+    write_bytes(path, text.encode())
+
+
+def write_json(path: str | Path, value: Any) -> None:
+    """Write ``value`` as JSON with sorted keys, atomically. NaN and infinity are refused."""
+    write_text(path, json.dumps(value, indent=1, sort_keys=True, allow_nan=False) + "\n")
+
+
+def read_json(path: str | Path, limit_bytes: int = 256 << 20) -> Any:
+    """Read a JSON file.
+
+    Raises:
+        InputError: it is missing. DamagedFileError: it is no JSON. LimitError: it is too large.
+    """
+    data = read_bytes(path, limit_bytes)
+    try:
+        return json.loads(data)
+    except (ValueError, RecursionError) as error:
+        raise DamagedFileError(path, f"is not JSON ({error})") from error
+
+
+def read_bytes(path: str | Path, limit_bytes: int) -> bytes:
+    """Read a whole file of at most ``limit_bytes``.
+
+    Raises:
+        InputError: it is missing or cannot be read. LimitError: it is larger.
+    """
+    source = Path(path)
+    try:
+        size = source.stat().st_size
+        if size > limit_bytes:
+            raise LimitError(source, f"has {size:,} bytes; at most {limit_bytes:,} are read")
+        return source.read_bytes()
+    except OSError as error:
+        raise InputError(source, f"cannot be read: {error.strerror or error}") from error
+
+
+def write_npz(path: str | Path, arrays: Mapping[str, np.ndarray]) -> None:
+    """Write arrays as a compressed ``.npz`` whose bytes depend on the values alone."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for name in sorted(arrays):
+            entry = zipfile.ZipInfo(f"{name}.npy", FIXED_DATE)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            payload = io.BytesIO()
+            np.lib.format.write_array(payload, np.asarray(arrays[name]), allow_pickle=False)
+            archive.writestr(entry, payload.getvalue(), compresslevel=1)
+    write_bytes(path, buffer.getvalue())
+
+
+def read_npz(path: str | Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Read the named arrays of a ``.npz``, their sizes checked before any memory is taken.
+
+    Raises:
+        InputError: the file is missing. DamagedFileError: it is no ``.npz`` or lacks a name.
+        LimitError: an array is larger than ``MAX_ARRAY_BYTES``.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise InputError(source, "is not there")
+    try:
+        with zipfile.ZipFile(source) as archive:
+            return {name: _read_member(archive, name, source) for name in names}
+    except (zipfile.BadZipFile, ValueError, EOFError, OSError, NotImplementedError) as error:
+        raise DamagedFileError(source, f"is not a readable .npz ({error})") from error
+    except Exception as error:
+        if type(error).__module__ == "zlib":
+            raise DamagedFileError(source, f"is not a readable .npz ({error})") from error
+        raise
+
+
+def _read_member(archive: zipfile.ZipFile, name: str, source: Path) -> np.ndarray:
+    member = f"{name}.npy"
+    if member not in archive.namelist():
+        held = ", ".join(sorted(entry.removesuffix(".npy") for entry in archive.namelist()))
+        raise DamagedFileError(source, f"has no array {name!r}; it holds: {held or 'nothing'}")
+    declared = archive.getinfo(member).file_size
+    if declared > MAX_ARRAY_BYTES:
+        raise LimitError(source, f"array {name!r} has {declared:,} bytes; too large to read")
+    with archive.open(member) as stream:
+        version = np.lib.format.read_magic(stream)
+        reader = {
+            (1, 0): np.lib.format.read_array_header_1_0,
+            (2, 0): np.lib.format.read_array_header_2_0,
+        }.get(version)
+        if reader is None:
+            raise DamagedFileError(source, f"array {name!r} has npy version {version}")
+        shape, _, dtype = reader(stream)
+        needed = int(np.prod(shape, dtype=np.float64)) * dtype.itemsize
+        if dtype.hasobject or needed > declared:
+            raise DamagedFileError(source, f"array {name!r} says {shape} {dtype}, holds less")
+    with archive.open(member) as stream:
+        return np.lib.format.read_array(stream, allow_pickle=False)

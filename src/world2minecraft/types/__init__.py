@@ -1,0 +1,38 @@
+"""The values that cross between the stages: frozen, and checked in their constructors.
+
+Arrays are held as read-only views; a stage that changes something makes a new value with
+``dataclasses.replace``. Conventions (frames, axes, angles) are in ``coordinates``.
+"""
+
+from world2minecraft.types.capture import Camera, Scan, View, ViewStream
+from world2minecraft.types.edit import Operation
+from world2minecraft.types.evidence import FusedEvidence, GridEvidence, PointEvidence
+from world2minecraft.types.grid import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
+from world2minecraft.types.layout import Layout, LayoutObject, Opening
+from world2minecraft.types.objects import Alternative, ObjectInstance, Placement
+from world2minecraft.types.volume import AIR, BlockEntity, BlockVolume, Entity
+
+__all__ = [
+    "AIR",
+    "COMPLETED",
+    "OBSERVED",
+    "UNSEEN",
+    "Alternative",
+    "BlockEntity",
+    "BlockVolume",
+    "Camera",
+    "Entity",
+    "FusedEvidence",
+    "GridEvidence",
+    "Layout",
+    "LayoutObject",
+    "ObjectInstance",
+    "OccupancyGrid",
+    "Opening",
+    "Operation",
+    "Placement",
+    "PointEvidence",
+    "Scan",
+    "View",
+    "ViewStream",
+]

@@ -1,0 +1,153 @@
+"""What stage 1 gives: cameras, views and the scan they form."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+import numpy as np
+
+from world2minecraft.types import checks
+
+MAX_SIDE_PX = 20_000
+IDENTITY = np.eye(4)
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """A pinhole camera with OpenCV distortion k1 k2 p1 p2 k3; pixel centres lie at +0.5."""
+
+    width_px: int
+    height_px: int
+    fx_px: float
+    fy_px: float
+    cx_px: float
+    cy_px: float
+    distortion: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0, 0.0)
+
+    def __post_init__(self):
+        for name in ("width_px", "height_px"):
+            size = getattr(self, name)
+            if int(size) != size or not 0 < size <= MAX_SIDE_PX:
+                raise ValueError(f"{name} must be 1 to {MAX_SIDE_PX}, not {size}")
+            object.__setattr__(self, name, int(size))
+        checks.positive("fx_px", self.fx_px)
+        checks.positive("fy_px", self.fy_px)
+        checks.floats("cx_px, cy_px", (self.cx_px, self.cy_px), (2,))
+        checks.floats("distortion", self.distortion, (5,))
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """The 3x3 intrinsic matrix K."""
+        return np.array(
+            [[self.fx_px, 0, self.cx_px], [0, self.fy_px, self.cy_px], [0, 0, 1]], np.float64
+        )
+
+    def resized(self, width_px: int, height_px: int) -> "Camera":
+        """Return the camera of the same image resampled to another size.
+
+        Raises:
+            ValueError: the new size is no uniform scale of the old one (over 1 % apart).
+        """
+        across, down = width_px / self.width_px, height_px / self.height_px
+        if abs(across / down - 1) > 0.01:
+            raise ValueError(
+                f"{width_px}x{height_px} is no uniform scale of {self.width_px}x{self.height_px}"
+            )
+        return Camera(
+            width_px,
+            height_px,
+            self.fx_px * across,
+            self.fy_px * down,
+            self.cx_px * across,
+            self.cy_px * down,
+            self.distortion,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """One posed frame. Colour and depth may differ in size, lens and place.
+
+    ``depth_m`` is z-depth in metres, 0 where there is none. ``camera_to_scan`` is that of the
+    colour camera, or of the depth camera where there is no colour.
+    """
+
+    name: str
+    camera_to_scan: np.ndarray
+    colour: np.ndarray | None = None
+    colour_camera: Camera | None = None
+    depth_m: np.ndarray | None = None
+    depth_camera: Camera | None = None
+    depth_to_colour: np.ndarray = field(default_factory=lambda: IDENTITY)
+    labels: np.ndarray | None = None
+
+    def __post_init__(self):
+        put = object.__setattr__
+        checks.identifier("name", self.name)
+        put(self, "camera_to_scan", checks.transform("camera_to_scan", self.camera_to_scan))
+        put(self, "depth_to_colour", checks.transform("depth_to_colour", self.depth_to_colour))
+        if (self.colour is None) != (self.colour_camera is None):
+            raise ValueError("colour and colour_camera come together")
+        if (self.depth_m is None) != (self.depth_camera is None):
+            raise ValueError("depth_m and depth_camera come together")
+        if self.colour_camera is not None:
+            shape = (self.colour_camera.height_px, self.colour_camera.width_px)
+            put(self, "colour", checks.array("colour", self.colour, np.uint8, (*shape, 3)))
+            if self.labels is not None:
+                put(self, "labels", checks.labels("labels", self.labels, shape))
+        elif self.labels is not None:
+            raise ValueError("labels lie on the colour image; there is none")
+        if self.depth_camera is not None:
+            shape = (self.depth_camera.height_px, self.depth_camera.width_px)
+            depth = checks.array("depth_m", self.depth_m, np.float32, shape)
+            if not (np.isfinite(depth).all() and (depth >= 0).all()):
+                raise ValueError("depth_m must be finite and not negative; holes are 0")
+            put(self, "depth_m", depth)
+
+    @property
+    def depth_camera_to_scan(self) -> np.ndarray:
+        """The pose of the depth camera, a 4x4 transform."""
+        return self.camera_to_scan @ self.depth_to_colour
+
+
+class ViewStream(Protocol):
+    """Views that can be read again, one at a time: a capture never lies in memory whole."""
+
+    def __iter__(self) -> Iterator[View]:
+        """Read the views from the first."""
+        ...
+
+    def __len__(self) -> int:
+        """The number of views."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """A capture that is aligned: where the room is in it, and how sure its scale is.
+
+    ``scan_to_room`` carries the scan's frame to the room frame; the inner box of the room is
+    from (0, 0, 0) to ``room_size_m``. ``notes`` are sentences for the report.
+    """
+
+    views: ViewStream
+    scan_to_room: np.ndarray
+    room_size_m: np.ndarray
+    frames_used: tuple[str, ...]
+    frames_skipped: tuple[tuple[str, str], ...] = ()
+    scale: Literal["metric", "estimated", "unknown"] = "metric"
+    scale_sigma: float = 0.0
+    source: str = ""
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self):
+        put = object.__setattr__
+        put(self, "scan_to_room", checks.transform("scan_to_room", self.scan_to_room))
+        put(self, "room_size_m", checks.floats("room_size_m", self.room_size_m, (3,)))
+        if (self.room_size_m <= 0).any():
+            raise ValueError(f"room_size_m must be above 0, not {self.room_size_m.tolist()}")
+        if self.scale not in ("metric", "estimated", "unknown"):
+            raise ValueError(f"scale must be metric, estimated or unknown, not {self.scale!r}")
+        put(self, "frames_used", tuple(self.frames_used))
+        put(self, "frames_skipped", tuple(self.frames_skipped))
+        put(self, "notes", tuple(self.notes))

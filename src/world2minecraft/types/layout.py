@@ -1,0 +1,67 @@
+"""What rooms, RoomPlan and the layout comparators share: a room as shapes in metres."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from world2minecraft.types import checks
+
+
+@dataclass(frozen=True, eq=False)
+class Opening:
+    """A window, door or doorway in a wall, from floor-plan point ``start_m`` to ``end_m``."""
+
+    kind: Literal["window", "door", "doorway"]
+    start_m: np.ndarray  # float64 [2]
+    end_m: np.ndarray  # float64 [2]
+    sill_m: float
+    head_m: float
+
+    def __post_init__(self):
+        put = object.__setattr__
+        put(self, "start_m", checks.floats("start_m", self.start_m, (2,)))
+        put(self, "end_m", checks.floats("end_m", self.end_m, (2,)))
+        if self.kind not in ("window", "door", "doorway"):
+            raise ValueError(f"kind must be window, door or doorway, not {self.kind!r}")
+        if not 0 <= self.sill_m < self.head_m:
+            raise ValueError(f"sill_m must lie under head_m, not {self.sill_m}, {self.head_m}")
+
+
+@dataclass(frozen=True, eq=False)
+class LayoutObject:
+    """A piece of furniture as an oriented box; axes and angles as in ObjectInstance."""
+
+    class_id: int
+    center_m: np.ndarray  # float64 [3]
+    size_m: np.ndarray  # float64 [3]
+    yaw_deg: float
+    name: str = ""
+
+    def __post_init__(self):
+        put = object.__setattr__
+        put(self, "center_m", checks.floats("center_m", self.center_m, (3,)))
+        put(self, "size_m", checks.floats("size_m", self.size_m, (3,)))
+        if (self.size_m <= 0).any():
+            raise ValueError(f"size_m must be above 0, not {self.size_m.tolist()}")
+        checks.floats("yaw_deg", [self.yaw_deg], (1,))
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """A room: its floor polygon (counter-clockwise from above), walls, openings and objects."""
+
+    floor_polygon_m: np.ndarray  # float64 [N, 2]
+    wall_height_m: float
+    openings: tuple[Opening, ...] = ()
+    objects: tuple[LayoutObject, ...] = field(default=())
+
+    def __post_init__(self):
+        put = object.__setattr__
+        polygon = checks.floats("floor_polygon_m", self.floor_polygon_m, (None, 2))
+        if len(polygon) < 3:
+            raise ValueError(f"floor_polygon_m needs 3 corners or more, not {len(polygon)}")
+        put(self, "floor_polygon_m", polygon)
+        checks.positive("wall_height_m", self.wall_height_m)
+        put(self, "openings", tuple(self.openings))
+        put(self, "objects", tuple(self.objects))

@@ -1,0 +1,71 @@
+"""What stage 7 gives: blocks."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.types import checks
+
+AIR = "minecraft:air"
+
+
+@dataclass(frozen=True)
+class BlockEntity:
+    """The data of one block that a state cannot hold, such as a sign's text."""
+
+    block_pos: tuple[int, int, int]  # world block coordinates
+    id: str
+    nbt: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Entity:
+    """A thing that stands free of the block grid."""
+
+    position: tuple[float, float, float]  # world block coordinates, not whole
+    id: str
+    nbt: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class BlockVolume:
+    """A box of blocks in block axes: x east, y up, z south.
+
+    ``states[x, y, z]`` indexes ``palette`` of full block states, such as
+    ``minecraft:oak_stairs[facing=east,half=bottom,...]``; ``palette[0]`` is air. ``corner`` is
+    the world position of cell (0, 0, 0). ``block_to_room`` carries world block coordinates
+    (a block spans [n, n+1]) to room metres: a turn of axes, a scale and a shift.
+    """
+
+    states: np.ndarray  # uint16 [X, Y, Z]
+    palette: tuple[str, ...]
+    semantic: np.ndarray  # uint8 [X, Y, Z]
+    instance: np.ndarray  # uint16 [X, Y, Z]
+    corner: tuple[int, int, int]
+    block_to_room: np.ndarray  # float64 [4, 4]
+    block_entities: tuple[BlockEntity, ...] = ()
+    entities: tuple[Entity, ...] = ()
+
+    def __post_init__(self):
+        put = object.__setattr__
+        states = checks.array("states", self.states, np.uint16, (None, None, None))
+        put(self, "states", states)
+        put(self, "palette", tuple(self.palette))
+        if not self.palette or self.palette[0] != AIR:
+            raise ValueError(f"palette must begin with {AIR}, not {self.palette[:1]}")
+        if states.size and int(states.max()) >= len(self.palette):
+            raise ValueError(f"states go to {states.max()}, the palette has {len(self.palette)}")
+        put(self, "semantic", checks.labels("semantic", self.semantic, states.shape))
+        put(self, "instance", checks.array("instance", self.instance, np.uint16, states.shape))
+        corner = tuple(int(value) for value in self.corner)
+        if len(corner) != 3:
+            raise ValueError(f"corner must be three whole numbers, not {self.corner}")
+        put(self, "corner", corner)
+        put(self, "block_to_room", checks.floats("block_to_room", self.block_to_room, (4, 4)))
+
+    @property
+    def blocks_per_metre(self) -> float:
+        """How many blocks stand for one metre of the room."""
+        return float(1 / np.linalg.norm(self.block_to_room[:3, 0]))
