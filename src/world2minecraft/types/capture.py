@@ -12,7 +12,7 @@ MAX_SIDE_PX = 20_000
 IDENTITY = np.eye(4)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Camera:
     """A pinhole camera with OpenCV distortion k1 k2 p1 p2 k3; pixel centres lie at +0.5."""
 
@@ -33,7 +33,8 @@ class Camera:
         checks.positive("fx_px", self.fx_px)
         checks.positive("fy_px", self.fy_px)
         checks.floats("cx_px, cy_px", (self.cx_px, self.cy_px), (2,))
-        checks.floats("distortion", self.distortion, (5,))
+        distortion = tuple(checks.floats("distortion", self.distortion, (5,)).tolist())
+        object.__setattr__(self, "distortion", distortion)
 
     @property
     def matrix(self) -> np.ndarray:

@@ -1,0 +1,90 @@
+"""Cleaning: floaters away, holes in floor, walls and ceiling closed, thin furniture spared.
+
+``remove_floaters`` runs on the grid as it was read out. ``close_structure`` runs once the
+structure is labelled; each cell that it fills is marked as completed and stays so.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.types import COMPLETED, OccupancyGrid
+
+FULL_NEIGHBOURHOOD = np.ones((3, 3, 3), bool)
+
+
+@dataclass(frozen=True)
+class CleanParameters:
+    """How the grid is cleaned.
+
+    floater_cells: a part joined to nothing with fewer cells is noise: 6 cells are 24 x 16 x 8 cm,
+        less than a cup with its saucer gives.
+    hole_m: holes up to this width are closed; a wider one may be a door or an unseen corner.
+    """
+
+    floater_cells: int = 6
+    hole_m: float = 0.8
+
+
+def remove_floaters(grid: OccupancyGrid, parameters: CleanParameters) -> OccupancyGrid:
+    """Return the grid with small parts that touch nothing, not even by a corner, made free."""
+    parts, count = ndimage.label(grid.occupied, structure=FULL_NEIGHBOURHOOD)
+    sizes = np.bincount(parts.reshape(-1), minlength=count + 1)
+    small = sizes < parameters.floater_cells
+    small[0] = False
+    labels = np.where(small[parts], np.uint8(SemanticClass.EMPTY), grid.labels)
+    return replace(grid, labels=labels)
+
+
+def close_structure(grid: OccupancyGrid, parameters: CleanParameters) -> OccupancyGrid:
+    """Return the grid with the unseen holes of floor, ceiling and walls closed.
+
+    A hole is a set of unknown cells in a layer of the class that a square of ``hole_m`` closes.
+    Cells seen free stay free: a doorway is no hole.
+    """
+    labels, source = grid.labels.copy(), grid.source.copy()
+    confidence, colour = grid.confidence.copy(), grid.colour.copy()
+    for class_id, axes in (
+        (SemanticClass.FLOOR, (2,)),
+        (SemanticClass.CEILING, (2,)),
+        (SemanticClass.WALL, (0, 1)),
+    ):
+        for axis in axes:
+            for layer in structure_layers(grid.labels == class_id, axis):
+                at = tuple(layer if a == axis else slice(None) for a in range(3))
+                fill = _holes(labels[at], int(class_id), parameters.hole_m / grid.voxel_m)
+                labels[at][fill], source[at][fill] = class_id, COMPLETED
+                confidence[at][fill] = 0.5
+                colour[at][fill] = _nearest_colour(grid, at, int(class_id))[fill]
+    return replace(grid, labels=labels, source=source, confidence=confidence, colour=colour)
+
+
+def structure_layers(mask: np.ndarray, axis: int) -> list[int]:
+    """Return the layers across ``axis`` in which a large flat part of ``mask`` lies.
+
+    Flat is a cell whose neighbours within the layer are of the mask too; a layer with a hundred
+    such cells (0.6 m2) holds a surface worth closing.
+    """
+    within = np.ones([1 if a == axis else 3 for a in range(3)], bool)
+    flat = ndimage.binary_opening(mask, within)
+    counts = flat.sum(axis=tuple(a for a in range(3) if a != axis))
+    return [int(layer) for layer in np.flatnonzero(counts >= 100)]
+
+
+def _holes(layer: np.ndarray, class_id: int, hole_cells: float) -> np.ndarray:
+    """Return the unknown cells of a layer [A, B] that closing by ``hole_cells`` covers."""
+    reach = max(round(hole_cells / 2), 1)
+    present = np.pad(layer == class_id, reach)
+    square = np.ones((2 * reach + 1, 2 * reach + 1), bool)
+    closed = ndimage.binary_closing(present, square)[reach:-reach, reach:-reach]
+    return closed & (layer == UNKNOWN)
+
+
+def _nearest_colour(grid: OccupancyGrid, at: tuple, class_id: int) -> np.ndarray:
+    """Return, for each cell of a layer, the colour of the nearest cell of the class in it."""
+    _, nearest = ndimage.distance_transform_edt(
+        grid.labels[at] != class_id, return_distances=True, return_indices=True
+    )
+    return grid.colour[at][tuple(nearest)]

@@ -1,0 +1,26 @@
+"""How views are fused: every number that decides it, and where it comes from."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class FuseParameters:
+    """How views are fused.
+
+    voxel_m: the paper's cell, 0.08 m.
+    hit_log_odds, free_log_odds, limit_log_odds: the trial of reference/occupancy (d).
+    nudge_m: a surface point belongs to the matter behind it; the same trial.
+    min_share: the part of a cell's face that a view must see of it; a quarter in the trial, less
+        here because slanting surfaces show less of themselves.
+    min_points: a single point is noise.
+    clear_m: rays stop this far before their point, so that noise does not eat the surface.
+    """
+
+    voxel_m: float = 0.08
+    hit_log_odds: float = 0.9
+    free_log_odds: float = -0.2
+    limit_log_odds: float = 6.0
+    nudge_m: float = 0.02
+    min_share: float = 0.1
+    min_points: int = 2
+    clear_m: float = 0.075

@@ -1,0 +1,38 @@
+"""From evidence to a grid: what each cell is, how sure that is, and its colour."""
+
+import numpy as np
+
+from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.types import OBSERVED, UNSEEN, FusedEvidence, OccupancyGrid
+
+
+def read_out(evidence: FusedEvidence) -> OccupancyGrid:
+    """Return the grid that the evidence stands for, not yet cleaned or labelled.
+
+    A cell is occupied where its log-odds are above 0, free where below, unknown where 0. An
+    occupied cell takes the class with most votes, or ``objs`` where nothing voted; a labeller
+    decides better. Confidence is the probability of the decision.
+    """
+    log_odds = evidence.log_odds.astype(np.float32)
+    occupied, free = log_odds > 0, log_odds < 0
+    labels = np.full(log_odds.shape, UNKNOWN, np.uint8)
+    labels[free] = SemanticClass.EMPTY
+    voted = evidence.votes[..., 1:].argmax(axis=3).astype(np.uint8) + 1
+    any_vote = evidence.votes[..., 1:].max(axis=3) > 0
+    labels[occupied] = np.where(any_vote, voted, np.uint8(SemanticClass.OBJS))[occupied]
+    confidence = np.where(log_odds == 0, 0, 1 / (1 + np.exp(-np.abs(log_odds))))
+    return OccupancyGrid(
+        labels=labels,
+        confidence=confidence.astype(np.float16),
+        colour=mean_colour(evidence),
+        source=np.where(log_odds == 0, UNSEEN, OBSERVED).astype(np.uint8),
+        instance=np.zeros(log_odds.shape, np.uint16),
+        voxel_m=evidence.voxel_m,
+        origin_m=evidence.origin_m,
+    )
+
+
+def mean_colour(evidence: FusedEvidence) -> np.ndarray:
+    """Return uint8 [X, Y, Z, 3]: the mean colour of each cell's points, black where none."""
+    hits = np.maximum(evidence.hits, 1)[..., None].astype(np.float32)
+    return np.clip(np.round(evidence.colour_sum / hits), 0, 255).astype(np.uint8)

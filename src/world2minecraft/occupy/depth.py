@@ -1,0 +1,90 @@
+"""Depth as evidence: each pixel with depth is a point of the surface, with colour and votes.
+
+Where colour and depth are two cameras, a depth point takes the colour and the label of the pixel
+that it projects to; a point that the colour camera does not see has the nearest edge pixel's.
+"""
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.coordinates import apply, invert_rigid
+from world2minecraft.geometry.lifting import lift_depth, pixel_rays, project
+from world2minecraft.types import Camera, PointEvidence, Scan, View
+
+MAX_DEPTH_M = 6.0  # Consumer depth cameras err by over 6 cm beyond; a room rarely needs more.
+
+
+class DepthPredictor:
+    """Gives one PointEvidence for each view that has depth."""
+
+    def __init__(self, max_depth_m: float = MAX_DEPTH_M):
+        self.max_depth_m = max_depth_m
+
+    def predict(self, scan: Scan) -> Iterator[PointEvidence]:
+        """Yield the surface points of each view, in the scan's frame and order."""
+        for view in scan.views:
+            if view.depth_m is not None:
+                yield self.lift(view)
+
+    def lift(self, view: View) -> PointEvidence:
+        """Return the points of one view, those beyond ``max_depth_m`` left out."""
+        camera, depth_m = view.depth_camera, view.depth_m
+        if camera is None or depth_m is None:
+            raise ValueError(f"view {view.name} has no depth")
+        near_m = np.where(depth_m <= self.max_depth_m, depth_m, np.float32(0))
+        camera_to_scan = view.depth_camera_to_scan
+        points_m, pixels = lift_depth(near_m, camera, camera_to_scan)
+        depths = near_m.reshape(-1)[pixels]
+        colour, votes = _look_up(view, points_m, pixels)
+        return PointEvidence(
+            view=view.name,
+            camera_m=camera_to_scan[:3, 3],
+            points_m=points_m,
+            weight=depths * depths / np.float32(camera.fx_px * camera.fy_px),
+            colour=colour,
+            votes=votes,
+        )
+
+
+def _look_up(view: View, points_m: np.ndarray, pixels: np.ndarray):
+    """Return the colours and the votes of a view's points, or None for what it lacks."""
+    if view.colour is None or view.colour_camera is None:
+        return None, None
+    if np.array_equal(view.depth_to_colour, np.eye(4)):
+        chosen = _shared_place_map(view.depth_camera, view.colour_camera)[pixels]
+    else:
+        in_camera_m = apply(invert_rigid(view.camera_to_scan), points_m.astype(np.float64))
+        chosen = _nearest_pixels(project(in_camera_m, view.colour_camera), view.colour_camera)
+    colour = view.colour.reshape(-1, 3)[chosen]
+    return colour, None if view.labels is None else _ONE_HOT[view.labels.reshape(-1)[chosen]]
+
+
+@lru_cache(maxsize=8)
+def _shared_place_map(depth_camera: Camera, colour_camera: Camera) -> np.ndarray:
+    """Return int32 [H*W]: the colour pixel of each depth pixel, for cameras in one place.
+
+    Then a pixel's ray meets the other image at one place whatever its depth.
+    """
+    rays = pixel_rays(depth_camera).reshape(-1, 2)
+    ahead = np.concatenate([rays, np.ones((len(rays), 1), np.float32)], axis=1)
+    return _nearest_pixels(project(ahead, colour_camera), colour_camera)
+
+
+def _nearest_pixels(at_px: np.ndarray, camera: Camera) -> np.ndarray:
+    """Return the flat indices of the pixels that hold [N, 2] image points, clipped to the edge."""
+    u = np.clip(np.floor(at_px[:, 0]), 0, camera.width_px - 1)
+    v = np.clip(np.floor(at_px[:, 1]), 0, camera.height_px - 1)
+    return (v * camera.width_px + u).astype(np.int32)
+
+
+def _one_hot_rows() -> np.ndarray:
+    """Return float16 [256, 12]: the vote of each label value; unknown and empty vote for none."""
+    rows = np.zeros((256, CLASS_COUNT), np.float16)
+    rows[np.arange(1, CLASS_COUNT), np.arange(1, CLASS_COUNT)] = 1
+    return rows
+
+
+_ONE_HOT = _one_hot_rows()
