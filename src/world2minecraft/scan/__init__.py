@@ -1,1 +1,10 @@
-"""See DESIGN."""
+"""Stage 1: a capture on disk becomes an aligned Scan.
+
+``open_scan`` finds out the source, checks the frames, finds gravity and the walls and returns
+views that are read from disk one at a time. ``describe_capture`` tells in a moment what a folder
+holds. ``write_plain`` writes our own layout.
+"""
+
+from world2minecraft.scan.plain import write_plain
+
+__all__ = ["write_plain"]

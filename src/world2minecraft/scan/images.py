@@ -1,0 +1,137 @@
+"""Images of a capture: hostile until checked.
+
+The size is read from the header and held against ``MAX_PIXELS`` before anything is decoded, only
+the formats that captures use are tried, and a file cut short is found without decoding it.
+"""
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image, UnidentifiedImageError
+
+from world2minecraft.errors import DamagedFileError, InputError, LimitError
+
+MAX_PIXELS = 64_000_000  # A 48-megapixel phone photo passes; decoding it takes 144 MB.
+FORMATS = ("PNG", "JPEG", "TIFF", "PPM", "WEBP", "BMP")
+SUFFIXES = (".png", ".jpg", ".jpeg", ".tiff", ".tif", ".ppm", ".pgm", ".webp", ".bmp")
+
+
+@dataclass(frozen=True)
+class ImageHeader:
+    """What an image says of itself; ``mode`` is Pillow's, or the dtype of a ``.npy``."""
+
+    width_px: int
+    height_px: int
+    mode: str
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        return self.width_px, self.height_px
+
+
+def read_header(path: Path) -> ImageHeader:
+    """Read an image's size and kind, without its pixels.
+
+    Raises:
+        InputError: it is missing. DamagedFileError: it is no image. LimitError: it is over
+            ``MAX_PIXELS``.
+    """
+    if path.suffix == ".npy":
+        array = _map_npy(path)
+        return ImageHeader(array.shape[1], array.shape[0], array.dtype.name)
+    with _opened(path) as image:
+        return ImageHeader(*image.size, image.mode)
+
+
+def check_whole(path: Path) -> None:
+    """Check that an image file is not cut short, without decoding it.
+
+    Raises:
+        DamagedFileError: it ends early or fails its own check sums.
+    """
+    if path.suffix == ".npy":
+        _map_npy(path)
+        return
+    with _opened(path) as image:
+        kind = image.format
+        if kind == "PNG":
+            image.verify()
+    if kind == "JPEG" and b"\xff\xd9" not in _tail(path, 4096):
+        raise DamagedFileError(path, "is cut short (a JPEG without its end); copy it again")
+
+
+def read_colour(path: Path) -> np.ndarray:
+    """Decode a colour image to uint8 [H, W, 3] sRGB. Raises what ``read_header`` raises."""
+    with _opened(path) as image:
+        return np.array(image.convert("RGB"), np.uint8)
+
+
+def read_raw(path: Path) -> np.ndarray:
+    """Decode an image of single values as it is stored, [H, W] of any number type."""
+    if path.suffix == ".npy":
+        return np.array(_map_npy(path))
+    with _opened(path) as image:
+        return np.array(image)
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Image.Image]:
+    """Open an image with its size checked; any way to fail becomes one of our errors."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # Ours is the stricter limit, checked below.
+            with Image.open(path, formats=FORMATS) as image:
+                _check_pixels(path, *image.size)
+                yield image
+    except Image.DecompressionBombError as error:
+        raise LimitError(
+            path, f"has over {MAX_PIXELS * 2 // 1_000_000} megapixels; at most 64 are read"
+        ) from error
+    except UnidentifiedImageError as error:
+        kind = "is empty" if path.stat().st_size == 0 else f"is none of {', '.join(FORMATS)}"
+        raise DamagedFileError(path, f"{kind}; copy it again") from error
+    except FileNotFoundError as error:
+        raise InputError(path, "is not there") from error
+    except (OSError, SyntaxError, ValueError, EOFError, IndexError, MemoryError) as error:
+        # Pillow raises SyntaxError for a PNG whose chunks fail their check sums.
+        raise DamagedFileError(path, f"is damaged ({_one_line(error)}); copy it again") from error
+
+
+def _check_pixels(path: Path, width_px: int, height_px: int) -> None:
+    if width_px * height_px > MAX_PIXELS:
+        raise LimitError(
+            path,
+            f"is {width_px}x{height_px}, {width_px * height_px / 1e6:.0f} megapixels; "
+            f"at most {MAX_PIXELS // 1_000_000} are read",
+        )
+
+
+def _map_npy(path: Path) -> Any:
+    """Map a ``.npy`` of [H, W] numbers; its length is checked against its header."""
+    try:
+        array = np.load(path, mmap_mode="r", allow_pickle=False)
+    except FileNotFoundError as error:
+        raise InputError(path, "is not there") from error
+    except (OSError, ValueError, EOFError) as error:
+        reason = f"is no whole .npy ({_one_line(error)}); copy it again"
+        raise DamagedFileError(path, reason) from error
+    if array.ndim != 2 or array.dtype.kind not in "fu" or not array.size:
+        raise DamagedFileError(path, f"holds {array.dtype} {array.shape}, not numbers [H, W]")
+    _check_pixels(path, array.shape[1], array.shape[0])
+    return array
+
+
+def _tail(path: Path, size: int) -> bytes:
+    with path.open("rb") as stream:
+        stream.seek(max(0, path.stat().st_size - size))
+        return stream.read()
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split())[:120] or type(error).__name__

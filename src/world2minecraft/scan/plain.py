@@ -1,0 +1,190 @@
+"""Our own plain layout: ``capture.json`` beside ``colour/``, ``depth/`` and ``labels/``.
+
+The layout is described in docs/captures.md. ``write_plain`` writes it from views; what it writes
+is read back equal, but for depth, which is rounded to whole millimetres unless the unit is metres.
+"""
+
+import io
+import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.errors import CaptureError
+from world2minecraft.files import read_json, write_bytes, write_json
+from world2minecraft.scan.frames import Capture, FrameFiles
+from world2minecraft.scan.images import SUFFIXES
+from world2minecraft.types import Camera, View
+
+FORMAT = "world2minecraft-capture"
+VERSION = 1
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}")
+_CAMERA_FIELDS = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
+
+
+class PlainSource:
+    """Reads a folder with a ``capture.json``."""
+
+    layout = "capture.json with colour/NAME.png, depth/NAME.png (our plain layout)"
+
+    def recognise(self, folder: Path) -> bool:
+        """Return whether there is a ``capture.json``."""
+        return (folder / "capture.json").is_file()
+
+    def read(self, folder: Path) -> Capture:
+        """List the frames of a plain capture. Raises CaptureError as ``Source.read`` says."""
+        path = folder / "capture.json"
+        stated = read_json(path)
+        if not isinstance(stated, dict) or stated.get("format") != FORMAT:
+            raise CaptureError(path, f'must be an object with "format": "{FORMAT}"')
+        if stated.get("version") != VERSION:
+            raise CaptureError(path, f'"version" must be {VERSION}, not {stated.get("version")!r}')
+        entries = stated.get("frames")
+        if not isinstance(entries, list) or not entries:
+            raise CaptureError(path, '"frames" must be a list of {"name", "camera_to_world"}')
+        unit = stated.get("depth_unit")
+        if unit is not None and not isinstance(unit, str):
+            raise CaptureError(path, f'"depth_unit" must be a name, not {unit!r}')
+        files = _files_by_stem(folder)
+        frames = tuple(_frame(path, stated, entry, files) for entry in entries)
+        names = [frame.name for frame in frames]
+        if len(set(names)) != len(names):
+            raise CaptureError(path, "names a frame twice; every name must be its own")
+        return Capture(folder, "plain", frames, depth_unit=unit)
+
+
+def _files_by_stem(folder: Path) -> dict[str, dict[str, Path]]:
+    """Return the image files of each subfolder, by their name without suffix."""
+    return {
+        kind: {
+            found.stem: found
+            for found in sorted((folder / kind).glob("*"))
+            if found.suffix.lower() in (*SUFFIXES, ".npy")
+        }
+        for kind in ("colour", "depth", "labels")
+    }
+
+
+def _frame(
+    path: Path, stated: dict[str, Any], entry: Any, files: dict[str, dict[str, Path]]
+) -> FrameFiles:
+    name = entry.get("name") if isinstance(entry, dict) else None
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise CaptureError(path, f"a frame's name must be of A-Z a-z 0-9 _ . -, not {name!r}")
+    colour_path, depth_path = files["colour"].get(name), files["depth"].get(name)
+    pose = _matrix(path, entry, "camera_to_world")
+    merged = {**stated, **entry}
+    depth_to_colour = _matrix(path, merged, "depth_to_colour")
+    problem = "" if pose is not None else "has no camera_to_world in capture.json"
+    if colour_path is None and depth_path is None:
+        problem = f"has neither colour/{name}.* nor depth/{name}.*"
+    return FrameFiles(
+        name,
+        pose,
+        colour_path,
+        _camera(path, merged, "colour_camera") if colour_path else None,
+        depth_path,
+        _camera(path, merged, "depth_camera") if depth_path else None,
+        np.eye(4) if depth_to_colour is None else depth_to_colour,
+        files["labels"].get(name),
+        problem,
+    )
+
+
+def _camera(path: Path, stated: dict[str, Any], key: str) -> Camera:
+    value = stated.get(key)
+    if not isinstance(value, dict):
+        raise CaptureError(path, f'has no "{key}" with {", ".join(_CAMERA_FIELDS)}')
+    try:
+        sizes = [value[field] for field in _CAMERA_FIELDS]
+        return Camera(*sizes, distortion=tuple(value.get("distortion", (0.0,) * 5)))
+    except KeyError as error:
+        raise CaptureError(path, f'"{key}" lacks {error.args[0]}') from error
+    except (TypeError, ValueError, OverflowError) as error:
+        raise CaptureError(path, f'"{key}": {error}') from error
+
+
+def _matrix(path: Path, stated: dict[str, Any], key: str) -> np.ndarray | None:
+    value = stated.get(key)
+    if value is None:
+        return None
+    try:
+        matrix = np.array(value, np.float64)
+    except (TypeError, ValueError):
+        matrix = np.zeros(0)
+    if matrix.shape != (4, 4):
+        raise CaptureError(path, f'"{key}" must be four rows of four numbers')
+    return matrix
+
+
+def write_plain(
+    folder: str | Path,
+    views: Iterable[View],
+    *,
+    depth_unit: str = "mm",
+    extra: Mapping[str, Any] | None = None,
+) -> None:
+    """Write views as a plain capture, one at a time; the bytes depend on the views alone.
+
+    Args:
+        folder: made where it is missing; files of the same names are replaced.
+        views: written in their order. ``camera_to_scan`` becomes ``camera_to_world``.
+        depth_unit: ``"mm"`` (16-bit PNG, rounded) or ``"m"`` (float32 ``.npy``, exact).
+        extra: JSON values to keep under ``"extra"``; readers ignore them.
+
+    Raises:
+        OutputError: the folder cannot be written. ValueError: another depth unit.
+    """
+    if depth_unit not in ("mm", "m"):
+        raise ValueError(f"depth_unit must be mm or m, not {depth_unit!r}")
+    root = Path(folder)
+    stated: dict[str, Any] = {"format": FORMAT, "version": VERSION, "depth_unit": depth_unit}
+    entries = []
+    for view in views:
+        _write_images(root, view, depth_unit)
+        entry: dict[str, Any] = {"name": view.name, "camera_to_world": view.camera_to_scan.tolist()}
+        for key, value in _shared_values(view).items():
+            if stated.setdefault(key, value) != value:
+                entry[key] = value
+        entries.append(entry)
+    stated["frames"] = entries
+    if extra:
+        stated["extra"] = dict(extra)
+    write_json(root / "capture.json", stated)
+
+
+def _shared_values(view: View) -> dict[str, Any]:
+    """Return what most captures state once for all frames."""
+    values: dict[str, Any] = {"depth_to_colour": view.depth_to_colour.tolist()}
+    for key in ("colour_camera", "depth_camera"):
+        camera: Camera | None = getattr(view, key)
+        if camera is not None:
+            values[key] = {field: getattr(camera, field) for field in _CAMERA_FIELDS}
+            values[key]["distortion"] = list(camera.distortion)
+    return values
+
+
+def _write_images(root: Path, view: View, depth_unit: str) -> None:
+    if view.colour is not None:
+        _write_png(root / "colour" / f"{view.name}.png", view.colour)
+    if view.labels is not None:
+        _write_png(root / "labels" / f"{view.name}.png", view.labels)
+    if view.depth_m is None:
+        return
+    if depth_unit == "mm":
+        millimetres = np.round(view.depth_m.astype(np.float64) * 1000)
+        millimetres[millimetres > 65534] = 0  # Beyond what 16 bits hold it is a hole.
+        _write_png(root / "depth" / f"{view.name}.png", millimetres.astype(np.uint16))
+    else:
+        buffer = io.BytesIO()
+        np.save(buffer, np.ascontiguousarray(view.depth_m))
+        write_bytes(root / "depth" / f"{view.name}.npy", buffer.getvalue())
+
+
+def _write_png(path: Path, pixels: np.ndarray) -> None:
+    buffer = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(pixels)).save(buffer, "PNG", compress_level=3)
+    write_bytes(path, buffer.getvalue())
