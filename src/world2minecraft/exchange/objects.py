@@ -1,0 +1,114 @@
+"""``objects.json`` and ``placements.json``: what was found, and what was put in its place.
+
+``objects.json`` is a list of ``{id, class, center_m, size_m, yaw_deg, confidence}``; an object's
+cells are those of ``room.npz`` whose ``instance`` is its id. ``placements.json`` is a list of
+``{object_id, class, template, parameters, center_m, size_m, quarter_turns, iou, alternatives}``.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_NAMES, class_id
+from world2minecraft.errors import DamagedFileError, World2MinecraftError
+from world2minecraft.files import read_json, write_json
+from world2minecraft.types import Alternative, ObjectInstance, OccupancyGrid, Placement
+
+
+def write_objects(path: str | Path, instances: tuple[ObjectInstance, ...]) -> None:
+    """Write the objects, in the order given."""
+    write_json(path, [_object_row(instance) for instance in instances])
+
+
+def read_objects(path: str | Path, grid: OccupancyGrid) -> tuple[ObjectInstance, ...]:
+    """Read the objects; their cells come from the grid.
+
+    Raises:
+        InputError: the file is missing. DamagedFileError: a row is no object.
+    """
+    at = np.argwhere(grid.instance > 0).astype(np.int32)
+    owners = grid.instance[tuple(at.T)]
+    return tuple(_rows(path, lambda row: _object_of(row, at[owners == int(row["id"])])))
+
+
+def write_placements(path: str | Path, placements: tuple[Placement, ...]) -> None:
+    """Write the placements, in the order given."""
+    write_json(path, [_placement_row(placement) for placement in placements])
+
+
+def read_placements(path: str | Path) -> tuple[Placement, ...]:
+    """Read the placements. Raises what ``read_objects`` raises."""
+    return tuple(_rows(path, _placement_of))
+
+
+def _object_row(instance: ObjectInstance) -> dict[str, Any]:
+    return {
+        "id": instance.id,
+        "class": CLASS_NAMES[instance.class_id],
+        "center_m": _rounded(instance.center_m),
+        "size_m": _rounded(instance.size_m),
+        "yaw_deg": round(float(instance.yaw_deg), 3),
+        "confidence": round(float(instance.confidence), 4),
+    }
+
+
+def _object_of(row: dict[str, Any], cells: np.ndarray) -> ObjectInstance:
+    return ObjectInstance(
+        id=int(row["id"]),
+        class_id=class_id(row["class"]),
+        center_m=row["center_m"],
+        size_m=row["size_m"],
+        yaw_deg=float(row["yaw_deg"]),
+        cells=cells,
+        confidence=float(row["confidence"]),
+    )
+
+
+def _placement_row(placement: Placement) -> dict[str, Any]:
+    return {
+        "object_id": placement.object_id,
+        "class": CLASS_NAMES[placement.class_id],
+        "template": placement.template,
+        "parameters": {name: round(float(v), 4) for name, v in placement.parameters.items()},
+        "center_m": _rounded(placement.center_m),
+        "size_m": _rounded(placement.size_m),
+        "quarter_turns": placement.quarter_turns,
+        "iou": round(float(placement.iou), 4),
+        "alternatives": [
+            {"template": a.template, "quarter_turns": a.quarter_turns, "iou": round(a.iou, 4)}
+            for a in placement.alternatives
+        ],
+    }
+
+
+def _placement_of(row: dict[str, Any]) -> Placement:
+    return Placement(
+        object_id=int(row["object_id"]),
+        class_id=class_id(row["class"]),
+        template=str(row["template"]),
+        center_m=row["center_m"],
+        size_m=row["size_m"],
+        quarter_turns=int(row["quarter_turns"]),
+        iou=float(row["iou"]),
+        parameters={str(name): float(v) for name, v in row["parameters"].items()},
+        alternatives=tuple(
+            Alternative(str(a["template"]), int(a["quarter_turns"]), float(a["iou"]))
+            for a in row["alternatives"]
+        ),
+    )
+
+
+def _rows(path: str | Path, reader):
+    rows = read_json(path)
+    if not isinstance(rows, list):
+        raise DamagedFileError(path, f"must hold a list, not {type(rows).__name__}")
+    for number, row in enumerate(rows):
+        try:
+            yield reader(row)
+        except (KeyError, TypeError, ValueError, AttributeError, World2MinecraftError) as error:
+            raise DamagedFileError(path, f"row {number} is not valid ({error})") from error
+
+
+def _rounded(values: np.ndarray) -> list[float]:
+    return [round(float(value), 4) for value in values]

@@ -1,0 +1,94 @@
+"""``occ.json`` and ``centers.json``: the two files that the paper's SceneForge reads.
+
+The paper gives no schema, so this is ours, one object a file:
+
+- ``occ.json``: ``{"format": "world2minecraft/occ", "version": 1, "voxel_m", "origin_m": [x, y, z],
+  "shape": [X, Y, Z], "classes": [12 names], "voxels": [[x, y, z, class], ...]}``; occupied cells
+  only, sorted; centre of cell i is ``origin_m + (i + 0.5) * voxel_m``.
+- ``centers.json``: ``{"format": "world2minecraft/centers", "version": 1, "centers":
+  [{"id", "class", "class_id", "position_m": [x, y, z], "voxels"}]}``; ``voxels`` counts cells.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.files import read_json, write_text
+from world2minecraft.types import OBSERVED, ObjectInstance, OccupancyGrid
+
+MAX_CELLS = 200_000_000
+
+
+def write_occ_json(path: str | Path, grid: OccupancyGrid) -> None:
+    """Write the occupied cells of a grid, one voxel a line."""
+    cells = np.argwhere(grid.occupied)
+    rows = np.column_stack([cells, grid.labels[tuple(cells.T)]]).tolist()
+    head = (
+        f'"format":"world2minecraft/occ","version":1,"voxel_m":{grid.voxel_m},'
+        f'"origin_m":{[round(float(v), 6) for v in grid.origin_m]},"shape":{list(grid.shape)},'
+        f'"classes":{list(CLASS_NAMES)}'
+    ).replace("'", '"')
+    voxels = ",\n".join(f"[{x},{y},{z},{c}]" for x, y, z, c in rows)
+    write_text(path, f'{{{head},"voxels":[\n{voxels}\n]}}\n')
+
+
+def read_occ_json(path: str | Path) -> OccupancyGrid:
+    """Read ``occ.json``; every cell that it does not name is empty.
+
+    Raises:
+        DamagedFileError: it is not in the format. LimitError: its shape is too large.
+    """
+    value = read_json(path)
+    try:
+        shape = tuple(int(side) for side in value["shape"])
+        voxels = np.array(value["voxels"], np.int64).reshape(-1, 4)
+        voxel_m, origin_m = float(value["voxel_m"]), np.array(value["origin_m"], np.float64)
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
+        raise DamagedFileError(path, f"is not occ.json of this program ({error})") from error
+    _check_voxels(path, shape, voxels)
+    labels = np.zeros(shape, np.uint8)
+    labels[tuple(voxels[:, :3].T)] = voxels[:, 3]
+    source = np.full(shape, OBSERVED, np.uint8)
+    return OccupancyGrid(
+        labels=labels,
+        confidence=np.ones(shape, np.float16),
+        colour=np.zeros((*shape, 3), np.uint8),
+        source=source,
+        instance=np.zeros(shape, np.uint16),
+        voxel_m=voxel_m,
+        origin_m=np.round(origin_m / voxel_m) * voxel_m,
+    )
+
+
+def _check_voxels(path: str | Path, shape: tuple[int, ...], voxels: np.ndarray) -> None:
+    if len(shape) != 3 or min(shape) < 1:
+        raise DamagedFileError(path, f"shape must be three sizes, not {list(shape)}")
+    if np.prod(np.array(shape, np.float64)) > MAX_CELLS:
+        raise LimitError(path, f"shape {list(shape)} has over {MAX_CELLS:,} cells")
+    inside = ((voxels[:, :3] >= 0) & (voxels[:, :3] < shape)).all()
+    if len(voxels) and not (inside and (voxels[:, 3] >= 1).all() and (voxels[:, 3] <= 11).all()):
+        raise DamagedFileError(path, "a voxel lies outside shape or its class is not 1 to 11")
+
+
+def write_centers_json(path: str | Path, instances: tuple[ObjectInstance, ...]) -> None:
+    """Write one centre for each object."""
+    rows: list[dict[str, Any]] = [
+        {
+            "id": instance.id,
+            "class": CLASS_NAMES[instance.class_id],
+            "class_id": instance.class_id,
+            "position_m": [round(float(v), 4) for v in instance.center_m],
+            "voxels": len(instance.cells),
+        }
+        for instance in instances
+    ]
+    body = ",\n".join(_line(row) for row in rows)
+    write_text(path, f'{{"format":"world2minecraft/centers","version":1,"centers":[\n{body}\n]}}\n')
+
+
+def _line(row: dict[str, Any]) -> str:
+    return json.dumps(row, separators=(",", ":"))
