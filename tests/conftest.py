@@ -1,11 +1,18 @@
-"""Fixtures that all tests share."""
+"""Fixtures that all tests share, and hypothesis without chance."""
 
 import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 REPOSITORY = Path(__file__).resolve().parents[1]
+
+# The same examples on each run and machine, and no deadline that a busy one would miss.
+settings.register_profile(
+    "project", derandomize=True, deadline=None, max_examples=50, database=None
+)
+settings.load_profile("project")
 
 
 @pytest.fixture(scope="session")
