@@ -1,0 +1,138 @@
+"""What colour a block is, seen from afar, and which block comes nearest to a colour.
+
+The table ``data/block_colours.json`` holds our own estimates of the mean sRGB colour of the
+blocks of 1.20.1. Slabs, stairs, fences and the like take the colour of what they are made of; a
+block that neither the table nor a rule knows (of a mod) gets a colour of its own that depends on
+its name alone, so that it stays recognisable from picture to picture.
+"""
+
+import json
+from collections.abc import Sequence
+from functools import cache
+from hashlib import sha256
+from importlib.resources import files
+
+import numpy as np
+
+from world2minecraft.geometry.colour import oklab_of_srgb
+
+# A shape and the endings that its material may have: oak_slab is made of oak_planks,
+# stone_brick_wall of stone_bricks, quartz_stairs of quartz_block, white_carpet of white_wool.
+_SHAPES = (
+    "_stairs",
+    "_slab",
+    "_wall",
+    "_fence_gate",
+    "_fence",
+    "_trapdoor",
+    "_door",
+    "_button",
+    "_pressure_plate",
+    "_wall_hanging_sign",
+    "_hanging_sign",
+    "_wall_sign",
+    "_sign",
+    "_wall_banner",
+    "_candle_cake",
+    "_carpet",
+    "_bed",
+    "_pane",
+    "_wood",
+    "_hyphae",
+    "_cauldron",
+    "_wall_head",
+    "_wall_skull",
+)
+_MATERIAL_ENDINGS = (
+    "",
+    "s",
+    "_planks",
+    "_block",
+    "_wool",
+    "_log",
+    "_stem",
+    "_banner",
+    "_candle",
+    "_head",
+    "_skull",
+)
+_PREFIXES = ("waxed_", "infested_", "potted_")
+_NEAREST_CHUNK = 65_536
+
+
+@cache
+def _table() -> dict[str, tuple[int, int, int]]:
+    source = files("world2minecraft.minecraft") / "data" / "block_colours.json"
+    return {name: tuple(rgb) for name, rgb in json.loads(source.read_text("utf-8")).items()}
+
+
+@cache
+def colour_of(state: str) -> tuple[int, int, int]:
+    """Return the mean sRGB colour, bytes, of a block state such as ``minecraft:oak_slab[...]``.
+
+    Properties do not matter, and the namespace may be left out. A block that is not known gets
+    a stable colour made from its name.
+
+    Example:
+        >>> colour_of("minecraft:red_carpet") == colour_of("red_wool")
+        True
+    """
+    name = state.partition("[")[0]
+    namespace, _, plain = name.rpartition(":")
+    if namespace in ("", "minecraft"):
+        found = _known_colour(plain)
+        if found is not None:
+            return found
+    return _name_colour(name)
+
+
+def _known_colour(name: str) -> tuple[int, int, int] | None:
+    table = _table()
+    for prefix in _PREFIXES:
+        name = name.removeprefix(prefix)
+    if name in table:
+        return table[name]
+    for shape in _SHAPES:
+        if name.endswith(shape):
+            stem = name.removesuffix(shape)
+            for ending in _MATERIAL_ENDINGS:
+                if stem + ending in table:
+                    return table[stem + ending]
+    return None
+
+
+def _name_colour(name: str) -> tuple[int, int, int]:
+    red, green, blue = sha256(name.encode()).digest()[:3]
+    return 64 + red // 2, 64 + green // 2, 64 + blue // 2  # Neither black nor glaring.
+
+
+def colours_of(states: Sequence[str]) -> np.ndarray:
+    """Return the colours, uint8 [N, 3], of N block states."""
+    return np.array([colour_of(state) for state in states], np.uint8).reshape(-1, 3)
+
+
+def nearest_block(rgb: np.ndarray, candidates: Sequence[str]) -> np.ndarray:
+    """Return which candidate comes nearest to each colour in Oklab; the first of equals wins.
+
+    Args:
+        rgb: uint8 [N, 3].
+        candidates: block states or names, at least one.
+
+    Returns:
+        intp [N], indices into ``candidates``.
+
+    Raises:
+        ValueError: there are no candidates.
+    """
+    if not candidates:
+        raise ValueError("nearest_block needs at least one candidate block")
+    return nearest_oklab(oklab_of_srgb(rgb), oklab_of_srgb(colours_of(candidates)))
+
+
+def nearest_oklab(colours: np.ndarray, candidates: np.ndarray) -> np.ndarray:
+    """Return the index, intp [N], of the candidate [M, 3] nearest to each colour [N, 3]."""
+    nearest = np.empty(len(colours), np.intp)
+    for start in range(0, len(colours), _NEAREST_CHUNK):
+        chunk = colours[start : start + _NEAREST_CHUNK, None, :]
+        nearest[start : start + _NEAREST_CHUNK] = ((chunk - candidates) ** 2).sum(-1).argmin(1)
+    return nearest
