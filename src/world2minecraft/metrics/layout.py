@@ -1,0 +1,156 @@
+"""Physical sense of a layout: objects that overlap, that leave the room, that hang in the air.
+
+In: objects as boxes (ObjectInstance, LayoutObject, Placement), or a label grid. Boxes are looked
+at before they become cells, so that touching furniture is no collision.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any, cast
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.classes import OBJECT_CLASSES, STRUCTURE_CLASSES
+
+OVERLAP_M = 0.04  # Half a default cell: less than what reading a size from cells can tell.
+OUTSIDE_M = 0.04  # The same, for boxes that reach into walls.
+FULL_NEIGHBOURHOOD = np.ones((3, 3, 3), bool)
+
+
+@dataclass(frozen=True, eq=False)
+class Floaters:
+    """Parts of objects that no structure carries: how many, their cells, and their mask."""
+
+    parts: int
+    cells: int
+    mask: np.ndarray  # bool [X, Y, Z]
+
+
+def collisions(objects: Sequence[Any], tolerance_m: float = OVERLAP_M) -> list[tuple[int, int]]:
+    """Return the pairs of indices, sorted, of objects whose boxes overlap.
+
+    Two boxes overlap where they would have to be moved by more than ``tolerance_m`` to part.
+    Several placements of one object (the runs of an L) do not collide.
+
+    Args:
+        objects: ObjectInstance, LayoutObject or Placement: ``center_m``, ``size_m`` along its own
+            axes, ``yaw_deg`` or ``quarter_turns``, and where it has one ``object_id``.
+        tolerance_m: the depth of overlap that is forgiven.
+    """
+    pairs = []
+    for (m, a), (n, b) in combinations(enumerate(objects), 2):
+        owner = getattr(a, "object_id", None)
+        same = owner is not None and owner == getattr(b, "object_id", None)
+        if not same and overlap_depth_m(a, b) > tolerance_m:
+            pairs.append((m, n))
+    return pairs
+
+
+def overlap_depth_m(a: Any, b: Any) -> float:
+    """Return how far two boxes must be moved, along one of their axes, to part; 0 if apart.
+
+    Boxes are upright and turned about z: they are apart where a side of one parts them in plan,
+    or a height does (the separating axis theorem).
+    """
+    gap_z = abs(a.center_m[2] - b.center_m[2])
+    depths = [(a.size_m[2] + b.size_m[2]) / 2 - gap_z]
+    corners_a, corners_b = plan_corners_m(a), plan_corners_m(b)
+    for corners in (corners_a, corners_b):
+        for side in (corners[1] - corners[0], corners[2] - corners[1]):
+            length = np.hypot(*side)
+            if length == 0:
+                continue
+            along_a, along_b = corners_a @ side / length, corners_b @ side / length
+            depths.append(min(along_a.max() - along_b.min(), along_b.max() - along_a.min()))
+    return float(max(min(depths), 0.0))
+
+
+def out_of_bounds(
+    objects: Sequence[Any],
+    floor_polygon_m: np.ndarray,
+    height_m: float | None = None,
+    tolerance_m: float = OUTSIDE_M,
+) -> list[int]:
+    """Return the indices of objects of which a part lies outside the room.
+
+    Args:
+        objects: as for ``collisions``.
+        floor_polygon_m: float [N, 2], the room's inner outline, simple, in either direction.
+        height_m: where the ceiling hangs; None = unknown. The floor is at 0.
+        tolerance_m: how far a box may reach out.
+    """
+    polygon = np.asarray(floor_polygon_m, np.float64)
+    if polygon.ndim != 2 or polygon.shape[1] != 2 or len(polygon) < 3:
+        raise ValueError(f"floor_polygon_m must be [N, 2] with N >= 3, not {polygon.shape}")
+    outside = []
+    for index, item in enumerate(objects):
+        bottom = item.center_m[2] - item.size_m[2] / 2
+        top = item.center_m[2] + item.size_m[2] / 2
+        upright = bottom >= -tolerance_m and (height_m is None or top <= height_m + tolerance_m)
+        if not (upright and _inside(_outline_m(item), polygon, tolerance_m).all()):
+            outside.append(index)
+    return outside
+
+
+def floaters(labels: np.ndarray) -> Floaters:
+    """Return the connected parts of a label grid that hold objects and touch no structure.
+
+    Cells touch where they share a face, an edge or a corner. Objects that stand on a floor, lie
+    on a table that does, or hang on a wall or a ceiling are carried.
+
+    Args:
+        labels: uint8 [X, Y, Z], ids 0 to 11 or 255.
+    """
+    is_object = np.isin(labels, OBJECT_CLASSES)
+    structure = np.isin(labels, STRUCTURE_CLASSES)
+    joined = ndimage.label(is_object | structure, structure=FULL_NEIGHBOURHOOD)
+    parts, count = cast(tuple[np.ndarray, int], joined)
+    carried = np.zeros(count + 1, bool)
+    carried[np.unique(parts[structure])] = True
+    mask = is_object & ~carried[parts]
+    return Floaters(len(np.unique(parts[mask])), int(mask.sum()), mask)
+
+
+def plan_corners_m(item: Any) -> np.ndarray:
+    """Return the four corners of an object's box seen from above, float64 [4, 2], in order."""
+    turned = hasattr(item, "yaw_deg")
+    angle = np.radians(item.yaw_deg if turned else 90.0 * item.quarter_turns)
+    forward = np.array([np.cos(angle), np.sin(angle)])
+    left = np.array([-forward[1], forward[0]])
+    ahead, aside = forward * item.size_m[0] / 2, left * item.size_m[1] / 2
+    center = np.asarray(item.center_m[:2])
+    return np.array(
+        [
+            center - ahead - aside,
+            center + ahead - aside,
+            center + ahead + aside,
+            center - ahead + aside,
+        ]
+    )
+
+
+def _outline_m(item: Any) -> np.ndarray:
+    """Return the corners and the points between them, about every 10 cm, for concave rooms."""
+    corners = plan_corners_m(item)
+    points = []
+    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        steps = max(int(np.ceil(np.hypot(*(end - start)) / 0.1)), 1)
+        points.append(start + (end - start) * (np.arange(steps) / steps)[:, None])
+    return np.concatenate(points)
+
+
+def _inside(points_m: np.ndarray, polygon_m: np.ndarray, tolerance_m: float) -> np.ndarray:
+    """Return for points [M, 2] whether each lies in the polygon or within the tolerance of it."""
+    start, end = polygon_m, np.roll(polygon_m, -1, axis=0)
+    side = end - start
+    to_point = points_m[:, None] - start[None]
+    square = np.maximum((side**2).sum(axis=1), 1e-12)
+    along = np.clip((to_point * side).sum(axis=2) / square, 0, 1)
+    apart_m = np.linalg.norm(to_point - along[..., None] * side, axis=2).min(axis=1)
+    crosses = (start[:, 1] > points_m[:, None, 1]) != (end[:, 1] > points_m[:, None, 1])
+    height = np.where(side[:, 1] == 0, 1.0, side[:, 1])
+    at_x = start[:, 0] + (points_m[:, None, 1] - start[:, 1]) * side[:, 0] / height
+    odd = (crosses & (points_m[:, None, 0] < at_x)).sum(axis=1) % 2 == 1
+    return odd | (apart_m <= tolerance_m)

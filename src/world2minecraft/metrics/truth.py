@@ -1,0 +1,112 @@
+"""A fine truth carried into the frame and the cells in which a reconstruction is scored.
+
+In: a label grid of small cells (2 cm) with its own frame. Out: a label grid of the estimated
+room's cells. The estimated frame differs from the true one by a small turn and shift, so each
+coarse cell is sampled at the centres of as many sub-cells as fine cells fit in it; then the rule by
+which SSCNet made its labels decides, as in the paper's data.
+"""
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.coordinates import invert_rigid
+from world2minecraft.jit import njit
+from world2minecraft.types import UNSEEN
+from world2minecraft.types.checks import labels as check_labels
+from world2minecraft.types.checks import transform
+
+EMPTY_SHARE = 0.95  # SSCNet: a cell with more of it empty or unknown is not occupied.
+
+
+def carry_truth(
+    labels_fine: np.ndarray,
+    voxel_m: float,
+    origin_m: np.ndarray,
+    truth_to_room: np.ndarray,
+    grid_shape: tuple[int, int, int],
+    grid_origin_m: np.ndarray,
+    grid_voxel_m: float,
+) -> np.ndarray:
+    """Return the truth in the cells of a reconstruction.
+
+    SSCNet's rule: a cell of 4 x 4 x 4 fine ones is occupied where at least 4 of the 64 are; it
+    takes the class with most of them (the lowest id of a tie). Else it is empty where empty
+    outnumber unknown ones, and 255 where not. Beyond the truth's grid all is unknown.
+
+    Args:
+        labels_fine: uint8 [A, B, C], ids 0 to 11 or 255.
+        voxel_m: its cell.
+        origin_m: float [3], its minimum corner in the truth's frame.
+        truth_to_room: 4x4 rigid transform from the truth's frame to the room's.
+        grid_shape: cells of the result along x, y and z.
+        grid_origin_m: float [3], its minimum corner in the room frame.
+        grid_voxel_m: its cell, at least ``voxel_m``.
+
+    Returns:
+        uint8 ``grid_shape``, ids 0 to 11 or 255.
+
+    Raises:
+        ValueError: a shape or an id is wrong, or the grid's cell is smaller than the truth's.
+    """
+    fine = check_labels("labels_fine", labels_fine, (None, None, None))
+    if not 0 < voxel_m <= grid_voxel_m * (1 + 1e-9):
+        raise ValueError(f"voxel_m must be above 0 and at most {grid_voxel_m}, not {voxel_m}")
+    # The centre of sub-cell (i, j, k) of the grid, in fine cells: one affine map for all.
+    per_side = max(round(grid_voxel_m / voxel_m), 1)
+    room_to_truth = invert_rigid(transform("truth_to_room", truth_to_room))
+    step_m = grid_voxel_m / per_side
+    first_m = np.asarray(grid_origin_m, np.float64) + 0.5 * step_m
+    turn = room_to_truth[:3, :3] * (step_m / voxel_m)
+    start = (room_to_truth[:3, :3] @ first_m + room_to_truth[:3, 3] - origin_m) / voxel_m
+    sub_cell_to_fine = np.concatenate([turn, start[:, None]], axis=1)
+    return _resample(np.ascontiguousarray(fine), sub_cell_to_fine, np.array(grid_shape), per_side)
+
+
+def scored_cells(truth: np.ndarray, source: np.ndarray) -> np.ndarray:
+    """Return the cells on which a reconstruction is scored: reached by it and known to the truth.
+
+    Args:
+        truth: uint8 [X, Y, Z] from ``carry_truth``.
+        source: uint8 [X, Y, Z] of the OccupancyGrid; completed cells count as reached.
+    """
+    return (source != UNSEEN) & (truth != UNKNOWN)
+
+
+@njit
+def _resample(fine, sub_cell_to_fine, grid_shape, per_side):
+    """Sample ``fine`` at every sub-cell and apply SSCNet's rule; see ``carry_truth``."""
+    result = np.empty((grid_shape[0], grid_shape[1], grid_shape[2]), np.uint8)
+    counts = np.zeros(CLASS_COUNT + 1, np.int64)
+    whole = per_side**3
+    m = sub_cell_to_fine
+    for i in range(grid_shape[0]):
+        for j in range(grid_shape[1]):
+            for k in range(grid_shape[2]):
+                counts[:] = 0
+                for n in range(whole):
+                    x = i * per_side + n // (per_side * per_side)
+                    y = j * per_side + n // per_side % per_side
+                    z = k * per_side + n % per_side
+                    a = int(np.floor(m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3]))
+                    b = int(np.floor(m[1, 0] * x + m[1, 1] * y + m[1, 2] * z + m[1, 3]))
+                    c = int(np.floor(m[2, 0] * x + m[2, 1] * y + m[2, 2] * z + m[2, 3]))
+                    inside = 0 <= a < fine.shape[0] and 0 <= b < fine.shape[1]
+                    if inside and 0 <= c < fine.shape[2] and fine[a, b, c] < CLASS_COUNT:
+                        counts[fine[a, b, c]] += 1
+                    else:
+                        counts[CLASS_COUNT] += 1
+                result[i, j, k] = _decide(counts, whole)
+    return result
+
+
+@njit
+def _decide(counts, whole):
+    """Return a coarse cell's label from the counts of its fine ones, unknown counted last."""
+    empty, unknown = counts[0], counts[CLASS_COUNT]
+    if empty + unknown > EMPTY_SHARE * whole:
+        return np.uint8(0) if empty > unknown else np.uint8(UNKNOWN)
+    best = 1
+    for class_id in range(2, CLASS_COUNT):
+        if counts[class_id] > counts[best]:
+            best = class_id
+    return np.uint8(best)
