@@ -43,6 +43,7 @@ _SHAPES = (
     "_wall_head",
     "_wall_skull",
 )
+_BARKS = ("_log", "_stem")  # Wood and hyphae are bark on all six sides.
 _MATERIAL_ENDINGS = (
     "",
     "s",
@@ -95,7 +96,7 @@ def _known_colour(name: str) -> tuple[int, int, int] | None:
     for shape in _SHAPES:
         if name.endswith(shape):
             stem = name.removesuffix(shape)
-            for ending in _MATERIAL_ENDINGS:
+            for ending in _BARKS if shape in ("_wood", "_hyphae") else _MATERIAL_ENDINGS:
                 if stem + ending in table:
                     return table[stem + ending]
     return None
