@@ -1,0 +1,151 @@
+"""The picture kernel: one pass over the pixels gives depth, range, block, face and colour.
+
+Colour is the block's own colour times three calm factors: the face's direction, the ambient
+occlusion of the eight cells around the face, and a light that the camera carries. Blocks are told
+apart by a hash of their place (3 %) and by slightly darker edges, which fade out where a block
+covers few pixels.
+"""
+
+import numpy as np
+
+from world2minecraft.jit import njit
+from world2minecraft.render.trace import FULL, NO_FACE, trace
+
+# In the order of the faces -x +x -y +y -z +z of block axes (y is up): the game's shades, softened.
+FACE_SHADE = np.array([0.80, 0.80, 0.64, 1.0, 0.90, 0.90], np.float32)
+HASH_SHARE = 0.03
+EDGE_BLOCKS, EDGE_SHADE = 0.035, 0.10
+EDGE_FADE_PX = 6.0  # Edges are drawn in full where a block covers four times as many pixels.
+CORNER_SHADE = 0.15  # What each solid neighbour of a corner takes; the game takes 0.2.
+HEADLIGHT = 0.14  # What a face loses that the camera sees edge-on.
+EXPOSURE = 1.06
+
+
+@njit
+def draw_rows(
+    cells, states, box_start, boxes, colours, pose, rays, spread, first, last, with_colour,
+    background, depth, distance, index, face, colour,
+):  # fmt: skip
+    """Fill the rows ``first`` to ``last`` (past the end) of the outputs.
+
+    Args:
+        cells, states, box_start, boxes, colours: see ``RayScene``.
+        pose: float64 [3, 4], camera (z forward, metres) to grid.
+        rays: float64 [4] ``fx, fy, cx, cy`` in pixels, or pixels a metre for parallel rays.
+        spread: 1 for a pinhole camera, 0 for parallel rays.
+        first, last: the band of rows.
+        with_colour: whether to shade.
+        background: float32 [2, 3], colours of the first and the last row.
+        depth, distance: float32 [H, W], metres, 0 where there is nothing.
+        index: int32 [H, W], the C-order index of the cell, -1 where there is none.
+        face: uint8 [H, W], ``NO_FACE`` where there is none.
+        colour: uint8 [H, W, 3].
+    """
+    height, width = depth.shape
+    ny, nz = cells.shape[1], cells.shape[2]
+    cell_m = 1.0 / np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)
+    for v in range(first, last):
+        for u in range(width):
+            x, y = (u + 0.5 - rays[2]) / rays[0], (v + 0.5 - rays[3]) / rays[1]
+            sx, sy = x * (1 - spread), y * (1 - spread)
+            x, y = x * spread, y * spread
+            ox = pose[0, 0] * sx + pose[0, 1] * sy + pose[0, 3]
+            oy = pose[1, 0] * sx + pose[1, 1] * sy + pose[1, 3]
+            oz = pose[2, 0] * sx + pose[2, 1] * sy + pose[2, 3]
+            dx = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]
+            dy = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]
+            dz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]
+            t, i, j, k, side = trace(
+                cells, states, box_start, boxes, ox, oy, oz, dx, dy, dz, np.inf
+            )
+            face[v, u] = side
+            if side == NO_FACE:
+                depth[v, u], distance[v, u], index[v, u] = 0.0, 0.0, -1
+                if with_colour:
+                    share = v / max(height - 1, 1)
+                    for n in range(3):
+                        tone = background[0, n] * (1 - share) + background[1, n] * share
+                        colour[v, u, n] = np.uint8(tone)
+                continue
+            length = np.sqrt(x * x + y * y + 1.0)
+            depth[v, u], distance[v, u] = t, t * length
+            index[v, u] = (i * ny + j) * nz + k
+            if not with_colour:
+                continue
+            row = colours[states[i, j, k]]
+            if row[3] > 0:
+                light = 1.12
+            else:
+                axis = side // 2
+                toward = dx if axis == 0 else (dy if axis == 1 else dz)
+                cosine = abs(toward) * cell_m / length
+                light = EXPOSURE * FACE_SHADE[side] * (1 - HEADLIGHT * (1 - cosine))
+                block_px = cell_m * rays[0] / (t * spread + 1 - spread)
+                light *= _surface(
+                    cells, i, j, k, side, ox + t * dx - i, oy + t * dy - j, oz + t * dz - k,
+                    block_px * max(cosine, 0.2),
+                )  # fmt: skip
+            for n in range(3):
+                colour[v, u, n] = np.uint8(min(255.0, row[n] * light + 0.5))
+
+
+@njit
+def _surface(cells, i, j, k, face, fx, fy, fz, block_px):
+    """Return occlusion times variation at a point (fx, fy, fz) within cell (i, j, k)."""
+    axis = face // 2
+    along = fx if axis == 0 else (fy if axis == 1 else fz)
+    p = fy if axis == 0 else fx
+    q = fy if axis == 2 else fz
+    step = 0
+    if face % 2 == 1 and along > 0.999:
+        step = 1
+    elif face % 2 == 0 and along < 0.001:
+        step = -1
+    light = _occlusion(cells, i, j, k, axis, step, p, q)
+    strength = min(1.0, max(0.0, (block_px - EDGE_FADE_PX) / (3 * EDGE_FADE_PX)))
+    inside = min(p, 1 - p, q, 1 - q)
+    width = max(EDGE_BLOCKS, 0.7 / max(block_px, 1e-6))
+    if inside < width:
+        light *= 1 - EDGE_SHADE * strength * (1 - max(inside, 0.0) / width)
+    return light * (1 + HASH_SHARE * (2 * _hash(i, j, k) - 1))
+
+
+@njit
+def _occlusion(cells, i, j, k, axis, step, p, q):
+    """Blend the darkness of the face's four corners at (p, q), each from three neighbours."""
+    light = 0.0
+    for a in range(2):
+        for b in range(2):
+            side_a = _solid(cells, i, j, k, axis, step, 2 * a - 1, 0)
+            side_b = _solid(cells, i, j, k, axis, step, 0, 2 * b - 1)
+            both = side_a + side_b
+            if both < 2:
+                both += _solid(cells, i, j, k, axis, step, 2 * a - 1, 2 * b - 1)
+            else:
+                both = 3
+            share = (p if a else 1 - p) * (q if b else 1 - q)
+            light += share * (1 - CORNER_SHADE * both)
+    return light
+
+
+@njit
+def _solid(cells, i, j, k, axis, step, dp, dq):
+    """Tell (1 or 0) whether a neighbour in the layer before the face is a full cube."""
+    if axis == 0:
+        i, j, k = i + step, j + dp, k + dq
+    elif axis == 1:
+        i, j, k = i + dp, j + step, k + dq
+    else:
+        i, j, k = i + dp, j + dq, k + step
+    nx, ny, nz = cells.shape
+    if i < 0 or j < 0 or k < 0 or i >= nx or j >= ny or k >= nz:
+        return 0
+    return 1 if cells[i, j, k] == FULL else 0
+
+
+@njit
+def _hash(i, j, k):
+    """Return a number from 0 to 1 that belongs to a cell."""
+    mixed = (i * 73856093) ^ (j * 19349663) ^ (k * 83492791)
+    mixed = ((mixed ^ (mixed >> 13)) * 1274126177) & 0x7FFFFFFF
+    return ((mixed ^ (mixed >> 16)) & 0xFFFF) / 65535.0
