@@ -1,5 +1,36 @@
-"""``w2m``, one file a verb."""
+"""``w2m``, one file a verb.
+
+``main`` is all that starts at once; ``verbs`` holds the table of verbs, each imported when it is
+called, so that ``w2m --help`` loads neither numpy nor numba. ``failures`` turns what goes wrong
+into one line and an exit code: 0 done, 1 failure, 2 usage, 3 bad input, 130 stopped.
+"""
+
+import os
+import sys
+from collections.abc import Sequence
+
+TRACEBACK_FLAG = "--traceback"
 
 
-def main() -> None:
-    """Run the command line."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and leave with its exit code."""
+    sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command and return its exit code: nothing that goes wrong escapes from here.
+
+    Args:
+        arguments: the words after ``w2m``. ``--traceback`` may stand anywhere among them; the
+            environment variable ``W2M_TRACEBACK=1`` says the same.
+    """
+    words = [word for word in arguments if word != TRACEBACK_FLAG] or ["--help"]
+    wants_traceback = len(words) < len(arguments) or os.environ.get("W2M_TRACEBACK", "0") != "0"
+    try:
+        from world2minecraft.cli.verbs import call
+
+        return call(words)
+    except BaseException as error:
+        from world2minecraft.cli.failures import report
+
+        return report(error, with_traceback=wants_traceback)

@@ -1,0 +1,5 @@
+"""``python -m world2minecraft.cli`` does what ``w2m`` does."""
+
+from world2minecraft.cli import main
+
+main()

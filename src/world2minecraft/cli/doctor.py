@@ -1,0 +1,155 @@
+"""``w2m doctor``: whether this machine can run the program, and what to do where it cannot."""
+
+import os
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import Literal
+
+EXAMPLES = """\
+w2m doctor                  check this machine
+w2m doctor && w2m demo      check it, then build the embedded room
+"""
+
+PYTHON_RANGE = ((3, 11), (3, 13))
+LEAST_MEMORY_GB = 1.0  # A 40-frame capture has a budget of 1 GB.
+LEAST_DISK_GB = 0.5  # Kernels take about 50 MB, a built room less than 20 MB; the rest is room.
+CORE_PACKAGES = ("numpy", "numba", "scipy", "scikit-learn", "pillow")
+
+
+@dataclass(frozen=True)
+class Check:
+    """What was looked at, how it stands, and what to do where it does not stand well."""
+
+    what: str
+    state: Literal["ok", "warn", "bad"]
+    found: str
+    advice: str = ""
+
+
+def run() -> int:
+    """Look at Python, the libraries, the cache folder, memory, disk and the optional extras.
+
+    Leaves with 0 where the program can run, with 1 where something must be put right first.
+    Java, the game and a graphics card are not needed.
+    """
+    checks = list(examine())
+    for check in checks:
+        advice = f"; {check.advice}" if check.advice else ""
+        print(f"{check.state:<5}{check.what:<14}{check.found}{advice}")
+    bad = sum(check.state == "bad" for check in checks)
+    print(f"{bad} to put right" if bad else "ready: try w2m demo")
+    return int(bad > 0)
+
+
+def examine() -> Iterator[Check]:
+    """Make all checks, in the order they are shown."""
+    yield check_python(sys.version_info[:2])
+    for name in CORE_PACKAGES:
+        yield check_package(name)
+    yield check_cache()
+    yield check_threads()
+    yield check_memory(available_memory_gb())
+    yield check_disk(Path.cwd())
+    for extra, packages in optional_extras().items():
+        yield check_extra(extra, packages)
+    yield Check("Java, game", "ok", "not needed to build; a Java Edition opens the worlds")
+
+
+def check_python(version: tuple[int, ...]) -> Check:
+    """Check that Python is of a version that the libraries are made for."""
+    first, last = PYTHON_RANGE
+    found = ".".join(map(str, version))
+    if first <= version <= last:
+        return Check("Python", "ok", found)
+    wanted = " to ".join(".".join(map(str, end)) for end in PYTHON_RANGE)
+    return Check("Python", "bad", found, f"install Python {wanted} and make the environment anew")
+
+
+def check_package(name: str) -> Check:
+    """Check that a core package is installed, and say its version."""
+    if _is_installed(name):
+        return Check(name, "ok", metadata.version(name))
+    return Check(name, "bad", "not installed", "pip install world2minecraft")
+
+
+def check_cache() -> Check:
+    """Check that compiled kernels can be kept between runs."""
+    from world2minecraft.jit import user_cache_dir
+
+    folder = user_cache_dir()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return Check("cache", "ok", str(folder))
+    except OSError as error:
+        advice = "every run compiles anew: set W2M_CACHE_DIR to a folder of yours"
+        return Check("cache", "warn", f"{folder}: {error.strerror}", advice)
+
+
+def check_threads() -> Check:
+    """Say how many cores this process may use."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    limit = os.environ.get("NUMBA_NUM_THREADS")
+    return Check("cores", "ok", f"{cores}" + (f" (NUMBA_NUM_THREADS={limit})" if limit else ""))
+
+
+def check_memory(free_gb: float | None) -> Check:
+    """Check the free memory, None where the system does not say."""
+    if free_gb is None:
+        return Check("memory", "ok", "not known on this system")
+    if free_gb >= LEAST_MEMORY_GB:
+        return Check("memory", "ok", f"{free_gb:.1f} GB free")
+    advice = f"{LEAST_MEMORY_GB:.0f} GB is wanted: close programs, or use a larger --voxel"
+    return Check("memory", "warn", f"{free_gb:.1f} GB free", advice)
+
+
+def check_disk(folder: Path) -> Check:
+    """Check the free space of the disk that holds ``folder``."""
+    free_gb = shutil.disk_usage(folder).free / 1e9
+    if free_gb >= LEAST_DISK_GB:
+        return Check("disk", "ok", f"{free_gb:.1f} GB free here")
+    return Check("disk", "warn", f"{free_gb:.1f} GB free here", "work on a disk with more space")
+
+
+def optional_extras() -> dict[str, tuple[str, ...]]:
+    """Return the extras that the package declares, but ``dev``, with the packages of each."""
+    extras: dict[str, tuple[str, ...]] = {}
+    for requirement in metadata.requires("world2minecraft") or ():
+        name = re.match(r"[\w.-]+", requirement)
+        extra = re.search(r"extra == ['\"]([\w-]+)['\"]", requirement)
+        if name and extra and extra[1] != "dev":
+            extras[extra[1]] = (*extras.get(extra[1], ()), name[0])
+    return extras
+
+
+def check_extra(extra: str, packages: tuple[str, ...]) -> Check:
+    """Say whether an optional extra is installed; none is needed for the main job."""
+    missing = [name for name in packages if not _is_installed(name)]
+    if not missing:
+        return Check(f"[{extra}]", "ok", "installed")
+    install = f"pip install 'world2minecraft[{extra}]'"
+    return Check(f"[{extra}]", "ok", f"optional, without {', '.join(missing)}", install)
+
+
+def available_memory_gb() -> float | None:
+    """Return the memory that a new program could take, in GB, or None where nothing says it."""
+    try:
+        lines = Path("/proc/meminfo").read_text().splitlines()
+        values = {line.split(":")[0]: line.split()[1] for line in lines}
+        return int(values["MemAvailable"]) * 1024 / 1e9
+    except (OSError, KeyError, IndexError, ValueError):
+        return None
+
+
+def _is_installed(package: str) -> bool:
+    try:
+        metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return False
+    return True

@@ -1,0 +1,54 @@
+"""What goes wrong, as one line on stderr and an exit code."""
+
+import errno
+import sys
+import traceback
+
+from world2minecraft.errors import World2MinecraftError
+
+FAILURE, USAGE, BAD_INPUT, STOPPED = 1, 2, 3, 130
+
+
+def report(error: BaseException, with_traceback: bool = False) -> int:
+    """Say on stderr what went wrong, and return the exit code that says it too."""
+    if isinstance(error, SystemExit):
+        return error.code if isinstance(error.code, int) else int(error.code is not None)
+    if with_traceback:
+        traceback.print_exception(error, file=sys.stderr)
+    text, code = explain(error)
+    print(f"error: {text}" if code != STOPPED else text, file=sys.stderr)
+    return code
+
+
+def explain(error: BaseException) -> tuple[str, int]:
+    """Return one line that says what went wrong and what to do, and the exit code.
+
+    Example:
+        >>> explain(MemoryError())
+        ('out of memory; try a larger --voxel, or close other programs', 1)
+    """
+    if isinstance(error, KeyboardInterrupt) or type(error).__name__ == "Abort":
+        return "stopped; run the same command again to go on", STOPPED
+    if isinstance(error, World2MinecraftError):
+        return one_line(str(error)), error.exit_code
+    if hasattr(error, "format_message"):  # typer's usage errors; older ones come from click.
+        return _usage(error), USAGE
+    if isinstance(error, MemoryError):
+        return "out of memory; try a larger --voxel, or close other programs", FAILURE
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+        where = f"{error.filename}: " if error.filename else ""
+        return f"{where}the disk is full; free some space and run the same command again", BAD_INPUT
+    what = one_line(f"{type(error).__name__}: {error}" if str(error) else type(error).__name__)
+    return f"unexpected {what} (please report it, with --traceback for details)", FAILURE
+
+
+def one_line(text: str) -> str:
+    """Return the text with each run of white space as one space."""
+    return " ".join(text.split())
+
+
+def _usage(error: BaseException) -> str:
+    message = one_line(error.format_message()).rstrip(".")  # type: ignore[attr-defined]
+    context = getattr(error, "ctx", None)
+    command = context.command_path if context is not None else "w2m"
+    return f"{message[:1].lower()}{message[1:]}; see {command} --help"

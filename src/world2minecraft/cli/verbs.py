@@ -1,0 +1,133 @@
+"""The verbs of ``w2m``: one line here, one file beside, imported when its verb is called.
+
+A verb is a module ``world2minecraft.cli.NAME`` (dashes become underscores) with a function
+``run`` whose typed parameters are its arguments, as typer reads them, and a text ``EXAMPLES``
+that its ``--help`` ends with. ``run`` returns an exit code, or None for 0.
+"""
+
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from inspect import cleandoc
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+from world2minecraft import __version__
+from world2minecraft.cli.failures import STOPPED
+
+VERBS: dict[str, str] = {
+    "convert": "Turn one Minecraft format into another.",
+    "doctor": "Check that this machine can run the program.",
+}
+
+EXAMPLES = """\
+w2m doctor                                check this machine
+w2m convert house.schem worlds/house      a schematic becomes a world
+"""
+
+
+def call(words: Sequence[str]) -> int:
+    """Run the command that ``words`` say and return its exit code."""
+    result = typer.main.get_command(_app()).main(
+        args=list(words), prog_name="w2m", standalone_mode=False
+    )
+    if result == STOPPED:  # typer turns an interrupt into this code; older ones raise it.
+        raise KeyboardInterrupt
+    return result if isinstance(result, int) else 0
+
+
+class VerbCommand(TyperCommand):
+    """A verb whose help ends with its examples, printed as they are written."""
+
+    examples = ""
+
+    def format_epilog(self, ctx: Any, formatter: Any) -> None:
+        """Write the examples under the options."""
+        _write_examples(formatter, self.examples)
+
+
+class VerbGroup(TyperGroup):
+    """All verbs. Listing them imports none."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return the names of all verbs."""
+        return list(VERBS)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Import the verb's module and make its command."""
+        return load(cmd_name) if cmd_name in VERBS else None
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Find the verb that ``args`` begin with.
+
+        Raises:
+            UnknownNameError: there is none; the message suggests the nearest.
+        """
+        if args[0] not in VERBS and not args[0].startswith("-"):
+            from world2minecraft.errors import UnknownNameError
+
+            raise UnknownNameError("verb", args[0], VERBS)
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the table of verbs from their lines here."""
+        with formatter.section("Verbs"):
+            formatter.write_dl(list(VERBS.items()))
+
+    def format_epilog(self, ctx: Any, formatter: Any) -> None:
+        """Write the examples under the table."""
+        _write_examples(formatter, EXAMPLES)
+
+
+def load(verb: str) -> Any:
+    """Import a verb's module and return its command."""
+    module = import_module(f"world2minecraft.cli.{verb.replace('-', '_')}")
+    app = typer.Typer(rich_markup_mode=None, add_completion=False)
+    app.command(name=verb, help=_help(verb, module.run), cls=VerbCommand)(module.run)
+    command = typer.main.get_command(app)
+    command.examples = module.EXAMPLES  # type: ignore[attr-defined]
+    return command
+
+
+def _help(verb: str, function: Callable[..., Any]) -> str:
+    """Return the verb's line and what its docstring says after its first line, up to the Args."""
+    details = cleandoc(function.__doc__ or "").partition("\n\n")[2]
+    for section in ("Args:", "Raises:"):
+        details = details.partition(section)[0]
+    return f"{VERBS[verb]}\n\n{details.strip()}"
+
+
+def _app() -> typer.Typer:
+    app = typer.Typer(
+        cls=VerbGroup, rich_markup_mode=None, add_completion=False, subcommand_metavar="VERB ..."
+    )
+    app.callback(help="Real rooms become Minecraft scenes.")(_global_options)
+    return app
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        print(f"w2m {__version__}")
+        raise typer.Exit()
+
+
+def _global_options(
+    _version: Annotated[
+        bool,
+        typer.Option(
+            "--version", is_eager=True, callback=_show_version, help="Show the version and leave."
+        ),
+    ] = False,
+    _traceback: Annotated[
+        bool,
+        typer.Option("--traceback", help="When something goes wrong, show where. Works anywhere."),
+    ] = False,
+) -> None:
+    """Take the options that stand before the verb; both are acted on elsewhere."""
+
+
+def _write_examples(formatter: Any, examples: str) -> None:
+    with formatter.section("Examples"):
+        for line in examples.strip().splitlines():
+            formatter.write(f"  {line}\n")
