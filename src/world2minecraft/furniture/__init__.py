@@ -1,1 +1,26 @@
-"""See DESIGN."""
+"""The furniture library: parametric templates with a named front, as parts, cells and blocks.
+
+A template of your own is one file in ``templates/``, one line in ``library`` and one test, or an
+entry point of the group ``world2minecraft.template``; see docs/furniture.md.
+"""
+
+from world2minecraft.furniture.idiom import Idiom, IdiomBlock, idiom
+from world2minecraft.furniture.library import TEMPLATES, template, templates_of
+from world2minecraft.furniture.raster import cells_of, raster, size_in_cells, surface
+from world2minecraft.furniture.template import Part, Span, Template
+
+__all__ = [
+    "TEMPLATES",
+    "Idiom",
+    "IdiomBlock",
+    "Part",
+    "Span",
+    "Template",
+    "cells_of",
+    "idiom",
+    "raster",
+    "size_in_cells",
+    "surface",
+    "template",
+    "templates_of",
+]

@@ -1,0 +1,72 @@
+"""Furniture as vanilla blocks, for scales at which its parts would crumble.
+
+Under three blocks per metre a leg, a seat and a back are thinner than any block, so a chair is
+said with a stair, a table with a fence and a plate, as players do.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from world2minecraft.furniture.library import template
+from world2minecraft.furniture.template import BlockSize, LocalBlock
+from world2minecraft.types import Placement
+
+PARTS_FROM = 3.0  # Blocks per metre from which parts are at least a third of a block (fit.md).
+
+
+class IdiomBlock(NamedTuple):
+    """One block: its offset in block axes (x east, y up, z south), state and part role."""
+
+    offset: tuple[int, int, int]
+    state: str
+    role: str
+
+
+@dataclass(frozen=True)
+class Idiom:
+    """A design in vanilla blocks. Offsets are from the minimum corner of its box of ``size``."""
+
+    blocks: tuple[IdiomBlock, ...]
+    size: tuple[int, int, int]  # blocks along x, y, z in block axes
+
+
+def idiom(placement: Placement, blocks_per_metre: float) -> Idiom | None:
+    """Return the vanilla design of a placement, turned as it stands.
+
+    Returns:
+        The design, or None where parts are built instead: at three blocks per metre or more, and
+        for an object that is built from its own cells.
+
+    Raises:
+        UnknownNameError: the library has no such template.
+    """
+    if blocks_per_metre >= PARTS_FROM or placement.template == "cells":
+        return None
+    found = template(placement.template)
+    size = _block_size(placement, blocks_per_metre)
+    local = found.design(size, found.complete(placement.parameters))
+    return _turned(local, placement.quarter_turns)
+
+
+def _block_size(placement: Placement, blocks_per_metre: float) -> BlockSize:
+    depth, width, height = (float(side) * blocks_per_metre for side in placement.size_m)
+    whole = (max(1, int(side + 0.5)) for side in (depth, width, height))
+    return BlockSize(*whole, exact=(depth, width, height))
+
+
+def _turned(local: list[LocalBlock], quarter_turns: int) -> Idiom:
+    # Imported late: the block tables cost time that scales above three never need.
+    from world2minecraft.minecraft.states import complete, parse_state  # noqa: PLC0415
+    from world2minecraft.minecraft.turn import turn_state  # noqa: PLC0415
+
+    depth, width, height = (1 + max(block.cell[axis] for block in local) for axis in range(3))
+    blocks = []
+    for (i, j, k), state, role in local:
+        along, across, deep, wide = i, j, depth, width
+        for _ in range(quarter_turns % 4):
+            along, across, deep, wide = wide - 1 - across, along, wide, deep
+        whole = str(complete(parse_state(state)))
+        offset = (along, k, wide - 1 - across)
+        blocks.append(IdiomBlock(offset, turn_state(whole, quarter_turns), role))
+    turned = (width, height, depth) if quarter_turns % 2 else (depth, height, width)
+    return Idiom(tuple(sorted(blocks)), turned)

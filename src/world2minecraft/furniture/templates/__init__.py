@@ -1,0 +1,1 @@
+"""One template a file; each is named in the registry of ``furniture``."""

@@ -1,0 +1,36 @@
+"""An upholstered chair: a block to sit on, a back and two arms."""
+
+from world2minecraft.classes import SemanticClass
+from world2minecraft.furniture.designs import seat_row
+from world2minecraft.furniture.shapes import arms, backrest, slab
+from world2minecraft.furniture.template import (
+    BlockSize,
+    LocalBlock,
+    Parameters,
+    Part,
+    Span,
+    Template,
+)
+
+
+def _build(depth: float, width: float, height: float, p: Parameters) -> list[Part]:
+    seat = min(p["seat_height"], 0.7 * height)
+    return [
+        slab("seat", depth, width, 0.0, seat),
+        backrest(depth, width, seat, height, 0.2),
+        *arms(depth, width, seat, min(p["arm_height"], height), 0.14),
+    ]
+
+
+def _design(size: BlockSize, p: Parameters) -> list[LocalBlock]:
+    return seat_row(size, "spruce", arms=True)
+
+
+TEMPLATE = Template(
+    name="armchair",
+    class_id=SemanticClass.CHAIR,
+    size_m=(Span(0.6, 0.8, 1.0), Span(0.58, 0.8, 1.05), Span(0.68, 0.9, 1.15)),
+    build=_build,
+    design=_design,
+    parameters={"arm_height": Span(0.5, 0.6, 0.72), "seat_height": Span(0.34, 0.42, 0.5)},
+)
