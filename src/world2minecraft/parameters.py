@@ -1,0 +1,115 @@
+"""Every parameter of a reconstruction, in one frozen value; ``--set key=value`` changes any.
+
+Each stage owns its own parameters and their defaults; here they are only joined.
+"""
+
+from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
+from typing import Any
+
+from world2minecraft.build import BuildParameters
+from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.find import FindParameters
+from world2minecraft.furnish import FurnishParameters
+from world2minecraft.fuse import CleanParameters, FuseParameters
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """What decides a result, beside the capture.
+
+    voxel_m: the paper's cell. blocks_per_metre: at 4 a room is recognised at once, at 2 it is
+    not (reference/fit). labeller: ``auto`` takes ``votes`` where the capture has 2D labels, else
+    ``geometric``.
+    """
+
+    voxel_m: float = 0.08
+    blocks_per_metre: float = 4.0
+    predictor: str = "depth"
+    labeller: str = "auto"
+    mc_version: str = "1.20.1"
+    seed: int = 0
+    capture: dict[str, str] = field(default_factory=dict)
+    fuse: FuseParameters = field(default_factory=FuseParameters)
+    clean: CleanParameters = field(default_factory=CleanParameters)
+    find: FindParameters = field(default_factory=FindParameters)
+    furnish: FurnishParameters = field(default_factory=FurnishParameters)
+    build: BuildParameters = field(default_factory=BuildParameters)
+
+    def __post_init__(self):
+        if not 0.01 <= self.voxel_m <= 0.5:
+            raise UsageError(f"voxel_m must be 0.01 to 0.5 m, not {self.voxel_m}")
+        if not 0.25 <= self.blocks_per_metre <= 100:
+            raise UsageError(
+                f"blocks_per_metre must be 0.25 to 100, not {self.blocks_per_metre}; "
+                "try 1, 2, 4 or 12.5"
+            )
+        if self.fuse.voxel_m != self.voxel_m:
+            object.__setattr__(self, "fuse", replace(self.fuse, voxel_m=self.voxel_m))
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the parameters as plain values."""
+        return asdict(self)
+
+
+def with_settings(parameters: Parameters, settings: list[str]) -> Parameters:
+    """Return the parameters with ``key=value`` settings applied, such as ``find.cluster_radius=3``.
+
+    Keys that begin with ``capture.`` are handed to the capture's reader.
+
+    Raises:
+        UsageError: a setting is no ``key=value`` or its value has the wrong type.
+        UnknownNameError: no parameter has this key; the message suggests the nearest.
+    """
+    for setting in settings:
+        key, equals, text = setting.partition("=")
+        if not equals:
+            raise UsageError(f"--set takes key=value, not {setting!r}")
+        parameters = _with_one(parameters, key.strip().split("."), text.strip(), key.strip())
+    return parameters
+
+
+def parameter_keys(value: Any = None, prefix: str = "") -> list[str]:
+    """Return all keys that ``--set`` knows."""
+    value = Parameters() if value is None else value
+    keys = []
+    for entry in fields(value):
+        inner = getattr(value, entry.name)
+        if is_dataclass(inner):
+            keys += parameter_keys(inner, f"{prefix}{entry.name}.")
+        elif not isinstance(inner, dict):
+            keys.append(prefix + entry.name)
+    return keys
+
+
+def _with_one(value: Any, path: list[str], text: str, key: str) -> Any:
+    name = path[0]
+    if name == "capture" and len(path) == 2:
+        return replace(value, capture={**value.capture, path[1]: text})
+    if name not in {entry.name for entry in fields(value)}:
+        raise UnknownNameError("parameter", key, parameter_keys())
+    inner = getattr(value, name)
+    if is_dataclass(inner) != (len(path) > 1):
+        raise UnknownNameError("parameter", key, parameter_keys())
+    changed = _with_one(inner, path[1:], text, key) if len(path) > 1 else _parse(inner, text, key)
+    try:
+        return replace(value, **{name: changed})
+    except ValueError as error:
+        raise UsageError(f"--set {key}: {error}") from error
+
+
+def _parse(example: Any, text: str, key: str) -> Any:
+    """Return ``text`` as a value of the type of ``example``."""
+    try:
+        if isinstance(example, bool):
+            return {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}[
+                text.lower()
+            ]
+        if isinstance(example, int | float):
+            return type(example)(text)
+    except (ValueError, KeyError):
+        raise UsageError(
+            f"--set {key} takes a {type(example).__name__} such as {example}, not {text!r}"
+        ) from None
+    if example is None or isinstance(example, str):
+        return text
+    raise UsageError(f"{key} cannot be set from the command line")

@@ -1,0 +1,85 @@
+"""Algorithm 1 of the paper, line for line: a capture becomes a Minecraft world.
+
+===========  =================================================  ==================================
+paper line   what                                               here
+===========  =================================================  ==================================
+4 to 7       O_mono, the evidence of each view                  ``occupy``
+8            O_scene, all views fused                           ``fuse``, ``label``
+9 to 11      density D, candidates C, clusters C'               ``find``
+(eq. argmax) templates by IoU over rotations                    ``furnish``
+12, 13       commands M, executed                               ``build``
+===========  =================================================  ==================================
+
+Each stage reads the files that the stage before it wrote, so that any of them can be run again.
+"""
+
+from importlib.metadata import version
+from pathlib import Path
+
+from world2minecraft import __version__
+from world2minecraft.exchange.evidence import write_evidence
+from world2minecraft.exchange.scan import write_scan
+from world2minecraft.fuse import fuse_views
+from world2minecraft.occupy import predictor
+from world2minecraft.parameters import Parameters
+from world2minecraft.progress import Progress, silent
+from world2minecraft.run_folder import RunFolder, hash_capture
+from world2minecraft.scan import open_scan
+from world2minecraft.steps import LATER_STEPS
+from world2minecraft.types import Scan
+
+STAGES = ("scan", "fuse", *LATER_STEPS)
+
+
+def reconstruct(
+    capture: Path,
+    out: Path,
+    parameters: Parameters | None = None,
+    *,
+    start: str | None = None,
+    labels: Path | None = None,
+    progress: Progress = silent,
+) -> Scan:
+    """Turn the capture in a folder into a Minecraft world in ``out / "build"``.
+
+    Args:
+        capture: a folder that ``scan`` can read.
+        out: the folder of the results; DESIGN lists its files.
+        parameters: what decides the result, beside the capture.
+        start: the stage to begin at; None goes on where a run that was cut off stopped.
+        labels: a folder of 2D label images, one a view.
+        progress: told of each step.
+
+    Raises:
+        CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.
+    """
+    chosen = parameters or Parameters()
+    run = RunFolder(out, STAGES)
+    options = {"voxel_m": chosen.voxel_m, "labels": labels, "options": chosen.capture}
+    scan = open_scan(capture, progress=progress, **options)
+    run.begin(manifest(capture, labels, chosen), start)
+    if run.needs("scan"):
+        with run.stage("scan"):
+            write_scan(run.path("scan.json"), scan)
+    if run.needs("fuse"):
+        with run.stage("fuse"):
+            views = predictor(chosen.predictor).predict(scan)
+            write_evidence(run.path("evidence.npz"), fuse_views(views, scan, chosen.fuse, progress))
+    for stage, step in LATER_STEPS.items():
+        if run.needs(stage):
+            progress(stage, 0, 1)
+            with run.stage(stage):
+                step(run.folder, chosen)
+            progress(stage, 1, 1)
+    return scan
+
+
+def manifest(capture: Path, labels: Path | None, chosen: Parameters) -> dict:
+    """Return what decides a result: the input's hash, the parameters and the versions."""
+    return {
+        "program": __version__,
+        "capture": hash_capture(capture),
+        "labels": None if labels is None else hash_capture(labels),
+        "parameters": chosen.as_json(),
+        "versions": {name: version(name) for name in ("numpy", "scipy", "scikit-learn", "numba")},
+    }

@@ -1,0 +1,8 @@
+"""The fidelity report of one scene: ``report.html`` (self-contained), ``report.json``, a picture.
+
+It tells a person at a glance whether the room came out right, and a program in figures.
+"""
+
+from world2minecraft.report.write import write_report
+
+__all__ = ["write_report"]

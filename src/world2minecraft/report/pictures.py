@@ -1,0 +1,97 @@
+"""The pictures of the report: photos beside the built world from the same place."""
+
+import base64
+import io
+from dataclasses import dataclass
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.render.picture import render_volume
+from world2minecraft.render.scene import prepare_scene
+from world2minecraft.types import BlockVolume, Camera, Scan, View
+
+PAIRS = 6
+WIDTH_PX = 480
+AGREES_M = 0.25  # One block at the default scale.
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A view's photo, the world from its pose, and how far their depths lie apart."""
+
+    name: str
+    photo: np.ndarray | None  # uint8 [H, W, 3]
+    built: np.ndarray  # uint8 [H, W, 3]
+    depth_error_m: float | None  # median of |built - measured|
+    depth_agrees: float | None  # share of pixels within AGREES_M
+
+
+def make_pairs(scan: Scan, volume: BlockVolume) -> list[Pair]:
+    """Return six pairs, spread evenly over the frames used."""
+    used = [name for name in scan.frames_used]
+    count = min(PAIRS, len(used))
+    chosen = {used[int((n + 0.5) * len(used) / count)] for n in range(count)}
+    scene = prepare_scene(volume)
+    return [_pair(view, scan, scene) for view in scan.views if view.name in chosen]
+
+
+def _pair(view: View, scan: Scan, scene) -> Pair:
+    camera = view.colour_camera or view.depth_camera
+    if camera is None:
+        raise ValueError(f"view {view.name} has neither colour nor depth")
+    small = camera.resized(WIDTH_PX, round(WIDTH_PX * camera.height_px / camera.width_px))
+    camera_to_room = scan.scan_to_room @ view.camera_to_scan
+    picture = render_volume(scene, small, camera_to_room)
+    error_m, agrees = _depth_apart(view, scan, scene)
+    photo = None
+    if view.colour is not None:
+        size = (small.width_px, small.height_px)
+        photo = np.asarray(Image.fromarray(view.colour).resize(size, Image.Resampling.LANCZOS))
+    if picture.colour is None:
+        raise RuntimeError("the renderer gave no colour")
+    return Pair(view.name, photo, picture.colour, error_m, agrees)
+
+
+def _depth_apart(view: View, scan: Scan, scene) -> tuple[float | None, float | None]:
+    """Return the median difference of depths and the share that agrees, on a coarse raster."""
+    if view.depth_m is None or view.depth_camera is None:
+        return None, None
+    step = max(view.depth_camera.width_px // 160, 1)
+    shape = view.depth_m[::step, ::step].shape
+    coarse = Camera(
+        shape[1],
+        shape[0],
+        view.depth_camera.fx_px / step,
+        view.depth_camera.fy_px / step,
+        view.depth_camera.cx_px / step,
+        view.depth_camera.cy_px / step,
+    )
+    measured = view.depth_m[::step, ::step]
+    built = render_volume(
+        scene, coarse, scan.scan_to_room @ view.depth_camera_to_scan, outputs=()
+    ).depth_m
+    both = (measured > 0) & (built > 0)
+    if not both.any():
+        return None, None
+    apart = np.abs(measured - built)[both]
+    return round(float(np.median(apart)), 4), round(float((apart <= AGREES_M).mean()), 4)
+
+
+def as_data_uri(image: np.ndarray, *, lossless: bool = False) -> str:
+    """Return an image uint8 [H, W, 3] as a ``data:`` URI, JPEG or PNG."""
+    buffer = io.BytesIO()
+    picture = Image.fromarray(image)
+    if lossless:
+        picture.save(buffer, "PNG", optimize=False, compress_level=6)
+    else:
+        picture.save(buffer, "JPEG", quality=86, subsampling=0)
+    kind = "png" if lossless else "jpeg"
+    return f"data:image/{kind};base64,{base64.b64encode(buffer.getvalue()).decode()}"
+
+
+def as_png(image: np.ndarray) -> bytes:
+    """Return an image uint8 [H, W, 3] as the bytes of a PNG."""
+    buffer = io.BytesIO()
+    Image.fromarray(image).save(buffer, "PNG", compress_level=6)
+    return buffer.getvalue()

@@ -1,0 +1,50 @@
+"""All files of one finished run, read back: what the report and its figures are made from."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.exchange.evidence import read_evidence
+from world2minecraft.exchange.objects import read_objects, read_placements
+from world2minecraft.exchange.room import read_room
+from world2minecraft.exchange.scan import read_room_size
+from world2minecraft.exchange.scene import read_scene_volume
+from world2minecraft.types import (
+    BlockVolume,
+    FusedEvidence,
+    ObjectInstance,
+    OccupancyGrid,
+    Placement,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class FinishedScene:
+    """What a reconstruction left on disk."""
+
+    folder: Path
+    grid: OccupancyGrid
+    evidence: FusedEvidence
+    instances: tuple[ObjectInstance, ...]
+    placements: tuple[Placement, ...]
+    volume: BlockVolume
+    room_size_m: np.ndarray
+
+
+def read_finished(folder: Path) -> FinishedScene:
+    """Read the files of a finished run.
+
+    Raises:
+        InputError: one is missing or damaged.
+    """
+    grid, _ = read_room(folder / "room.npz")
+    return FinishedScene(
+        folder=folder,
+        grid=grid,
+        evidence=read_evidence(folder / "evidence.npz"),
+        instances=read_objects(folder / "objects.json", grid),
+        placements=read_placements(folder / "placements.json"),
+        volume=read_scene_volume(folder / "build"),
+        room_size_m=read_room_size(folder / "scan.json"),
+    )

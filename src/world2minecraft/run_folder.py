@@ -1,0 +1,167 @@
+"""The folder of one reconstruction: what is finished there, and how long it took.
+
+``manifest.json`` holds what decides the result (input hash, parameters, versions, seed) and the
+stages finished so far; a run with the same manifest goes on after the last of them. ``run.json``
+holds what differs by nature (times, memory, machine); nothing else reads it.
+"""
+
+import hashlib
+import os
+import platform
+import shutil
+import sys
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+try:
+    import resource
+except ImportError:  # Windows has none.
+    resource = None
+
+from world2minecraft.errors import DamagedFileError, InputError, OutputError, UnknownNameError
+from world2minecraft.files import read_json, write_json
+
+FREE_BYTES = 64 << 20  # A reconstruction of one room writes 1 to 20 MB.
+
+
+class RunFolder:
+    """The state of a run: its folder, its manifest and its clock."""
+
+    def __init__(self, folder: Path, stages: Sequence[str]):
+        if folder.exists() and not folder.is_dir():
+            raise OutputError(folder, "is a file; --out needs a folder")
+        self.folder = folder
+        self.stages = tuple(stages)
+        self._manifest: dict[str, Any] = {}
+        self._seconds: dict[str, float] = {}
+        self.finished: list[str] = []
+
+    def begin(self, manifest: Mapping[str, Any], start: str | None = None) -> None:
+        """Make the folder and decide where to begin.
+
+        Args:
+            manifest: what decides the result.
+            start: the stage to begin at, or None for "after the last finished one of a run that
+                was cut off, else from the first".
+
+        Raises:
+            OutputError: the folder is a file, is full or may not be written.
+            UnknownNameError: no stage is named ``start``.
+            InputError: ``start`` needs the files of a stage that was never finished here.
+        """
+        if start is not None and start not in self.stages:
+            raise UnknownNameError("stage", start, self.stages)
+        self._manifest = dict(manifest)
+        check_writable(self.folder)
+        done = self._finished_before()
+        if start is None:
+            done = [] if len(done) == len(self.stages) else done
+        else:
+            wanted = list(self.stages[: self.stages.index(start)])
+            missing = [stage for stage in wanted if stage not in self._recorded()]
+            if missing:
+                raise InputError(
+                    self.folder, f"stage {missing[0]!r} was never finished here; leave out --from"
+                )
+            done = wanted
+        self.finished = done
+        self._save()
+
+    def needs(self, stage: str) -> bool:
+        """Whether a stage must be run, rather than read from its files."""
+        return stage not in self.finished
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time a stage, and record it as finished when its block ends without an error."""
+        begun = time.perf_counter()
+        yield
+        self._seconds[name] = round(time.perf_counter() - begun, 3)
+        if name not in self.finished:
+            self.finished.append(name)
+        self._save()
+
+    def path(self, name: str) -> Path:
+        """The path of a file of the run."""
+        return self.folder / name
+
+    def _save(self) -> None:
+        write_json(self.path("manifest.json"), self._manifest | {"finished": self.finished})
+        write_json(
+            self.path("run.json"),
+            {
+                "stage_s": self._seconds,
+                "peak_memory_mb": peak_memory_mb(),
+                "machine": platform.platform(),
+                "cores": os.cpu_count(),
+            },
+        )
+
+    def _recorded(self) -> list[str]:
+        """The stages that an earlier run finished, whatever its parameters were."""
+        path = self.path("manifest.json")
+        if not path.is_file():
+            return []
+        try:
+            finished = read_json(path)["finished"]
+        except (DamagedFileError, KeyError, TypeError):
+            return []
+        return [stage for stage in self.stages if stage in finished]
+
+    def _finished_before(self) -> list[str]:
+        """The stages that an earlier run with this very manifest finished."""
+        path = self.path("manifest.json")
+        if not path.is_file():
+            return []
+        try:
+            old = read_json(path)
+        except DamagedFileError:
+            return []
+        same = isinstance(old, dict) and {**old, "finished": None} == {
+            **self._manifest,
+            "finished": None,
+        }
+        return self._recorded() if same else []
+
+
+def check_writable(folder: Path) -> None:
+    """Make ``folder``, and check that a result fits.
+
+    Raises:
+        OutputError: it is a file, may not be written or its disk is full.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise OutputError(folder, "is a file; --out needs a folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(folder, f"cannot be made: {error.strerror or error}") from error
+    if not os.access(folder, os.W_OK):
+        raise OutputError(folder, "may not be written")
+    free = shutil.disk_usage(folder).free
+    if free < FREE_BYTES:
+        raise OutputError(folder, f"its disk has {free >> 20} MB free; {FREE_BYTES >> 20} needed")
+
+
+def hash_capture(path: Path) -> str:
+    """Return a SHA-256 over the names and bytes of all files of a capture, hidden ones left out."""
+    digest = hashlib.sha256()
+    names = [path] if path.is_file() else sorted(path.rglob("*"))
+    for name in names:
+        relative = name.relative_to(path) if name != path else Path(name.name)
+        if name.is_file() and not any(part.startswith(".") for part in relative.parts):
+            digest.update(relative.as_posix().encode() + b"\0")
+            with name.open("rb") as stream:
+                digest.update(hashlib.file_digest(stream, "sha256").digest())
+    return digest.hexdigest()
+
+
+def peak_memory_mb() -> float | None:
+    """Return the most memory that this process held so far, or None where that is not known."""
+    if resource is None:
+        return None
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return round(peak / (1 << 20 if sys.platform == "darwin" else 1 << 10), 1)

@@ -1,0 +1,78 @@
+"""The stages after fusion, from file to file, so that each can be run again by itself.
+
+``evidence.npz`` -> label -> ``room.npz`` -> find -> ``objects.json`` -> furnish ->
+``placements.json`` -> build -> ``build/``. Each takes the run's folder and the parameters.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.build import build_volume, write_build
+from world2minecraft.exchange.centers import write_centers
+from world2minecraft.exchange.evidence import read_evidence
+from world2minecraft.exchange.objects import (
+    read_objects,
+    read_placements,
+    write_objects,
+    write_placements,
+)
+from world2minecraft.exchange.paper import write_centers_json, write_occ_json
+from world2minecraft.exchange.room import read_room, write_room
+from world2minecraft.exchange.scan import read_room_size
+from world2minecraft.find import find_objects
+from world2minecraft.furnish import furnish
+from world2minecraft.fuse import close_structure, read_out, remove_floaters
+from world2minecraft.label import labeller
+from world2minecraft.parameters import Parameters
+
+
+def label_stage(folder: Path, chosen: Parameters) -> None:
+    """``evidence.npz`` -> ``room.npz``: what each cell is, cleaned."""
+    evidence = read_evidence(folder / "evidence.npz")
+    grid = remove_floaters(read_out(evidence), chosen.clean)
+    voted = bool(evidence.votes.any())
+    name = ("votes" if voted else "geometric") if chosen.labeller == "auto" else chosen.labeller
+    grid = close_structure(labeller(name).label(grid, evidence), chosen.clean)
+    write_room(folder / "room.npz", grid, evidence.scan_to_room)
+
+
+def find_stage(folder: Path, chosen: Parameters) -> None:
+    """``room.npz`` -> the same with instances, ``centers.npz`` and ``objects.json``."""
+    grid, scan_to_room = read_room(folder / "room.npz")
+    found = find_objects(grid, chosen.find)
+    write_room(folder / "room.npz", found.grid, scan_to_room)
+    centers = found.centers
+    write_centers(folder / "centers.npz", centers.density, centers.candidates, centers.cluster)
+    write_objects(folder / "objects.json", found.instances)
+    write_occ_json(folder / "occ.json", found.grid)
+    write_centers_json(folder / "centers.json", found.instances)
+
+
+def furnish_stage(folder: Path, chosen: Parameters) -> None:
+    """``room.npz`` and ``objects.json`` -> ``placements.json``."""
+    grid, _ = read_room(folder / "room.npz")
+    instances = read_objects(folder / "objects.json", grid)
+    write_placements(folder / "placements.json", furnish(grid, instances, chosen.furnish))
+
+
+def build_stage(folder: Path, chosen: Parameters) -> None:
+    """``room.npz`` and ``placements.json`` -> the world and its other forms in ``build``."""
+    grid, _ = read_room(folder / "room.npz")
+    volume = build_volume(
+        grid,
+        read_placements(folder / "placements.json"),
+        read_objects(folder / "objects.json", grid),
+        corner_m=np.array([0.0, read_room_size(folder / "scan.json")[1]]),
+        blocks_per_metre=chosen.blocks_per_metre,
+        parameters=chosen.build,
+    )
+    write_build(folder / "build", volume, mc_version=chosen.mc_version)
+
+
+LATER_STEPS = {
+    "label": label_stage,
+    "find": find_stage,
+    "furnish": furnish_stage,
+    "build": build_stage,
+}
