@@ -1,1 +1,10 @@
-"""See DESIGN."""
+"""Stage 5, OccupancyGrid -> objects: density map, threshold, clusters per class, centres, cells.
+
+This is the paper's Algorithm 1 from ``density`` (D) to the centres (C'), and then the cells of
+each object (O_k).
+"""
+
+from world2minecraft.find.objects import CenterMap, Found, find_objects
+from world2minecraft.find.parameters import FindParameters
+
+__all__ = ["CenterMap", "FindParameters", "Found", "find_objects"]

@@ -1,0 +1,109 @@
+"""Stage 5, the heart of Algorithm 1: the objects of a room, from its semantic occupancy."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from world2minecraft.coordinates import cell_centers_m
+from world2minecraft.errors import UsageError
+from world2minecraft.find.clusters import cluster_candidates
+from world2minecraft.find.density import candidate_cells, density_map, object_cells
+from world2minecraft.find.facing import Surroundings, facing, surroundings
+from world2minecraft.find.growth import grow
+from world2minecraft.find.parameters import FindParameters
+from world2minecraft.find.rejoin import rejoin
+from world2minecraft.types import ObjectInstance, OccupancyGrid
+
+MAX_OBJECTS = 65535
+
+
+@dataclass(frozen=True, eq=False)
+class CenterMap:
+    """The paper's D, C and the cluster of each candidate: what ``centers.npz`` holds."""
+
+    density: np.ndarray  # float32 [X, Y, Z], 0 to 1
+    candidates: np.ndarray  # int32 [M, 3]
+    cluster: np.ndarray  # int32 [M], -1 for none
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The grid with its instance ids, the objects, the map of centres, and what is left.
+
+    ``leftover`` counts the object cells that belong to no object; their instance is 0.
+    """
+
+    grid: OccupancyGrid
+    instances: tuple[ObjectInstance, ...]
+    centers: CenterMap
+    leftover: int
+
+
+def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) -> Found:
+    """Find the objects of a room.
+
+    Objects are ordered by class, then by the middle of their box (x, y, z), and numbered from 1.
+    Labels stay as they are.
+
+    Raises:
+        UsageError: there are more objects than ids; ``min_cells`` must be raised.
+    """
+    chosen = parameters or FindParameters()
+    binary = object_cells(grid.labels)
+    density = density_map(binary, chosen.density_kernel)
+    candidates = candidate_cells(binary, density, chosen.density_threshold)
+    classes = grid.labels[tuple(candidates.T)]
+    cluster = cluster_candidates(candidates, classes, chosen.cluster_radius, chosen.min_samples)
+    owners = grow(grid.labels, binary, candidates, cluster)
+    if not chosen.paper_compat:
+        owners = rejoin(
+            grid.labels, owners, min_cells=chosen.min_cells, join_radius=chosen.join_radius
+        )
+    instances = _instances(grid, owners)
+    marked = np.zeros(grid.shape, np.uint16)
+    for instance in instances:
+        marked[tuple(instance.cells.T)] = instance.id
+    leftover = int(np.count_nonzero(binary & (marked == 0)))
+    centers = CenterMap(density, candidates, cluster)
+    return Found(replace(grid, instance=marked), instances, centers, leftover)
+
+
+def _instances(grid: OccupancyGrid, owners: np.ndarray) -> tuple[ObjectInstance, ...]:
+    cells = np.argwhere(owners).astype(np.int32)
+    numbers = owners[tuple(cells.T)]
+    order = np.argsort(numbers, kind="stable")
+    starts = np.unique(numbers[order], return_index=True)[1][1:]
+    groups = np.split(cells[order], starts) if len(cells) else []
+    if len(groups) > MAX_OBJECTS:
+        raise UsageError(f"{len(groups):,} objects are too many; raise find.min_cells")
+    around = surroundings(grid.labels)
+    return tuple(
+        _instance(number, grid, group, around)
+        for number, group in enumerate(sorted(groups, key=lambda g: _rank(grid, g)), start=1)
+    )
+
+
+def _rank(grid: OccupancyGrid, cells: np.ndarray) -> tuple[int, ...]:
+    first = tuple(int(value) for value in cells[0])
+    middle = cells.min(axis=0) + cells.max(axis=0)
+    return (int(grid.labels[first]), *(int(value) for value in middle), *first)
+
+
+def _instance(
+    number: int, grid: OccupancyGrid, cells: np.ndarray, around: Surroundings
+) -> ObjectInstance:
+    class_id = int(grid.labels[tuple(cells[0])])
+    front = facing(cells, class_id, around)
+    low = cell_centers_m(cells.min(axis=0), grid.origin_m, grid.voxel_m) - grid.voxel_m / 2
+    size = (np.ptp(cells, axis=0) + 1) * grid.voxel_m
+    own_axes = size[[1, 0, 2]] if front.quarter_turns % 2 else size
+    votes = float(grid.confidence[tuple(cells.T)].astype(np.float64).mean())
+    return ObjectInstance(
+        id=number,
+        class_id=class_id,
+        center_m=np.round(low + size / 2, 9),
+        size_m=np.round(own_axes, 9),
+        yaw_deg=90.0 * front.quarter_turns,
+        cells=cells,
+        confidence=round(min(votes, 1.0), 6),
+    )

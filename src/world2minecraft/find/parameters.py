@@ -1,0 +1,46 @@
+"""How objects are found: every number that decides it, and where it comes from."""
+
+from dataclasses import dataclass
+
+from world2minecraft.errors import UsageError
+
+
+@dataclass(frozen=True)
+class FindParameters:
+    """How objects are found. Lengths are in cells.
+
+    density_kernel: k, the side of the uniform kernel; the smallest that sees a neighbourhood.
+        The paper gives no number.
+    density_threshold: tau, as a share of the kernel's cells. A scan shows one-cell shells: a
+        flat one has 9/27, its straight edge 6/27, a lone pole 3/27. 0.2 takes shells with their
+        edges and leaves specks and poles to the growing step.
+    cluster_radius: eta, the L2 distance that joins candidates: 2 bridges a one-cell hole.
+    min_samples: DBSCAN's core size, the candidate itself included. 4 within two cells is less
+        than any shell has and more than a bridge of noise between two objects.
+    min_cells: an object of fewer cells is a speck: at 0.08 m, 8 cells are the face of a book.
+    join_radius: cells without an object join one of their class this near: the height of a
+        chair's seat, for legs that a scan has torn off (measured on generated chairs).
+    paper_compat: stop where Algorithm 1 stops: each cluster is an object whatever its size,
+        and what is not connected with a cluster belongs to none.
+    """
+
+    density_kernel: int = 3
+    density_threshold: float = 0.2
+    cluster_radius: float = 2.0
+    min_samples: int = 4
+    min_cells: int = 8
+    join_radius: float = 5.0
+    paper_compat: bool = False
+
+    def __post_init__(self):
+        if self.density_kernel < 1 or self.density_kernel % 2 == 0:
+            raise UsageError(f"density_kernel must be odd and above 0, not {self.density_kernel}")
+        if not 0 <= self.density_threshold <= 1:
+            raise UsageError(
+                f"density_threshold must lie between 0 and 1, not {self.density_threshold}"
+            )
+        for name in ("cluster_radius", "min_samples", "min_cells"):
+            if not getattr(self, name) > 0:
+                raise UsageError(f"{name} must be above 0, not {getattr(self, name)}")
+        if self.join_radius < 0:
+            raise UsageError(f"join_radius must not be negative, not {self.join_radius}")
