@@ -1,41 +1,70 @@
-# Each target sets up .venv by itself, and does nothing twice.
+# Each target sets up .venv at the root by itself, and does nothing twice.
+# PYTHON chooses the interpreter, TESTS what `make test` runs, ONLY what `make bench` measures.
 PYTHON ?= python3
+TESTS ?=
+ONLY ?=
+
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+# There while packages are put in: what an interrupted try left is made anew.
+HALF := $(VENV)/.half-installed
+# Build tools are pinned too; a path without spaces, because pip splits this variable.
+export PIP_CONSTRAINT := constraints.txt
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test test-live lint bench clean help
+# An environment knows its own place by heart: one that was copied or moved is made anew.
+ifneq ($(shell cat $(STAMP) 2>/dev/null),$(shell pwd))
+$(shell rm -f $(STAMP))
+endif
+# So is one whose interpreter is gone.
+ifneq ($(shell $(BIN)/python -c 'print("runs")' 2>/dev/null),runs)
+$(shell rm -f $(STAMP))
+endif
+
+.PHONY: help demo test test-live lint bench setup clean
+.DEFAULT_GOAL := help
 
 help:  ## Show the targets.
-	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/'
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile
+
+setup: $(STAMP)  ## Make .venv and install what the pins say.
 
 $(STAMP): pyproject.toml constraints.txt
-	@if command -v uv >/dev/null 2>&1; then \
-	  test -x $(BIN)/python || uv venv --python $(PYTHON) $(VENV); \
-	  uv pip install --python $(BIN)/python --constraint constraints.txt --editable '.[dev]'; \
+	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' \
+	  || { echo "Python 3.11 to 3.13 is needed: make PYTHON=python3.12 ..." >&2; exit 1; }
+	@set -e; \
+	if test -e $(HALF); then rm -rf $(VENV); fi; \
+	if command -v uv >/dev/null 2>&1; then \
+	  $(BIN)/python -c pass 2>/dev/null || \
+	    uv venv --quiet --clear --python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" $(VENV); \
+	  touch $(HALF); \
+	  uv pip install --quiet --python $(BIN)/python --constraint constraints.txt \
+	    --build-constraint constraints.txt --editable '.[dev]'; \
 	else \
-	  test -x $(BIN)/python || $(PYTHON) -m venv $(VENV); \
+	  $(BIN)/python -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV); \
+	  touch $(HALF); \
 	  $(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'; \
-	fi
-	@touch $@
+	fi; \
+	rm $(HALF); pwd > $@
 
 demo: $(STAMP)  ## Scan the embedded room and build it as a Minecraft world in OUT/.
-	$(BIN)/w2m demo
+	@$(BIN)/python -m world2minecraft.cli demo
 
-test: $(STAMP)  ## Run the tests.
-	$(BIN)/python -m pytest
+test: $(STAMP)  ## Run the tests (TESTS=tests/fuse for a part).
+	@$(BIN)/python -m pytest $(TESTS)
 
 test-live: $(STAMP)  ## Load a built world into a real server and walk in it (needs Node and npm).
-	$(BIN)/python -m pytest -m live tests/live
+	@$(BIN)/python -m pytest -m live tests/live
 
-lint: $(STAMP)  ## Check style and types.
-	$(BIN)/ruff check .
-	$(BIN)/ruff format --check .
-	$(BIN)/codespell src tests docs benchmarks README.md CONTRIBUTING.md CHANGELOG.md
-	$(BIN)/pyright
+lint: $(STAMP)  ## Check style, spelling and types.
+	$(BIN)/python -m ruff check .
+	$(BIN)/python -m ruff format --check .
+	$(BIN)/python -m codespell_lib src tests docs benchmarks README.md CONTRIBUTING.md CHANGELOG.md
+	$(BIN)/python -m pyright
 
-bench: $(STAMP)  ## Measure speed and memory against the budgets.
-	$(BIN)/python -m benchmarks
+bench: $(STAMP)  ## Measure speed and memory against the budgets (ONLY=cli for one).
+	@$(BIN)/python -m benchmarks $(if $(ONLY),--only $(ONLY))
 
 clean:  ## Remove the environment and the demo's output.
 	rm -rf $(VENV) OUT
