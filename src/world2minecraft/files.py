@@ -117,6 +117,27 @@ def read_npz(path: str | Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
         raise
 
 
+def array_names(path: str | Path) -> tuple[str, ...]:
+    """Return the names of the arrays of a ``.npz``. Raises what ``read_npz`` raises."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return tuple(sorted(name.removesuffix(".npy") for name in archive.namelist()))
+    except (zipfile.BadZipFile, OSError, ValueError) as error:
+        raise DamagedFileError(path, f"is not a readable .npz ({error})") from error
+
+
+def read_npy(path: str | Path) -> np.ndarray:
+    """Read a ``.npy``, its size checked before any memory is taken. Raises as ``read_npz``."""
+    source = Path(path)
+    try:
+        with source.open("rb") as stream:
+            _check_header(stream, source.stat().st_size, source, "of the file")
+            stream.seek(0)
+            return np.lib.format.read_array(stream, allow_pickle=False)
+    except (ValueError, EOFError, OSError) as error:
+        raise DamagedFileError(source, f"is not a readable .npy ({error})") from error
+
+
 def _read_member(archive: zipfile.ZipFile, name: str, source: Path) -> np.ndarray:
     member = f"{name}.npy"
     if member not in archive.namelist():
@@ -126,16 +147,21 @@ def _read_member(archive: zipfile.ZipFile, name: str, source: Path) -> np.ndarra
     if declared > MAX_ARRAY_BYTES:
         raise LimitError(source, f"array {name!r} has {declared:,} bytes; too large to read")
     with archive.open(member) as stream:
-        version = np.lib.format.read_magic(stream)
-        reader = {
-            (1, 0): np.lib.format.read_array_header_1_0,
-            (2, 0): np.lib.format.read_array_header_2_0,
-        }.get(version)
-        if reader is None:
-            raise DamagedFileError(source, f"array {name!r} has npy version {version}")
-        shape, _, dtype = reader(stream)
-        needed = int(np.prod(shape, dtype=np.float64)) * dtype.itemsize
-        if dtype.hasobject or needed > declared:
-            raise DamagedFileError(source, f"array {name!r} says {shape} {dtype}, holds less")
+        _check_header(stream, declared, source, repr(name))
     with archive.open(member) as stream:
         return np.lib.format.read_array(stream, allow_pickle=False)
+
+
+def _check_header(stream: Any, held: int, source: Path, name: str) -> None:
+    """Refuse an array that says it is larger than the bytes it comes in, or holds objects."""
+    version = np.lib.format.read_magic(stream)
+    reader = {
+        (1, 0): np.lib.format.read_array_header_1_0,
+        (2, 0): np.lib.format.read_array_header_2_0,
+    }.get(version)
+    if reader is None:
+        raise DamagedFileError(source, f"array {name} has npy version {version}")
+    shape, _, dtype = reader(stream)
+    needed = int(np.prod(shape, dtype=np.float64)) * dtype.itemsize
+    if dtype.hasobject or needed > held:
+        raise DamagedFileError(source, f"array {name} says {shape} {dtype}, holds less")

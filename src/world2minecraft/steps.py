@@ -17,6 +17,7 @@ from world2minecraft.exchange.objects import (
     write_objects,
     write_placements,
 )
+from world2minecraft.exchange.occupancy import inner_corner_m
 from world2minecraft.exchange.paper import write_centers_json, write_occ_json
 from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.exchange.scan import read_room_size
@@ -25,6 +26,7 @@ from world2minecraft.furnish import furnish
 from world2minecraft.fuse import close_structure, read_out, remove_floaters
 from world2minecraft.label import labeller
 from world2minecraft.parameters import Parameters
+from world2minecraft.types import OccupancyGrid
 
 
 def label_stage(folder: Path, chosen: Parameters) -> None:
@@ -63,11 +65,19 @@ def build_stage(folder: Path, chosen: Parameters) -> None:
         grid,
         read_placements(folder / "placements.json"),
         read_objects(folder / "objects.json", grid),
-        corner_m=np.array([0.0, read_room_size(folder / "scan.json")[1]]),
+        corner_m=corner_m(folder, grid),
         blocks_per_metre=chosen.blocks_per_metre,
         parameters=chosen.build,
     )
     write_build(folder / "build", volume, mc_version=chosen.mc_version)
+
+
+def corner_m(folder: Path, grid: OccupancyGrid) -> np.ndarray:
+    """Return the corner (x_min, y_max) of the room's inner box: as aligned, else from the walls."""
+    if not (folder / "scan.json").is_file():
+        return inner_corner_m(grid)
+    depth_m = read_room_size(folder / "scan.json")[1]
+    return np.array([0.0, np.round(depth_m / grid.voxel_m) * grid.voxel_m])
 
 
 LATER_STEPS = {

@@ -1,0 +1,37 @@
+"""What a finished run tells its user: where the world is, how to open it, what came out."""
+
+from pathlib import Path
+from typing import Any
+
+
+def compiling_note() -> None:
+    """Say, once after installation, why the first run takes longer."""
+    from world2minecraft.jit import user_cache_dir
+
+    kernels = user_cache_dir() / "kernels"
+    if not kernels.is_dir() or not any(kernels.iterdir()):
+        print("First run: compiling the inner loops, about 30 s; later runs start at once.")
+
+
+def say_where(out: Path, facts: dict[str, Any]) -> None:
+    """Print the outcome and the next steps."""
+    explained = facts["surface_explained"]["within_one_voxel"]
+    size = " x ".join(f"{side:.1f}" for side in facts["room_size_m"])
+    used, skipped = facts["scan"]["frames_used"], len(facts["scan"]["frames_skipped"])
+    print(
+        f"\nRoom {size} m from {used} frames ({skipped} skipped), {len(facts['objects'])} objects,"
+    )
+    print(f"{facts['blocks']:,} blocks; {explained:.0%} of the seen surface stands in a block.")
+    for note in facts["scan"]["notes"]:
+        print(f"note: {note}")
+    print(f"\n  look   {out / 'report.html'} in a browser, {out / 'preview.png'}")
+    say_how_to_play(out / "build")
+
+
+def say_how_to_play(build: Path) -> None:
+    """Print how to open the world in the game."""
+    print(f"  play   copy {build / 'world'} into the game's saves folder:")
+    print("         Windows  %APPDATA%\\.minecraft\\saves")
+    print("         macOS    ~/Library/Application Support/minecraft/saves")
+    print("         Linux    ~/.minecraft/saves")
+    print(f"  or     {build / 'room.schem'} for WorldEdit, {build / 'datapack.zip'} for a server")

@@ -1,0 +1,91 @@
+"""``w2m reconstruct``: a capture becomes a Minecraft world, with a report."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EXAMPLES = """\
+w2m reconstruct my_scan --out OUT                         the whole way
+w2m reconstruct my_scan --out OUT --blocks-per-metre 2    smaller, coarser
+w2m reconstruct my_scan --out OUT --labels my_labels      with 2D label images
+w2m reconstruct my_scan --out OUT --from build            build again, all before kept
+w2m reconstruct my_scan --out OUT --set find.cluster_radius=3
+"""
+
+
+def run(
+    capture: Annotated[Path, typer.Argument(help="A folder of posed RGB-D frames.")],
+    out: Annotated[Path, typer.Option("--out", help="The folder of the results.")],
+    voxel: Annotated[float, typer.Option("--voxel", help="Size of a cell, in metres.")] = 0.08,
+    blocks_per_metre: Annotated[
+        float,
+        typer.Option(
+            "--blocks-per-metre", help="Scale: 1 true size, 2, 4 or 12.5 (one voxel, one block)."
+        ),
+    ] = 4.0,
+    start: Annotated[
+        str | None,
+        typer.Option(
+            "--from", metavar="STAGE", help="scan, fuse, label, find, furnish, build or report."
+        ),
+    ] = None,
+    labels: Annotated[
+        Path | None, typer.Option("--labels", help="A folder of 2D label images, one a frame.")
+    ] = None,
+    labeller: Annotated[str, typer.Option("--labeller", help="auto, votes or geometric.")] = "auto",
+    mc_version: Annotated[
+        str, typer.Option("--mc-version", help="The game version to write for.")
+    ] = "1.20.1",
+    settings: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any parameter.")
+    ] = None,
+) -> None:
+    """Turn a capture into a Minecraft world.
+
+    The world opens in creative mode, standing in the room. A run that was cut off goes on from
+    its last finished stage when the same command is given again.
+
+    Args:
+        capture: the folder to read; ``w2m scan`` tells what it holds.
+        out: the folder to write.
+        voxel: the cell's size in metres.
+        blocks_per_metre: the scale.
+        start: the stage to begin at.
+        labels: 2D label images.
+        labeller: how cells are labelled.
+        mc_version: the game version.
+        settings: further parameters.
+    """
+    from world2minecraft.cli.outcome import compiling_note, say_where
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.parameters import Parameters, with_settings
+
+    chosen = with_settings(
+        Parameters(
+            voxel_m=voxel,
+            blocks_per_metre=blocks_per_metre,
+            labeller=labeller,
+            mc_version=mc_version,
+        ),
+        settings or [],
+    )
+    compiling_note()
+    with shown() as progress:
+        facts = make(capture, out, chosen, start, labels, progress)
+    say_where(out, facts)
+
+
+def make(capture: Path, out: Path, chosen, start: str | None, labels: Path | None, progress):
+    """Run the pipeline and write its report; return what ``report.json`` holds."""
+    from world2minecraft.pipeline import reconstruct
+    from world2minecraft.report import write_report
+    from world2minecraft.scan import open_scan
+
+    if start == "report":
+        options = {"labels": labels, "options": chosen.capture}
+        scan = open_scan(capture, voxel_m=chosen.voxel_m, progress=progress, **options)
+    else:
+        scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
+    truth = capture if (capture / "truth.npz").is_file() else None
+    return write_report(out, scan, truth=truth, progress=progress)
