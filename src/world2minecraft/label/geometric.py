@@ -1,0 +1,70 @@
+"""The labeller that learns nothing: structure from planes, objects by size, height and shape.
+
+Floor and ceiling first, then walls; the rest is cut at its level plates, and the pieces are told
+apart by rules. Evidence wins: every observed cell keeps a class, but for the floor's spill.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.classes import SemanticClass
+from world2minecraft.label.furniture import label_furniture
+from world2minecraft.label.horizontal import find_ceiling, find_floor
+from world2minecraft.label.parameters import GeometricParameters
+from world2minecraft.label.surface import surface_of
+from world2minecraft.label.walls import find_walls
+from world2minecraft.types import COMPLETED, UNSEEN, FusedEvidence, OccupancyGrid
+
+# How far a class may be trusted: the share of its cells that were right on generated rooms.
+RELIABILITY = np.array([1.0, 0.9, 0.95, 0.9, 0.5, 0.5, 0.5, 0.5, 0.6, 0.4, 0.6, 0.3], np.float32)
+
+
+class GeometricLabeller:
+    """Structure from planes and heights; objects by size, height and shape."""
+
+    def __init__(self, parameters: GeometricParameters | None = None):
+        self.parameters = parameters or GeometricParameters()
+
+    def label(self, grid: OccupancyGrid, evidence: FusedEvidence) -> OccupancyGrid:
+        """Return the grid with a class for each occupied cell.
+
+        Raises:
+            ValueError: grid and evidence do not lie on the same cells.
+        """
+        surface = surface_of(grid, evidence)
+        floor = find_floor(surface, self.parameters)
+        labels = np.array(grid.labels)
+        labels[surface.occupied] = SemanticClass.OBJS
+        ceiling, ceiling_m = find_ceiling(surface, self.parameters)
+        above_floor = max(surface.floor_layer + 1, 0)
+        wall, _ = find_walls(surface, above_floor, ceiling_m, self.parameters)
+        rest = surface.occupied & ~(floor.cells | floor.spill | ceiling | wall)
+        label_furniture(surface, rest, wall, labels, self.parameters)
+        labels[wall] = SemanticClass.WALL
+        labels[ceiling] = SemanticClass.CEILING
+        labels[floor.spill] = SemanticClass.EMPTY
+        labels[floor.cells] = SemanticClass.FLOOR
+        return _with_labels(grid, labels, floor.spill)
+
+
+def _with_labels(grid: OccupancyGrid, labels: np.ndarray, spill: np.ndarray) -> OccupancyGrid:
+    """Return the grid with new labels; where spill came down, its colour and confidence with it.
+
+    A floor cell that no ray had reached before is marked as completed.
+    """
+    source, colour = np.array(grid.source), np.array(grid.colour)
+    confidence = np.array(grid.confidence, np.float32)
+    filled = (labels == SemanticClass.FLOOR) & ~grid.occupied
+    above = np.roll(filled, 1, axis=2)
+    colour[filled], confidence[filled] = grid.colour[above], confidence[above]
+    source[filled & (source == UNSEEN)] = COMPLETED
+    known = labels <= SemanticClass.OBJS
+    confidence[known] *= RELIABILITY[labels[known]]
+    return replace(
+        grid,
+        labels=labels,
+        source=source,
+        colour=colour,
+        confidence=confidence.astype(np.float16),
+    )

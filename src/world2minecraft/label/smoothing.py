@@ -1,0 +1,38 @@
+"""Majority smoothing: a part of a class too small to be a thing takes the class around it."""
+
+from typing import cast
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.classes import CLASS_COUNT
+
+FULL = np.ones((3, 3, 3), bool)
+
+
+def smooth_labels(labels: np.ndarray, small_cells: int) -> np.ndarray:
+    """Return labels in which small parts take the class that most of their neighbours have.
+
+    Args:
+        labels: uint8 [X, Y, Z], ids 0 to 11 or 255. Only occupied cells change, and only to
+            classes 1 to 11; a part without occupied neighbours keeps its class.
+        small_cells: parts with fewer cells are small.
+    """
+    result = labels.copy()
+    padded = np.pad(labels, 1)
+    for class_id in range(1, CLASS_COUNT):
+        parts, count = cast(tuple[np.ndarray, int], ndimage.label(labels == class_id, FULL))
+        sizes = np.bincount(parts.reshape(-1), minlength=count + 1)
+        small = np.flatnonzero(sizes < small_cells)
+        cells = np.argwhere(np.isin(parts, small[small > 0]))
+        if not len(cells):
+            continue
+        owner = parts[tuple(cells.T)]
+        table = np.zeros((count + 1, CLASS_COUNT), np.int64)
+        for step in np.argwhere(FULL):
+            near = padded[tuple((cells + step).T)]
+            other = (near > 0) & (near < CLASS_COUNT) & (near != class_id)
+            np.add.at(table, (owner[other], near[other]), 1)
+        winner = np.where(table.max(axis=1) > 0, table.argmax(axis=1), class_id)
+        result[tuple(cells.T)] = winner[owner]
+    return result

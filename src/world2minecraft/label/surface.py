@@ -1,0 +1,58 @@
+"""What the geometric labeller looks at: occupied and free cells, and where in them surface lies."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.coordinates import cell_centers_m
+from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.types import FusedEvidence, OccupancyGrid
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """The observed surface of a room, in its cells.
+
+    ``points_m`` is the mean surface point of each occupied cell, in the room frame: it tells a
+    plane to a centimetre or two where the cell itself only tells eight.
+    """
+
+    occupied: np.ndarray  # bool [X, Y, Z]
+    free: np.ndarray  # bool [X, Y, Z]
+    points_m: np.ndarray  # float32 [X, Y, Z, 3]
+    oklab: np.ndarray  # float32 [X, Y, Z, 3], 0 where not occupied
+    voxel_m: float
+    origin_m: np.ndarray
+
+    @property
+    def floor_layer(self) -> int:
+        """The index of the layer whose top is z = 0; it may lie outside the grid."""
+        return round(-self.origin_m[2] / self.voxel_m) - 1
+
+    def layers_below(self, height_m: float) -> int:
+        """Return how many layers of the grid have their centre under a height."""
+        cells = np.ceil((height_m - self.origin_m[2]) / self.voxel_m - 0.5 - 1e-9)
+        return int(np.clip(cells, 0, self.occupied.shape[2]))
+
+
+def surface_of(grid: OccupancyGrid, evidence: FusedEvidence) -> Surface:
+    """Return the surface of a grid and of the evidence behind it.
+
+    Raises:
+        ValueError: grid and evidence do not lie on the same cells.
+    """
+    same = grid.shape == evidence.log_odds.shape and grid.voxel_m == evidence.voxel_m
+    if not (same and np.allclose(grid.origin_m, evidence.origin_m, atol=1e-9)):
+        raise ValueError(
+            f"grid {grid.shape} at {grid.origin_m.tolist()} and evidence "
+            f"{evidence.log_odds.shape} at {evidence.origin_m.tolist()} are not of the same cells"
+        )
+    occupied = grid.occupied
+    cells = np.argwhere(occupied)
+    at = tuple(cells.T)
+    hits = np.maximum(evidence.hits[at], 1)[:, None]
+    points = np.zeros((*grid.shape, 3), np.float32)
+    points[at] = cell_centers_m(cells, grid.origin_m, grid.voxel_m) + evidence.offset_sum[at] / hits
+    oklab = np.zeros((*grid.shape, 3), np.float32)
+    oklab[at] = oklab_of_srgb(grid.colour[at])
+    return Surface(occupied, grid.labels == 0, points, oklab, grid.voxel_m, grid.origin_m)

@@ -1,0 +1,166 @@
+"""Walls: large upright planes with nothing behind them, or up to the ceiling.
+
+A wall and the front of a cupboard are both upright planes. What tells them apart is what was seen
+behind: over a counter, and under a hung cupboard, rays pass the front on their way to the wall;
+behind a wall no ray ever passes. Each of the four directions is looked at in arrays turned so that
+axis 0 leads outward.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.label.parameters import GeometricParameters
+from world2minecraft.label.peaks import highest_peak
+from world2minecraft.label.surface import Surface
+
+DIRECTIONS = ((0, 1), (0, -1), (1, 1), (1, -1))  # The axis a wall is square to, the way out.
+MAX_PLANES = 24  # For each direction: a bound on the search, well above any room's walls.
+
+
+@dataclass(frozen=True, eq=False)
+class WallRun:
+    """One straight piece of wall. ``outward_m`` grows along its direction out of the room."""
+
+    axis: int
+    sign: int
+    outward_m: float
+    span: tuple[int, int]  # First and last cell along the wall.
+    top_m: float
+    area_m2: float
+
+
+def find_walls(
+    surface: Surface, above_floor: int, ceiling_m: float | None, parameters: GeometricParameters
+) -> tuple[np.ndarray, list[WallRun]]:
+    """Return the walls' cells, bool [X, Y, Z], and their runs.
+
+    Args:
+        surface: the room.
+        above_floor: the first layer above the floor.
+        ceiling_m: the ceiling's height, None where it was not seen.
+        parameters: the thresholds.
+    """
+    cells = np.zeros(surface.occupied.shape, bool)
+    found: list[WallRun] = []
+    for axis, sign in DIRECTIONS:
+        view = _Turned(surface, axis, sign, above_floor)
+        runs = list(_runs(view, ceiling_m, parameters))
+        runs = [run for run in runs if not _is_furniture(run, runs, ceiling_m, view, parameters)]
+        for run in runs:
+            _mark(view, run, parameters, cells)
+        found.extend(runs)
+    return cells, found
+
+
+class _Turned:
+    """A room's arrays turned so that axis 0 leads outward, axis 1 along the wall, axis 2 up."""
+
+    def __init__(self, surface: Surface, axis: int, sign: int, above_floor: int):
+        self.axis, self.sign, self.voxel_m = axis, sign, surface.voxel_m
+        self.above_floor = above_floor
+        self.occupied = self.turn(surface.occupied)
+        self.free = self.turn(surface.free)
+        self.outward_m = sign * self.turn(surface.points_m[..., axis])
+        self.height_m = self.turn(surface.points_m[..., 2])
+
+    def turn(self, values: np.ndarray) -> np.ndarray:
+        turned = np.swapaxes(values, 0, 1) if self.axis else values
+        return turned[:: self.sign]
+
+
+def _runs(
+    view: _Turned, ceiling_m: float | None, parameters: GeometricParameters
+) -> Iterator[WallRun]:
+    """Yield the planes that may be walls, split where they stop for long."""
+    fronts = view.occupied & _free_before(view.free)
+    fronts[:, :, : view.above_floor] = False
+    hidden = fronts & ~_passed_behind(view, parameters)
+    yield from _peeled(view, hidden, parameters, parameters.wall_top_m)
+    if ceiling_m is not None:
+        full = ceiling_m - 2 * view.voxel_m
+        yield from _peeled(view, fronts & ~hidden, parameters, full)
+
+
+def _free_before(free: np.ndarray) -> np.ndarray:
+    """Return where one of the two cells on the room's side is free."""
+    before = np.zeros_like(free)
+    before[1:] = free[:-1]
+    before[2:] |= free[:-2]
+    return before
+
+
+def _passed_behind(view: _Turned, parameters: GeometricParameters) -> np.ndarray:
+    """Return bool [A, B, 1]: in the columns behind, rays passed at some height."""
+    free = view.free[:, :, view.above_floor :].sum(axis=2) >= 2  # One may be noise.
+    behind = np.zeros_like(free)
+    first = 1 + round(parameters.behind_m / 2 / view.voxel_m)
+    for step in range(first, first + round(parameters.hidden_m / view.voxel_m)):
+        behind[:-step] |= free[step:]
+    return behind[:, :, None]
+
+
+def _peeled(
+    view: _Turned, fronts: np.ndarray, parameters: GeometricParameters, top_m: float
+) -> Iterator[WallRun]:
+    """Yield runs, the plane with most cells first, until none is large enough."""
+    along = np.nonzero(fronts)[1]
+    outward, height = view.outward_m[fronts], view.height_m[fronts]
+    needed = parameters.wall_area_m2 / view.voxel_m**2
+    for _ in range(MAX_PLANES):
+        if len(outward) < needed:
+            return
+        peak, count = highest_peak(outward, parameters.plane_gate_m)
+        if count < needed:
+            return
+        near = np.abs(outward - peak) <= parameters.plane_gate_m
+        for first, last in _spans(along[near], round(parameters.wall_gap_m / view.voxel_m)):
+            inside = near & (along >= first) & (along <= last)
+            top = float(np.quantile(height[inside], 0.98))
+            if inside.sum() >= needed and top >= top_m:
+                area = float(inside.sum()) * view.voxel_m**2
+                middle = float(np.median(outward[inside]))
+                yield WallRun(view.axis, view.sign, middle, (first, last), top, area)
+        outward, height, along = outward[~near], height[~near], along[~near]
+
+
+def _spans(along: np.ndarray, gap_cells: int) -> list[tuple[int, int]]:
+    """Split positions along a wall where more than ``gap_cells`` lie between two."""
+    present = np.unique(along)
+    breaks = np.flatnonzero(np.diff(present) > gap_cells + 1)
+    firsts = present[np.concatenate([[0], breaks + 1])]
+    lasts = present[np.concatenate([breaks, [len(present) - 1]])]
+    return [(int(a), int(b)) for a, b in zip(firsts, lasts, strict=True)]
+
+
+def _is_furniture(
+    run: WallRun,
+    runs: list[WallRun],
+    ceiling_m: float | None,
+    view: _Turned,
+    parameters: GeometricParameters,
+) -> bool:
+    """Return whether a run is the front of a tall piece of furniture before a wider wall."""
+    width = (run.span[1] - run.span[0] + 1) * view.voxel_m
+    low, high = parameters.recess_m
+    if width > parameters.recess_width_m:
+        return False
+    for wall in runs:
+        before = low <= wall.outward_m - run.outward_m <= high
+        reach = round(high / view.voxel_m)
+        beside = wall.span[0] - reach <= run.span[0] and run.span[1] <= wall.span[1] + reach
+        full = ceiling_m if ceiling_m is not None else wall.top_m
+        if before and beside and wall.area_m2 > run.area_m2 and run.top_m < full - 0.12:
+            return True
+    return False
+
+
+def _mark(view: _Turned, run: WallRun, parameters: GeometricParameters, cells: np.ndarray) -> None:
+    """Set the cells of a run: those on its plane, and those that noise put behind it."""
+    gap = view.outward_m - run.outward_m
+    on = view.occupied & (gap >= -parameters.plane_gate_m) & (gap <= parameters.behind_m)
+    on[:, : max(run.span[0] - 1, 0)] = False
+    on[:, run.span[1] + 2 :] = False
+    on[:, :, : view.above_floor] = False
+    view.turn(cells)[on] = True
