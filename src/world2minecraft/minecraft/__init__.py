@@ -1,1 +1,1 @@
-"""See DESIGN."""
+"""The game: block states, their shapes, and its file formats, read and written."""

@@ -1,0 +1,84 @@
+"""The game's own table of blocks: properties, default states and collision boxes of 1.20.1.
+
+The data file is a subset of the public package ``minecraft-data``; see its notice beside it.
+A state's index counts its property values with the last property fastest; a boolean's first value
+is true.
+"""
+
+import gzip
+import json
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+import numpy as np
+
+TABLE_FILE = "data/blocks.json.gz"
+
+
+@dataclass(frozen=True)
+class BlockType:
+    """One kind of block: its properties in the game's order and the shape of each state."""
+
+    name: str
+    properties: tuple[tuple[str, tuple[str, ...]], ...]
+    default: int
+    shapes: tuple[int, ...]  # one index for all states, or one a state
+
+    @property
+    def state_count(self) -> int:
+        """The number of states that the block can take."""
+        count = 1
+        for _, values in self.properties:
+            count *= len(values)
+        return count
+
+    def values_at(self, index: int) -> dict[str, str]:
+        """Return the property values of the state ``index``, in the game's order."""
+        found: dict[str, str] = {}
+        for name, values in reversed(self.properties):
+            index, place = divmod(index, len(values))
+            found[name] = values[place]
+        return {name: found[name] for name, _ in self.properties}
+
+    def index_of(self, values: dict[str, str]) -> int:
+        """Return the index of a state; missing or strange values count as the default's."""
+        defaults = self.values_at(self.default)
+        index = 0
+        for name, known in self.properties:
+            value = values.get(name, defaults[name])
+            index = index * len(known) + known.index(value if value in known else defaults[name])
+        return index
+
+    def shape_at(self, index: int) -> int:
+        """Return the number of the shape of state ``index``."""
+        return self.shapes[index if len(self.shapes) > 1 else 0]
+
+
+@dataclass(frozen=True)
+class BlockTable:
+    """All blocks by full name, and all shapes as float32 [N, 6] boxes in block units."""
+
+    version: str
+    blocks: dict[str, BlockType]
+    shapes: tuple[np.ndarray, ...]
+
+
+@cache
+def block_table() -> BlockTable:
+    """Read the shipped table, once."""
+    packed = files("world2minecraft.minecraft").joinpath(TABLE_FILE).read_bytes()
+    raw = json.loads(gzip.decompress(packed))
+    properties = [(name, tuple(values)) for name, values in raw["properties"]]
+    blocks = {}
+    for name, (numbers, default, shapes) in raw["blocks"].items():
+        held = tuple(shapes) if isinstance(shapes, list) else (shapes,)
+        full = f"minecraft:{name}"
+        blocks[full] = BlockType(full, tuple(properties[n] for n in numbers), default, held)
+    return BlockTable(raw["version"], blocks, tuple(map(_boxes, raw["shapes"])))
+
+
+def _boxes(flat: list[float]) -> np.ndarray:
+    boxes = np.array(flat, np.float32).reshape(-1, 6)
+    boxes.flags.writeable = False
+    return boxes

@@ -1,0 +1,172 @@
+"""``level.dat``: creative, a void, always noon, nothing that moves, the player in the room."""
+
+from typing import Any
+
+from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
+from world2minecraft.minecraft.versions import GameVersion
+
+MAKER = "world2minecraft"  # The game drops unknown tags when it saves: then the mark is gone.
+MAKER_TAG = "MadeBy"
+NOON = 6000
+
+# Names as of 1.20.1 to 1.21.10; newer games rename them on opening. Nothing spawns, burns, grows,
+# rains or drops, and no message hides the view.
+GAME_RULES = {
+    "announceAdvancements": "false",
+    "commandBlockOutput": "false",
+    "commandModificationBlockLimit": "32768",
+    "disableRaids": "true",
+    "doDaylightCycle": "false",
+    "doEntityDrops": "false",
+    "doFireTick": "false",
+    "doImmediateRespawn": "true",
+    "doInsomnia": "false",
+    "doMobLoot": "false",
+    "doMobSpawning": "false",
+    "doPatrolSpawning": "false",
+    "doTileDrops": "false",
+    "doTraderSpawning": "false",
+    "doVinesSpread": "false",
+    "doWardenSpawning": "false",
+    "doWeatherCycle": "false",
+    "fallDamage": "false",
+    "fireDamage": "false",
+    "keepInventory": "true",
+    "maxCommandChainLength": "65536",
+    "mobGriefing": "false",
+    "randomTickSpeed": "0",
+    "sendCommandFeedback": "true",
+    "snowAccumulationHeight": "0",
+    "spawnRadius": "0",
+}
+
+
+def level_data(
+    name: str,
+    spawn: tuple[float, float, float],
+    spawn_yaw_deg: float,
+    version: GameVersion,
+    packs: tuple[str, ...] = (),
+) -> dict[str, Any]:
+    """Return the tree of a ``level.dat``.
+
+    Args:
+        name: what the game's list of worlds shows.
+        spawn: where the player's feet stand, in world block coordinates.
+        spawn_yaw_deg: where the player looks, in the game's yaw: 0 south, 90 west.
+        version: the game that the world is written for.
+        packs: data packs of the world's own folder, by file name.
+    """
+    x, y, z = (int(value // 1) for value in spawn)
+    data_version = version.level_data_version
+    data = {
+        MAKER_TAG: MAKER,
+        "version": 19133,
+        "DataVersion": data_version,
+        "Version": {
+            "Id": data_version,
+            "Name": version.name,
+            "Series": "main",
+            "Snapshot": Byte(0),
+        },
+        "LevelName": name,
+        "GameType": 1,
+        "allowCommands": Byte(1),
+        "hardcore": Byte(0),
+        "Difficulty": Byte(0),
+        "DifficultyLocked": Byte(0),
+        "initialized": Byte(1),
+        "SpawnX": x,
+        "SpawnY": y,
+        "SpawnZ": z,
+        "SpawnAngle": Float(spawn_yaw_deg),
+        "Time": Long(0),
+        "DayTime": Long(NOON),
+        "LastPlayed": Long(0),
+        "clearWeatherTime": 1_000_000_000,
+        "raining": Byte(0),
+        "rainTime": 1_000_000_000,
+        "thundering": Byte(0),
+        "thunderTime": 1_000_000_000,
+        "WasModded": Byte(0),
+        "GameRules": dict(GAME_RULES),
+        "DataPacks": {"Enabled": ["vanilla", *[f"file/{p}" for p in packs]], "Disabled": []},
+        "WorldGenSettings": _generation(),
+        "DragonFight": {
+            "NeedsStateScanning": Byte(0),
+            "DragonKilled": Byte(1),
+            "PreviouslyKilled": Byte(1),
+        },
+        "CustomBossEvents": {},
+        "ScheduledEvents": [],
+        "ServerBrands": [],
+        "WanderingTraderSpawnChance": 0,
+        "WanderingTraderSpawnDelay": 1_000_000_000,
+        "Player": _player(spawn, spawn_yaw_deg, data_version),
+    }
+    return {"Data": data}
+
+
+def _generation() -> dict[str, Any]:
+    """All three dimensions: the game writes them always, and the overworld is a void."""
+    void = {
+        "biome": "minecraft:the_void",
+        "features": Byte(0),  # With features the void gets a stone platform at its middle.
+        "lakes": Byte(0),
+        "layers": [{"block": "minecraft:air", "height": 1}],
+        "structure_overrides": [],
+    }
+    nether = {"type": "minecraft:multi_noise", "preset": "minecraft:nether"}
+    dimensions = {
+        "minecraft:overworld": {
+            "type": "minecraft:overworld",
+            "generator": {"type": "minecraft:flat", "settings": void},
+        },
+        "minecraft:the_nether": _noise_dimension("the_nether", "nether", nether),
+        "minecraft:the_end": _noise_dimension("the_end", "end", {"type": "minecraft:the_end"}),
+    }
+    return {
+        "seed": Long(0),
+        "generate_features": Byte(0),
+        "bonus_chest": Byte(0),
+        "dimensions": dimensions,
+    }
+
+
+def _noise_dimension(kind: str, settings: str, biomes: dict[str, str]) -> dict[str, Any]:
+    generator = {
+        "type": "minecraft:noise",
+        "settings": f"minecraft:{settings}",
+        "biome_source": biomes,
+    }
+    return {"type": f"minecraft:{kind}", "generator": generator}
+
+
+def _player(spawn: tuple[float, float, float], yaw_deg: float, data_version: int) -> dict[str, Any]:
+    """The player of a world that is opened alone: a creative one who stands on the floor."""
+    return {
+        "DataVersion": data_version,
+        "Dimension": "minecraft:overworld",
+        "Pos": [float(value) for value in spawn],
+        "Motion": [0.0, 0.0, 0.0],
+        "Rotation": [Float(yaw_deg), Float(0)],
+        "OnGround": Byte(1),
+        "playerGameType": 1,
+        "Health": Float(20),
+        "foodLevel": 20,
+        "Air": Short(300),
+        "Fire": Short(-20),
+        "FallDistance": Float(0),
+        "Inventory": [],
+        "EnderItems": [],
+        "SelectedItemSlot": 0,
+        "abilities": {
+            "flying": Byte(0),
+            "mayfly": Byte(1),
+            "instabuild": Byte(1),
+            "invulnerable": Byte(1),
+            "mayBuild": Byte(1),
+            "flySpeed": Float(0.05),
+            "walkSpeed": Float(0.1),
+        },
+    }

@@ -1,0 +1,309 @@
+"""NBT, the game's binary tree format, read strictly and within bounds.
+
+Python values and tags: ``Byte Short Long Float`` are the small classes below, a plain ``int`` is
+an Int, a plain ``float`` a Double, ``bool`` a Byte, ``str`` a String, ``dict`` a Compound, a list
+a List of one kind, and an array of int8, int32 or int64 the array tag of that size.
+
+A file is refused where it ends early, has bytes after its end, nests deeper, holds more values or
+unpacks to more bytes than ``NbtLimits`` allows. Counts are checked against the bytes that are left
+before anything is allocated.
+"""
+
+import struct
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.errors import DamagedFileError, LimitError, UsageError
+
+(END, BYTE, SHORT, INT, LONG, FLOAT, DOUBLE, BYTES, STRING, LIST, COMPOUND, INTS, LONGS) = range(13)
+
+
+class Byte(int):
+    """A number of one byte."""
+
+
+class Short(int):
+    """A number of two bytes."""
+
+
+class Long(int):
+    """A number of eight bytes."""
+
+
+class Float(float):
+    """A number in single precision."""
+
+
+@dataclass(frozen=True)
+class NbtLimits:
+    """What a file may ask for. The defaults hold for every file that the program writes."""
+
+    depth: int = 256  # The game allows 512; real files stay below 20.
+    values: int = 1_000_000  # About 200 MB of Python objects.
+    bytes: int = 256 << 20  # Unpacked.
+
+
+DEFAULT_LIMITS = NbtLimits()
+# The fewest bytes that one value of each kind takes: it bounds a list's count.
+_LEAST = (0, 1, 2, 4, 8, 4, 8, 4, 2, 5, 1, 4, 4)
+_NUMBERS: dict[int, tuple[struct.Struct, Any]] = {
+    BYTE: (struct.Struct(">b"), Byte),
+    SHORT: (struct.Struct(">h"), Short),
+    INT: (struct.Struct(">i"), int),
+    LONG: (struct.Struct(">q"), Long),
+    FLOAT: (struct.Struct(">f"), Float),
+    DOUBLE: (struct.Struct(">d"), float),
+}
+_ARRAYS = {BYTES: np.dtype(">i1"), INTS: np.dtype(">i4"), LONGS: np.dtype(">i8")}
+_ARRAY_TAGS = {np.dtype(np.int8): BYTES, np.dtype(np.int32): INTS, np.dtype(np.int64): LONGS}
+_UINT16 = struct.Struct(">H")
+_INT32 = struct.Struct(">i")
+
+
+def read_nbt(
+    data: bytes, path: str | Path, limits: NbtLimits = DEFAULT_LIMITS
+) -> tuple[str, dict[str, Any]]:
+    """Read one unpacked NBT tree whose root is a Compound.
+
+    Args:
+        data: the bytes; use ``unpack`` first where they may be compressed.
+        path: the file that errors name.
+        limits: what the tree may ask for.
+
+    Returns:
+        The root's name and its values.
+
+    Raises:
+        DamagedFileError: the bytes are no NBT. LimitError: they ask for too much.
+    """
+    reader = _Reader(data, path, limits)
+    try:
+        if not data or data[0] != COMPOUND:
+            raise reader.damaged("does not begin with a compound tag")
+        reader.at = 1
+        name = reader.string()
+        root = reader.value(COMPOUND, 1)
+    except (struct.error, IndexError) as error:
+        raise reader.damaged("ends too early") from error
+    if reader.at != len(data):
+        raise reader.damaged(f"has {len(data) - reader.at} bytes after its end")
+    return name, root
+
+
+def write_nbt(root: Mapping[str, Any], name: str = "") -> bytes:
+    """Return the bytes of an NBT tree, keys in the order of the mapping, not compressed.
+
+    Raises:
+        UsageError: a value has no tag, a number does not fit its tag, or a list mixes kinds.
+    """
+    out = bytearray([COMPOUND])
+    _put_string(out, name)
+    _put(out, COMPOUND, root)
+    return bytes(out)
+
+
+def unpack(data: bytes, path: str | Path, limit: int = DEFAULT_LIMITS.bytes) -> bytes:
+    """Undo gzip or zlib where the bytes begin so; other bytes come back as they are.
+
+    Raises:
+        DamagedFileError: the stream is broken. LimitError: it holds more than ``limit`` bytes.
+    """
+    if data[:2] == b"\x1f\x8b":
+        kind, window = "gzip", 31
+    elif len(data) >= 2 and data[0] == 0x78 and (data[0] << 8 | data[1]) % 31 == 0:
+        kind, window = "zlib", 15
+    else:
+        return data
+    stream = zlib.decompressobj(window)
+    try:
+        result = stream.decompress(data, limit + 1)
+    except zlib.error as error:
+        raise DamagedFileError(path, f"is no whole {kind} stream ({error})") from error
+    if len(result) > limit:
+        raise LimitError(path, f"unpacks to more than {limit:,} bytes; at most that is read")
+    if not stream.eof or stream.unused_data:
+        where = "has bytes after its end" if stream.eof else "ends too early"
+        raise DamagedFileError(path, f"its {kind} stream {where}")
+    return result
+
+
+def pack_gzip(data: bytes, level: int = 6) -> bytes:
+    """Return ``data`` as gzip without a time or a name, so that the bytes depend on it alone."""
+    packer = zlib.compressobj(level, zlib.DEFLATED, -15)
+    body = packer.compress(data) + packer.flush()
+    head = b"\x1f\x8b\x08\0\0\0\0\0\0\xff"
+    return head + body + struct.pack("<II", zlib.crc32(data), len(data) & 0xFFFFFFFF)
+
+
+class _Reader:
+    """A place in the bytes, and how much the tree has asked for."""
+
+    def __init__(self, data: bytes, path: str | Path, limits: NbtLimits):
+        self.data, self.path, self.limits = data, path, limits
+        self.at = 0
+        self.values_left = limits.values
+
+    def damaged(self, reason: str) -> DamagedFileError:
+        return DamagedFileError(self.path, f"is no valid NBT: at byte {self.at} it {reason}")
+
+    def string(self) -> str:
+        start = self.at + 2
+        end = start + _UINT16.unpack_from(self.data, self.at)[0]
+        if end > len(self.data):
+            raise self.damaged("ends too early")
+        self.at = end
+        raw = self.data[start:end]
+        try:
+            return raw.decode("ascii") if raw.isascii() else _decode(raw)
+        except UnicodeError as error:
+            raise self.damaged("has a string that is no modified UTF-8") from error
+
+    def value(self, tag: int, depth: int) -> Any:
+        if tag in _NUMBERS:
+            layout, kind = _NUMBERS[tag]
+            number = layout.unpack_from(self.data, self.at)[0]
+            self.at += layout.size
+            return number if kind is int or kind is float else kind(number)
+        if tag == STRING:
+            return self.string()
+        if tag in _ARRAYS:
+            return self._array(_ARRAYS[tag])
+        if depth > self.limits.depth:
+            reason = f"nests deeper than {self.limits.depth} tags; at most that is read"
+            raise LimitError(self.path, reason)
+        if tag == COMPOUND:
+            return self._compound(depth)
+        if tag == LIST:
+            return self._list(depth)
+        raise self.damaged(f"has a tag of the unknown kind {tag}")
+
+    def _compound(self, depth: int) -> dict[str, Any]:
+        result: dict[str, Any] = {}
+        while tag := self.data[self.at]:
+            self._take(1)
+            self.at += 1
+            name = self.string()
+            if name in result:
+                raise self.damaged(f"names {name[:40]!r} twice")
+            result[name] = self.value(tag, depth + 1)
+        self.at += 1
+        return result
+
+    def _list(self, depth: int) -> list[Any]:
+        tag = self.data[self.at]
+        count = _INT32.unpack_from(self.data, self.at + 1)[0]
+        self.at += 5
+        if tag > LONGS or (tag == END and count > 0):
+            raise self.damaged(f"has a list of {count} tags of kind {tag}")
+        if count <= 0:
+            return []
+        self._hold(count, _LEAST[tag])
+        self._take(count)
+        return [self.value(tag, depth + 1) for _ in range(count)]
+
+    def _array(self, dtype: np.dtype) -> np.ndarray:
+        count = _INT32.unpack_from(self.data, self.at)[0]
+        self.at += 4
+        self._hold(count, dtype.itemsize)
+        raw = np.frombuffer(self.data, dtype, count, self.at)
+        self.at += raw.nbytes
+        return raw.astype(dtype.newbyteorder("="))
+
+    def _hold(self, count: int, size: int) -> None:
+        if count < 0 or count * size > len(self.data) - self.at:
+            raise self.damaged(f"says {count:,} values and holds fewer")
+
+    def _take(self, count: int) -> None:
+        self.values_left -= count
+        if self.values_left < 0:
+            reason = f"holds more than {self.limits.values:,} values; at most that is read"
+            raise LimitError(self.path, reason)
+
+
+def _decode(raw: bytes) -> str:
+    """Read Java's modified UTF-8: a zero as two bytes, other planes as two surrogates."""
+    text = raw.replace(b"\xc0\x80", b"\0").decode("utf-8", "surrogatepass")
+    return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le")
+
+
+def _encode(text: str) -> bytes:
+    if text.isascii() and "\0" not in text:
+        return text.encode("ascii")
+    units = np.frombuffer(text.encode("utf-16-le"), "<u2")
+    packed = "".join(map(chr, units.tolist())).encode("utf-8", "surrogatepass")
+    return packed.replace(b"\0", b"\xc0\x80")
+
+
+def _put_string(out: bytearray, text: str) -> None:
+    try:
+        raw = _encode(text)
+    except UnicodeError as error:
+        raise UsageError(f"text {text[:40]!r} cannot be written as NBT") from error
+    if len(raw) > 0xFFFF:
+        raise UsageError(f"a text of {len(raw):,} bytes is too long for NBT; at most 65,535")
+    out += _UINT16.pack(len(raw))
+    out += raw
+
+
+def _tag_of(value: Any) -> int:
+    if isinstance(value, np.ndarray):
+        if value.ndim == 1 and value.dtype in _ARRAY_TAGS:
+            return _ARRAY_TAGS[value.dtype]
+        raise UsageError(f"an array of {value.dtype} with shape {value.shape} has no NBT tag")
+    for kind, tag in _TAG_OF_TYPE:
+        if isinstance(value, kind):
+            return tag
+    raise UsageError(f"a value of type {type(value).__name__} has no NBT tag")
+
+
+_TAG_OF_TYPE: tuple[tuple[type, int], ...] = (
+    (str, STRING),
+    (bool, BYTE),
+    (Byte, BYTE),
+    (Short, SHORT),
+    (Long, LONG),
+    (int, INT),
+    (Float, FLOAT),
+    (float, DOUBLE),
+    (Mapping, COMPOUND),
+    (list, LIST),
+    (tuple, LIST),
+)
+
+
+def _put(out: bytearray, tag: int, value: Any) -> None:
+    if tag in _NUMBERS:
+        try:
+            out += _NUMBERS[tag][0].pack(value)
+        except (struct.error, OverflowError) as error:
+            raise UsageError(f"the number {value} does not fit its NBT tag") from error
+    elif tag == STRING:
+        _put_string(out, value)
+    elif tag == COMPOUND:
+        for name, held in value.items():
+            kind = _tag_of(held)
+            out.append(kind)
+            _put_string(out, name)
+            _put(out, kind, held)
+        out.append(END)
+    elif tag == LIST:
+        _put_list(out, value)
+    else:
+        out += _INT32.pack(len(value))
+        out += value.astype(_ARRAYS[tag]).tobytes()
+
+
+def _put_list(out: bytearray, values: list[Any] | tuple[Any, ...]) -> None:
+    kinds = {_tag_of(value) for value in values}
+    if len(kinds) > 1:
+        raise UsageError("a list in NBT must hold values of one kind")
+    kind = kinds.pop() if kinds else END
+    out.append(kind)
+    out += _INT32.pack(len(values))
+    for value in values:
+        _put(out, kind, value)

@@ -1,0 +1,237 @@
+"""Sponge schematics, versions 2 and 3: what WorldEdit and most tools read."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from world2minecraft.coordinates import block_to_room
+from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.files import read_bytes, write_bytes
+from world2minecraft.minecraft.nbt import (
+    NbtLimits,
+    Short,
+    pack_gzip,
+    read_nbt,
+    unpack,
+    write_nbt,
+)
+from world2minecraft.minecraft.packing import read_varints, write_varints
+from world2minecraft.minecraft.states import parse_state
+from world2minecraft.minecraft.versions import GameVersion, game_version, name_in_version
+from world2minecraft.minecraft.world import entity_nbt
+from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
+
+MAX_CELLS = 256 << 20
+LIMITS = NbtLimits(values=2_000_000, bytes=640 << 20)
+
+
+def write_schem(
+    volume: BlockVolume,
+    path: str | Path,
+    *,
+    schem_version: Literal[2, 3] = 2,
+    version: GameVersion | None = None,
+) -> None:
+    """Write a volume as a Sponge schematic. Its Offset is the volume's corner.
+
+    Entities lie where WorldEdit puts them: in version 2 in world coordinates, in 3 from Offset.
+
+    Args:
+        volume: the blocks; states are written as they stand in its palette.
+        path: the file, ``.schem``.
+        schem_version: 2, which every WorldEdit since 7.0 reads, or 3, since 7.3.
+        version: the game whose data version it carries; 1.20.1 where it is left out.
+
+    Raises:
+        UsageError: a side is longer than 65,535 blocks. OutputError: it cannot be written.
+    """
+    version = version or game_version()
+    if max(volume.states.shape) > 0xFFFF or not volume.states.size:
+        raise UsageError(f"a schematic holds 1 to 65,535 blocks a side, not {volume.states.shape}")
+    palette = {
+        _state_in_version(state, version): number for number, state in enumerate(volume.palette)
+    }
+    if len(palette) != len(volume.palette):
+        raise UsageError("the palette names one block state twice")
+    cells = np.ascontiguousarray(volume.states.transpose(1, 2, 0)).ravel()
+    packed = np.empty(3 * len(cells), np.uint8)
+    data = packed[: write_varints(cells, packed)].view(np.int8)
+    width, height, length = (_unsigned(side) for side in volume.states.shape)
+    head: dict[str, Any] = {
+        "Version": schem_version,
+        "DataVersion": version.data_version,
+        "Width": width,
+        "Height": height,
+        "Length": length,
+        "Offset": np.array(volume.corner, np.int32),
+    }
+    write = _tree_v3 if schem_version == 3 else _tree_v2
+    name, root = write(head, palette, data, volume)
+    write_bytes(path, pack_gzip(write_nbt(root, name), level=4))
+
+
+def read_schem(path: str | Path) -> BlockVolume:
+    """Read a Sponge schematic of version 1, 2 or 3.
+
+    Returns:
+        The volume, without labels and with one block a metre: a schematic does not say its scale.
+        Blocks of mods keep their names.
+
+    Raises:
+        InputError: there is no file. DamagedFileError: it is no schematic.
+        LimitError: it is larger than the program reads.
+    """
+    source = Path(path)
+    raw = unpack(read_bytes(source, LIMITS.bytes), source, LIMITS.bytes)
+    _, root = read_nbt(raw, source, LIMITS)
+    tree = root["Schematic"] if isinstance(root.get("Schematic"), dict) else root
+    try:
+        return _volume_of(tree, source)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
+        raise DamagedFileError(source, f"is no Sponge schematic{missing}") from error
+
+
+# Writing.
+
+
+def _tree_v2(
+    head: dict[str, Any], palette: dict[str, int], data: np.ndarray, volume: BlockVolume
+) -> tuple[str, dict[str, Any]]:
+    entities = [
+        {**entity_nbt(entity, number), "Id": entity.id}
+        for number, entity in enumerate(volume.entities)
+    ]
+    for nbt in entities:
+        del nbt["id"]
+    blocks = [
+        {**entity.nbt, "Id": entity.id, "Pos": _relative(entity, volume)}
+        for entity in volume.block_entities
+    ]
+    rest = {
+        "PaletteMax": len(palette),
+        "Palette": palette,
+        "BlockData": data,
+        "BlockEntities": blocks,
+        "Entities": entities,
+    }
+    return "Schematic", {**head, **rest}
+
+
+def _tree_v3(
+    head: dict[str, Any], palette: dict[str, int], data: np.ndarray, volume: BlockVolume
+) -> tuple[str, dict[str, Any]]:
+    blocks = [
+        {"Id": entity.id, "Pos": _relative(entity, volume), "Data": dict(entity.nbt)}
+        for entity in volume.block_entities
+    ]
+    entities = []
+    for number, entity in enumerate(volume.entities):
+        nbt = entity_nbt(entity, number)
+        place = (np.array(nbt.pop("Pos")) - volume.corner).tolist()
+        entities.append({"Id": nbt.pop("id"), "Pos": place, "Data": nbt})
+    held = {"Palette": palette, "Data": data, "BlockEntities": blocks}
+    return "", {"Schematic": {**head, "Blocks": held, "Entities": entities}}
+
+
+def _relative(entity: BlockEntity, volume: BlockVolume) -> np.ndarray:
+    return (np.array(entity.block_pos) - volume.corner).astype(np.int32)
+
+
+def _state_in_version(state: str, version: GameVersion) -> str:
+    name, bracket, rest = state.partition("[")
+    return name_in_version(name, version.data_version) + bracket + rest
+
+
+def _unsigned(side: int) -> Short:
+    """A side is an unsigned short in a tag that is signed."""
+    return Short(side - 0x10000 if side > 0x7FFF else side)
+
+
+# Reading.
+
+
+def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
+    version = tree["Version"]
+    if version not in (1, 2, 3):
+        raise InputError(source, f"is a Sponge schematic of version {version}; 1 to 3 are read")
+    size = np.array([int(tree[key]) & 0xFFFF for key in ("Width", "Height", "Length")])
+    cell_count = int(size.prod())
+    if not 0 < cell_count <= MAX_CELLS:
+        shown = " x ".join(map(str, size.tolist()))
+        raise LimitError(source, f"says {shown} blocks; 1 to {MAX_CELLS:,} are read")
+    blocks = tree["Blocks"] if version == 3 else tree
+    data = blocks["Data" if version == 3 else "BlockData"].view(np.uint8)
+    if len(data) < cell_count:
+        raise DamagedFileError(source, f"says {cell_count:,} blocks and holds fewer")
+    palette, number_of = _palette(blocks["Palette"], source)
+    states = _cells(data, number_of, cell_count, source)
+    corner = tuple(int(value) for value in tree.get("Offset", (0, 0, 0)))
+    shape = (int(size[1]), int(size[2]), int(size[0]))
+    states = np.ascontiguousarray(states.reshape(shape).transpose(2, 0, 1))
+    held = blocks.get("BlockEntities", tree.get("TileEntities", []))
+    x, y, z = corner
+    return BlockVolume(
+        states=states,
+        palette=palette,
+        semantic=np.zeros(states.shape, np.uint8),
+        instance=np.zeros(states.shape, np.uint16),
+        corner=(x, y, z),
+        block_to_room=block_to_room(np.zeros(2), 1.0),
+        block_entities=tuple(_block_entity(nbt, (x, y, z), version) for nbt in held),
+        entities=tuple(_entity(nbt, (x, y, z), version) for nbt in tree.get("Entities", [])),
+    )
+
+
+def _palette(stated: Mapping[str, int], source: Path) -> tuple[tuple[str, ...], dict[int, int]]:
+    """Return our palette, air first, and our number of each of the file's numbers."""
+    text_of: dict[int, str] = {}
+    for text, number in stated.items():
+        try:
+            state = str(parse_state(text))
+        except UsageError as error:
+            raise DamagedFileError(source, f"has a palette with {error}") from error
+        if not 0 <= number <= 0xFFFF or number in text_of:
+            raise DamagedFileError(source, f"its palette has a bad or repeated number {number}")
+        text_of[int(number)] = state
+    palette = [AIR, *sorted(set(text_of.values()) - {AIR})]
+    if len(palette) > 0xFFFF:
+        raise LimitError(source, f"has {len(palette):,} block states; at most 65,535 are read")
+    number_of = {state: number for number, state in enumerate(palette)}
+    return tuple(palette), {number: number_of[state] for number, state in text_of.items()}
+
+
+def _cells(data: np.ndarray, number_of: Mapping[int, int], count: int, source: Path) -> np.ndarray:
+    """Return uint16 [count] in our palette from the file's varints."""
+    values = np.empty(count, np.int64)
+    used = read_varints(data, values)
+    if used != len(data):
+        reason = {-1: "ends too early", -2: "has a number of more than four bytes"}
+        raise DamagedFileError(
+            source, f"its block data {reason.get(used, 'goes on after the last block')}"
+        )
+    lookup = np.full(max(number_of, default=0) + 2, -1, np.int32)
+    for number, ours in number_of.items():
+        lookup[number] = ours
+    found = lookup[np.minimum(values, len(lookup) - 1)]
+    if (found < 0).any():
+        bad = int(values[found < 0][0])
+        raise DamagedFileError(source, f"has a block of number {bad}, which its palette lacks")
+    return found.astype(np.uint16)
+
+
+def _block_entity(nbt: dict[str, Any], corner: tuple[int, int, int], version: int) -> BlockEntity:
+    x, y, z = (int(low + step) for low, step in zip(corner, nbt["Pos"], strict=True))
+    rest = nbt.get("Data", {}) if version == 3 else nbt
+    rest = {key: rest[key] for key in rest if key not in ("Id", "Pos")}
+    return BlockEntity((x, y, z), str(nbt["Id"]), rest)
+
+
+def _entity(nbt: dict[str, Any], corner: tuple[int, int, int], version: int) -> Entity:
+    start = corner if version == 3 else (0, 0, 0)
+    x, y, z = (float(low + step) for low, step in zip(start, nbt["Pos"], strict=True))
+    rest = nbt.get("Data", {}) if version == 3 else nbt
+    rest = {key: rest[key] for key in rest if key not in ("Id", "Pos")}
+    return Entity((x, y, z), str(nbt["Id"]), rest)

@@ -1,0 +1,104 @@
+"""The data pack that makes the player as large as the room: two functions, in overlays by game.
+
+The game has had attributes for a body's scale and step height since 1.20.5, and since 1.21.2
+under other names. A function that names an attribute which the game does not know fails to load,
+so each game is shown its own: an older one sees only a line of text.
+"""
+
+import io
+import json
+import zipfile
+from collections.abc import Mapping
+from typing import Any
+
+from world2minecraft.files import FIXED_DATE
+from world2minecraft.minecraft.versions import GameVersion, game_versions
+
+NAMESPACE = "w2m"
+FOLDERS = ("function", "functions")  # From 1.21 on, and before.
+PERSON_BLOCKS = 1.8  # A player's height; taken for a person of as many metres.
+STEP_BLOCKS = 0.6
+SCALE_LIMITS = (0.0625, 16.0)
+STEP_LIMITS = (0.0, 10.0)
+FIRST_SCALE_FORMAT = 41  # 1.20.5
+PLAIN_NAMES_FORMAT = 57  # 1.21.2
+
+
+def size_pack(blocks_per_metre: float, version: GameVersion | None = None) -> bytes:
+    """Return the zip of a data pack with ``w2m:human_size`` and ``w2m:game_size``.
+
+    Args:
+        blocks_per_metre: the scale of the room; a player becomes as many times larger.
+        version: the game whose ``pack_format`` the pack states; all known ones are supported.
+    """
+    files = {"pack.mcmeta": pack_mcmeta("The player's size for this room", version)}
+    files |= size_functions(blocks_per_metre)
+    return pack_zip(files)
+
+
+def size_functions(blocks_per_metre: float) -> dict[str, str]:
+    """Return the size functions by their paths in a pack, those of the overlays among them."""
+    scale = min(max(blocks_per_metre, SCALE_LIMITS[0]), SCALE_LIMITS[1])
+    step = min(max(STEP_BLOCKS * scale, STEP_LIMITS[0]), STEP_LIMITS[1])
+    text = "This game is older than 1.20.5 and cannot change a player's size."
+    line = f"tellraw @s {json.dumps({'text': text})}\n"
+    files = {}
+    for name, values in (("human_size", (scale, step)), ("game_size", (1.0, STEP_BLOCKS))):
+        files |= function_files(NAMESPACE, name, line)
+        for overlay, prefix in (("scale_old_names", "generic."), ("scale_plain_names", "")):
+            commands = "".join(
+                f"attribute @s minecraft:{prefix}{attribute} base set {value:g}\n"
+                for attribute, value in zip(("scale", "step_height"), values, strict=True)
+            )
+            for path, held in function_files(NAMESPACE, name, commands).items():
+                files[f"{overlay}/{path}"] = held
+    return files
+
+
+def function_files(namespace: str, name: str, commands: str) -> dict[str, str]:
+    """Return one function under both names that its folder has had."""
+    return {f"data/{namespace}/{folder}/{name}.mcfunction": commands for folder in FOLDERS}
+
+
+def pack_mcmeta(description: str, version: GameVersion | None = None) -> str:
+    """Return a ``pack.mcmeta`` that all known games accept, with the overlays of the size.
+
+    Games up to 1.20.1 read ``pack_format`` alone, up to 1.21.8 ``supported_formats``, and later
+    ones ``min_format`` and ``max_format``; the last want the older keys too where older games are
+    supported, and with the same bounds.
+    """
+    first, last = game_versions()[0], game_versions()[-1]
+    entries = [
+        _overlay("scale_old_names", FIRST_SCALE_FORMAT, PLAIN_NAMES_FORMAT - 1),
+        _overlay("scale_plain_names", PLAIN_NAMES_FORMAT, last.pack_format),
+    ]
+    pack = {
+        "description": description,
+        "pack_format": (version or first).pack_format,
+        **_bounds("supported_formats", first.pack_format, last.pack_format),
+    }
+    return json.dumps({"pack": pack, "overlays": {"entries": entries}}, indent=1) + "\n"
+
+
+def pack_zip(files: Mapping[str, str]) -> bytes:
+    """Return a zip whose bytes depend on the files alone."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for name in sorted(files):
+            entry = zipfile.ZipInfo(name, FIXED_DATE)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, files[name].encode(), compresslevel=6)
+    return buffer.getvalue()
+
+
+def _overlay(directory: str, low: int, high: int) -> dict[str, Any]:
+    return {"directory": directory, **_bounds("formats", low, high)}
+
+
+def _bounds(key: str, low: int, high: int) -> dict[str, Any]:
+    return {
+        key: {"min_inclusive": low, "max_inclusive": high},
+        "min_format": low,
+        "max_format": high,
+    }

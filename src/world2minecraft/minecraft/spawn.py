@@ -1,0 +1,36 @@
+"""Where a player may stand in a volume of blocks, for worlds that come without a spawn."""
+
+import numpy as np
+
+from world2minecraft.minecraft.shapes import boxes_of
+from world2minecraft.types import BlockVolume
+
+PLAYER_LAYERS = 2  # A player is 1.8 blocks high.
+
+
+def top_of_middle(volume: BlockVolume) -> tuple[float, float, float]:
+    """Return where feet can stand nearest to the middle of the volume, in world blocks.
+
+    A place is a block whose boxes leave the player's two layers above it free. Low places are
+    taken before high ones in the same column, so that a room's floor wins over its roof. Where
+    nothing can be stood on, the place is the middle above the volume.
+    """
+    size_x, size_y, size_z = volume.states.shape
+    tops = np.array([_top(state) for state in volume.palette])
+    heights = np.pad(tops[volume.states], ((0, 0), (0, PLAYER_LAYERS), (0, 0)))
+    is_free = heights == 0
+    stands = (heights[:, :size_y] > 0) & is_free[:, 1 : size_y + 1] & is_free[:, 2:]
+    middle = np.array([size_x / 2 - 0.5, size_z / 2 - 0.5])
+    x, y, z = volume.corner
+    if not stands.any():
+        return (x + size_x / 2, float(y + size_y), z + size_z / 2)
+    cells = np.argwhere(stands)
+    distance = np.square(cells[:, [0, 2]] - middle).sum(axis=1)
+    best = cells[np.lexsort((cells[:, 1], distance))[0]]
+    floor = float(y + best[1] + heights[tuple(best)])
+    return (float(x + best[0] + 0.5), floor, float(z + best[2] + 0.5))
+
+
+def _top(state: str) -> float:
+    boxes = boxes_of(state)
+    return float(boxes[:, 4].max()) if len(boxes) else 0.0

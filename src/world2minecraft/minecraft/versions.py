@@ -1,0 +1,72 @@
+"""The versions of the game that the program writes for, from one data file."""
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+from world2minecraft.errors import UnknownNameError
+
+DEFAULT_VERSION = "1.20.1"
+
+# The last game whose level.dat this program knows in every part: 1.21.9 moved the spawn point,
+# 1.21.11 the game rules, 26.1 the folders. Newer games upgrade the older layout on opening.
+LAST_LEVEL_VERSION = "1.21.8"
+
+
+@dataclass(frozen=True)
+class GameVersion:
+    """One release of Minecraft Java.
+
+    ``data_version`` is what its files carry; ``pack_format`` is that of its data packs, with
+    ``pack_minor`` from 1.21.9 on. ``min_y`` to ``max_y`` are the block layers of the overworld,
+    both included.
+    """
+
+    name: str
+    data_version: int
+    pack_format: int
+    pack_minor: int = 0
+    min_y: int = -64
+    max_y: int = 319
+
+    @property
+    def level_data_version(self) -> int:
+        """The data version of the worlds that are written for this game."""
+        return min(self.data_version, game_version(LAST_LEVEL_VERSION).data_version)
+
+
+@cache
+def game_versions() -> tuple[GameVersion, ...]:
+    """All known versions, oldest first."""
+    text = files("world2minecraft.minecraft").joinpath("data/versions.json").read_text("utf-8")
+    return tuple(GameVersion(name, *numbers) for name, *numbers in json.loads(text)["versions"])
+
+
+def game_version(name: str = DEFAULT_VERSION) -> GameVersion:
+    """Return a version of the game by its name, such as ``1.20.1``.
+
+    Raises:
+        UnknownNameError: the table has no such version; the message suggests the nearest.
+    """
+    for version in game_versions():
+        if version.name == name:
+            return version
+    raise UnknownNameError("Minecraft version", name, [v.name for v in game_versions()])
+
+
+def name_in_version(state_name: str, data_version: int) -> str:
+    """Return what a version of the game calls a block of the table's version.
+
+    Example:
+        >>> name_in_version("minecraft:grass", 3698)
+        'minecraft:short_grass'
+    """
+    since, name = _renamed().get(state_name, (data_version + 1, state_name))
+    return name if data_version >= since else state_name
+
+
+@cache
+def _renamed() -> dict[str, tuple[int, str]]:
+    text = files("world2minecraft.minecraft").joinpath("data/versions.json").read_text("utf-8")
+    return {old: (since, new) for since, old, new in json.loads(text)["renamed_blocks"]}
