@@ -1,1 +1,9 @@
-"""See DESIGN."""
+"""Stage 6, objects -> placements: the best template, turn, size and shift by IoU.
+
+It is the paper's argmax of |O_k intersected with Rot(T_j, delta)| over their union.
+"""
+
+from world2minecraft.furnish.parameters import FurnishParameters
+from world2minecraft.furnish.placing import furnish
+
+__all__ = ["FurnishParameters", "furnish"]

@@ -1,0 +1,61 @@
+"""What a template is compared with: the cells of one object and what was seen around them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.types import OccupancyGrid
+
+IGNORED, AGAINST, OWN = 0, 1, 2
+MARGIN = 3  # Shift, slack and one more cell around the largest box that is tried.
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """A window of the grid around one object.
+
+    ``code`` says for each cell what a template that covers it gains: OWN is a cell of the object,
+    AGAINST one that was seen to be free or structure, IGNORED one that was never seen or belongs
+    to another object, and so counts neither way. ``low`` and ``high`` bound the object's own
+    cells, ``floor`` is the first layer above the floor, all in cells of the window.
+    """
+
+    code: np.ndarray  # uint8 [X, Y, Z]
+    corner: np.ndarray  # int64 [3], the window's first cell in the grid
+    low: tuple[int, int, int]
+    high: tuple[int, int, int]
+    floor: int
+    own: int
+
+
+def evidence_of(
+    grid: OccupancyGrid, cells: np.ndarray, reach: tuple[int, int, int], paper_compat: bool
+) -> Evidence:
+    """Return the window around ``cells``, int32 [N, 3], wide enough for boxes of ``reach`` cells.
+
+    With ``paper_compat`` every cell but the object's own is AGAINST, seen or not.
+    """
+    low, high = cells.min(axis=0).astype(np.int64), cells.max(axis=0).astype(np.int64) + 1
+    floor = int(np.floor(-grid.origin_m[2] / grid.voxel_m + 0.5))
+    pad = MARGIN + np.maximum(np.array(reach) - (high - low), 0)
+    begin, end = low - pad, high + pad
+    begin[2] = min(begin[2], floor - MARGIN) if floor <= low[2] else begin[2]
+    code = np.full(tuple(end - begin), AGAINST if paper_compat else IGNORED, np.uint8)
+    inside = np.maximum(begin, 0), np.minimum(end, grid.shape)
+    there = tuple(slice(int(a), int(b)) for a, b in zip(*inside, strict=True))
+    here = tuple(slice(int(a - o), int(b - o)) for a, b, o in zip(*inside, begin, strict=True))
+    if not paper_compat:
+        labels = grid.labels[there]
+        code[here] = np.where(
+            (labels <= SemanticClass.WINDOW) & (labels != UNKNOWN), AGAINST, IGNORED
+        )
+    code[tuple((cells - begin).T)] = OWN
+    return Evidence(
+        code, begin, _triple(low - begin), _triple(high - begin), floor - int(begin[2]), len(cells)
+    )
+
+
+def _triple(values: np.ndarray) -> tuple[int, int, int]:
+    x, y, z = (int(value) for value in values)
+    return x, y, z

@@ -1,0 +1,52 @@
+"""How templates are matched: every number that decides it, and where it comes from."""
+
+from dataclasses import dataclass
+
+from world2minecraft.errors import UsageError
+
+
+@dataclass(frozen=True)
+class FurnishParameters:
+    """How templates are matched.
+
+    min_iou: below it an object is built from its own cells: a poor box is worse than the
+        object's own crumbs.
+    shift_cells: how far a template moves from where the object's box says, along each axis; a
+        box is a cell off where noise adds or loses a layer.
+    size_slack: how many cells a template's side may differ from the object's box; the same.
+    finalists: how many of the first, coarse trials are refined.
+    alternatives: how many other templates and turns a placement lists.
+    cut_below: an object matched worse than this is cut into runs, in case they match better. An
+        L of two equal wings fills 5/9 to 3/4 of its box.
+    cut_gain: by how much the runs together must match better than the whole.
+    max_runs: into how many runs an object is cut at most; a kitchen has four to six.
+    min_run_cells: a run of fewer cells of the floor plan is left to its neighbours.
+    tie_weight: how much IoU an unusual size may cost or the front seen by find/ may bring. It
+        decides between equals and never against a clear match.
+    paper_compat: the paper's equation to the letter: every cell of the template and of the
+        object counts, seen or not, nothing breaks ties but the library's order, and nothing is
+        cut into runs.
+    """
+
+    min_iou: float = 0.45
+    shift_cells: int = 1
+    size_slack: int = 1
+    finalists: int = 6
+    alternatives: int = 5
+    cut_below: float = 0.75
+    cut_gain: float = 0.08
+    max_runs: int = 8
+    min_run_cells: int = 6
+    tie_weight: float = 0.02
+    paper_compat: bool = False
+
+    def __post_init__(self):
+        for name in ("min_iou", "cut_below", "cut_gain", "tie_weight"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise UsageError(f"{name} must lie between 0 and 1, not {getattr(self, name)}")
+        for name in ("shift_cells", "size_slack", "alternatives"):
+            if not 0 <= getattr(self, name) <= 8:
+                raise UsageError(f"{name} must lie between 0 and 8, not {getattr(self, name)}")
+        for name in ("finalists", "max_runs", "min_run_cells"):
+            if getattr(self, name) < 1:
+                raise UsageError(f"{name} must be above 0, not {getattr(self, name)}")

@@ -1,0 +1,104 @@
+"""An object that is no box, such as an L of counters, cut into axis-aligned runs."""
+
+import numpy as np
+
+from world2minecraft.furnish.evidence import IGNORED, OWN, Evidence
+from world2minecraft.jit import njit
+
+THIN_LAYER = 0.35  # A layer with less of the plan than this parts what is under it from above.
+SAME_TOP = 1  # Columns whose tops differ by at most this many cells belong to one run.
+COMMON_TOPS = 3  # How many of the commonest tops are tried for the next run.
+
+
+def cut_into_runs(evidence: Evidence, max_runs: int, min_run_cells: int) -> list[np.ndarray]:
+    """Return the cells, int64 [N, 3] in the window, of each run; every own cell is in one at most.
+
+    The object is first parted by height where its plan nearly vanishes (cupboards over a
+    counter). Then the largest rectangle of columns with about the same top is taken from the
+    plan, again and again. Columns that were never seen may lie inside a rectangle: of a tall
+    cupboard only the front is seen. What remains is one last run.
+    """
+    runs: list[np.ndarray] = []
+    rest: list[np.ndarray] = []
+    for bottom, top in _storeys(evidence.code == OWN):
+        storey = np.zeros(evidence.code.shape, np.bool_)
+        storey[:, :, bottom:top] = evidence.code[:, :, bottom:top] == OWN
+        unseen = (evidence.code[:, :, bottom:top] == IGNORED).all(axis=2)
+        found, left = _rectangles(storey, unseen, max_runs - len(runs), min_run_cells)
+        runs += found
+        rest.append(left)
+    left = np.concatenate(rest)
+    return [*runs, left] if len(left) else runs
+
+
+def _storeys(own: np.ndarray) -> list[tuple[int, int]]:
+    area = own.sum(axis=(0, 1))
+    layers = np.flatnonzero(area)
+    bottom, end = int(layers[0]), int(layers[-1]) + 1
+    cuts = [bottom]
+    for k in range(bottom + 1, end - 1):
+        limit = THIN_LAYER * min(area[bottom:k].max(), area[k + 1 : end].max())
+        ends_thin = area[k] < limit <= area[k + 1]
+        if ends_thin and k - cuts[-1] >= 2:
+            cuts.append(k + 1)
+    return list(zip(cuts, [*cuts[1:], end], strict=True))
+
+
+def _rectangles(
+    storey: np.ndarray, unseen: np.ndarray, max_runs: int, min_run_cells: int
+) -> tuple[list[np.ndarray], np.ndarray]:
+    heights = np.arange(1, storey.shape[2] + 1)
+    top = (storey * heights).max(axis=2)
+    left = top > 0
+    runs = []
+    while len(runs) < max_runs and left.any():
+        area, x0, y0, x1, y1 = max(
+            _largest(left & (np.abs(top - height) <= SAME_TOP), unseen & (top == 0))
+            for height in _common(top[left])
+        )
+        if area < min_run_cells:
+            break
+        window = np.zeros_like(left)
+        window[x0:x1, y0:y1] = left[x0:x1, y0:y1]
+        runs.append(np.argwhere(storey & window[:, :, None]))
+        left &= ~window
+    return runs, np.argwhere(storey & left[:, :, None])
+
+
+def _common(tops: np.ndarray) -> list[int]:
+    values, counts = np.unique(tops, return_counts=True)
+    return [int(values[index]) for index in np.argsort(-counts, kind="stable")[:COMMON_TOPS]]
+
+
+def _largest(mask: np.ndarray, unseen: np.ndarray) -> tuple[int, int, int, int, int]:
+    """Return the seen area and the bounds of the best rectangle of a plan, bool [X, Y]."""
+    area, x0, y0, x1, y1 = largest_rectangle(mask.astype(np.uint8), unseen.astype(np.uint8))
+    return int(area), int(x0), int(y0), int(x1), int(y1)
+
+
+@njit
+def largest_rectangle(mask, unseen):  # pragma: no cover - compiled
+    """Return (seen, x0, y0, x1, y1) of the rectangle of mask or unseen that has most mask cells.
+
+    For each first row the rows below are joined one by one: a column stays usable while all its
+    cells are mask or unseen. Of equals the first.
+    """
+    nx, ny = mask.shape
+    best = (0, 0, 0, 0, 0)
+    for x0 in range(nx):
+        usable = np.ones(ny, np.bool_)
+        seen = np.zeros(ny, np.int64)
+        for x1 in range(x0, nx):
+            begin, total = 0, 0
+            for y in range(ny):
+                usable[y] = usable[y] and (mask[x1, y] == 1 or unseen[x1, y] == 1)
+                seen[y] += mask[x1, y]
+                if not usable[y]:
+                    begin, total = y + 1, 0
+                    continue
+                if total == 0:
+                    begin = y if seen[y] > 0 else y + 1
+                total += seen[y]
+                if total > best[0]:
+                    best = (total, x0, begin, x1 + 1, y + 1)
+    return best

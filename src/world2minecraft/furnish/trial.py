@@ -1,0 +1,94 @@
+"""One way to put one template, and its score: the paper's IoU and what breaks ties."""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.coordinates import turn_grid
+from world2minecraft.furnish.evidence import Evidence
+from world2minecraft.furnish.overlap import overlaps
+from world2minecraft.furniture import Template, raster
+
+Cells = tuple[int, int, int]
+Values = tuple[tuple[str, float], ...]
+
+
+class Trial(NamedTuple):
+    """A template with its size in cells along its own axes, its parameters, turn and place.
+
+    ``corner`` is the first cell of the turned box, in the window of the evidence.
+    """
+
+    template: Template
+    quarter_turns: int
+    counts: Cells
+    values: Values
+    corner: Cells
+
+    @property
+    def turned_counts(self) -> Cells:
+        """The size of the box in the room's axes."""
+        depth, width, height = self.counts
+        return (width, depth, height) if self.quarter_turns % 2 else (depth, width, height)
+
+
+class Scored(NamedTuple):
+    """A trial with its IoU, and the score that the search compares."""
+
+    score: float
+    iou: float
+    trial: Trial
+
+
+class Bias(NamedTuple):
+    """What breaks ties: the front seen by find/, the cell size and how much of IoU it may weigh."""
+
+    quarter_turns: int
+    voxel_m: float
+    tie_weight: float
+
+
+def score_shifts(evidence: Evidence, trial: Trial, shifts: np.ndarray, bias: Bias) -> Scored:
+    """Return the best of a trial at several shifts, int64 [S, 3]; of equals the first.
+
+    IoU = covered own cells / (own cells + cells covered against): the paper's equation, in which
+    cells that say nothing are left out of the template.
+    """
+    solid = _turned(trial.template, trial.counts, trial.values, bias.voxel_m, trial.quarter_turns)
+    counts = overlaps(solid, evidence.code, shifts + np.array(trial.corner))
+    ious = counts[:, 0] / (evidence.own + counts[:, 1])
+    best = int(np.argmax(np.round(ious, 12)))
+    x, y, z = (int(a) + int(b) for a, b in zip(trial.corner, shifts[best], strict=True))
+    iou = float(ious[best])
+    moved = trial._replace(corner=(x, y, z))
+    return Scored(round(iou + tie_break(trial, bias), 12), iou, moved)
+
+
+def tie_break(trial: Trial, bias: Bias) -> float:
+    """Return what the usual size, the usual parameters and the seen front add, 0 to weight."""
+    if not bias.tie_weight:
+        return 0.0
+    spans = trial.template.size_m
+    far = [
+        _strangeness(count * bias.voxel_m, span.minimum, span.typical, span.maximum)
+        for count, span in zip(trial.counts, spans, strict=True)
+    ]
+    own = trial.template.parameters
+    far += [_strangeness(value, *own[name]) for name, value in trial.values]
+    turns = trial.template.turns
+    looks = turns == 1 or (trial.quarter_turns - bias.quarter_turns) % turns == 0
+    return bias.tie_weight * (0.5 * looks + 0.5 * (1 - sum(far) / len(far)))
+
+
+def _strangeness(value: float, minimum: float, typical: float, maximum: float) -> float:
+    room = (typical - minimum) if value < typical else (maximum - typical)
+    return min(abs(value - typical) / room, 1.0) if room > 0 else float(value != typical)
+
+
+@lru_cache(maxsize=8192)
+def _turned(
+    template: Template, counts: Cells, values: Values, voxel_m: float, quarter_turns: int
+) -> np.ndarray:
+    solid = raster(template, counts, values, voxel_m)
+    return np.ascontiguousarray(turn_grid(solid, quarter_turns))
