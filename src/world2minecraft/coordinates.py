@@ -156,7 +156,7 @@ def camera_to_block_of_game_pose(
     """Return the 4x4 pose, in block axes, of the game's camera with its eye at ``eye_block``.
 
     The rotation's columns are right, down and forward. The paper's matrix is the transpose
-    (world to camera); see ``reference`` in docs/conventions.md.
+    (world to camera): see ``paper_rotation``.
     """
     yaw, pitch = np.radians(game_yaw_deg), np.radians(game_pitch_deg)
     forward = np.array([-np.sin(yaw) * np.cos(pitch), -np.sin(pitch), np.cos(yaw) * np.cos(pitch)])
@@ -173,3 +173,27 @@ def focal_px_of_fov(side_px: int, fov_deg: float) -> float:
     The game's FOV is vertical: pass the height. The paper passes the width with the same angle.
     """
     return side_px / (2 * np.tan(np.radians(fov_deg) / 2))
+
+
+# The paper's own reading, kept for ``paper_compat``; docs/conventions.md tells its two slips.
+
+
+def paper_rotation(game_yaw_deg: float, game_pitch_deg: float) -> np.ndarray:
+    """Return the paper's rotation R_pitch R_yaw, float64 [3, 3], as its equations print it.
+
+    The paper uses it as camera to world. It is world to camera: the transpose of the rotation
+    of ``camera_to_block_of_game_pose``.
+    """
+    yaw, pitch = np.radians([game_yaw_deg + 180.0, game_pitch_deg + 180.0])
+    turn_yaw = [[np.cos(yaw), 0, np.sin(yaw)], [0, 1, 0], [-np.sin(yaw), 0, np.cos(yaw)]]
+    turn_pitch = [[1, 0, 0], [0, np.cos(pitch), -np.sin(pitch)], [0, np.sin(pitch), np.cos(pitch)]]
+    return np.array(turn_pitch) @ np.array(turn_yaw)
+
+
+def paper_focal_px(width_px: int, fov_deg: float) -> float:
+    """Return the paper's focal length in pixels: it takes the game's FOV as the horizontal one.
+
+    The game's FOV is vertical, so that ``focal_px_of_fov(height_px, fov_deg)`` is right; the
+    paper's is too long by the image's width over its height.
+    """
+    return focal_px_of_fov(width_px, fov_deg)
