@@ -1,0 +1,116 @@
+"""Where the room is in the scan: gravity, floor, walls, and whether its size is plausible.
+
+In: views in the scan's frame, any tilt and turn. Out: ``scan_to_room``, which puts the floor at
+z = 0, the walls along x and y and the inner corner of the room at (0, 0, 0). Of the four quarter
+turns that this leaves open, that one is taken in which the first camera looks towards +y (north
+in the game), so that the result does not depend on the frame that the capture chose.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.scan.gravity import Ground, find_ground, frame_of_up
+from world2minecraft.scan.surface import Surface, collect_surface
+from world2minecraft.scan.walls import Box, find_box, find_yaw
+from world2minecraft.types import View
+
+SIDE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
+HEIGHT_M = (1.5, 12.0)
+LEAST_POINTS = 500
+ELBOW_M = (0.3, 0.3, 0.1)  # What a person needs behind and over a hand-held camera.
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """The room's place: ``scan_to_room`` 4x4, ``room_size_m`` float64 [3], notes for the report."""
+
+    scan_to_room: np.ndarray
+    room_size_m: np.ndarray
+    notes: tuple[str, ...]
+
+
+class ImplausibleRoomError(ValueError):
+    """What was seen cannot be a room; the text says why and what to do."""
+
+
+def align(views: Iterable[View]) -> Alignment:
+    """Find the room in some views of a scan, read once and one at a time.
+
+    Raises:
+        ImplausibleRoomError: too little surface was seen, or the size is no room's.
+    """
+    surface = collect_surface(views)
+    if len(surface.points_m) < LEAST_POINTS:
+        raise ImplausibleRoomError(
+            f"only {len(surface.points_m)} places of the depth images are smooth surface; "
+            f"at least {LEAST_POINTS} are needed: is this depth of a room?"
+        )
+    return align_surface(surface)
+
+
+def align_surface(surface: Surface) -> Alignment:
+    """Find the room in oriented points of the scan's frame."""
+    ground = find_ground(surface)
+    scan_to_level = np.eye(4)
+    scan_to_level[:3, :3] = frame_of_up(ground.up)
+    scan_to_level[2, 3] = -ground.height_m
+    level = surface.turned(scan_to_level)
+    scan_to_level = _turn_to_walls(level) @ scan_to_level
+    level = surface.turned(scan_to_level)
+    box = find_box(level)
+    low_m, high_m = _with_cameras(box, level)
+    level_to_room = np.eye(4)
+    level_to_room[:3, 3] = -low_m
+    size = high_m - low_m
+    _check_size(size)
+    scan_to_room = level_to_room @ scan_to_level
+    return Alignment(scan_to_room, size, _notes(ground, box, size))
+
+
+def _turn_to_walls(level: Surface) -> np.ndarray:
+    """Return the turn about z that puts walls along the axes and the first camera's look to +y."""
+    yaw_deg = find_yaw(level)
+    look = rotation_about_z(-yaw_deg)[:2, :2] @ level.cameras[0, :2, 2]
+    heading_deg = np.degrees(np.arctan2(look[1], look[0]))
+    quarters = round((90.0 - heading_deg) / 90.0)
+    return rotation_about_z(90.0 * quarters) @ rotation_about_z(-yaw_deg)
+
+
+def _with_cameras(box: Box, level: Surface) -> tuple[np.ndarray, np.ndarray]:
+    """Return the box's corners, moved out behind the cameras at the sides where none was seen.
+
+    Whoever held the camera stood in the room, even where no frame looks at the wall behind.
+    """
+    low, high = box.low_m.copy(), box.high_m.copy()
+    places = level.cameras[:, :3, 3]
+    for axis, name in enumerate("xyz"):
+        if f"{name}+" not in box.seen:
+            high[axis] = max(high[axis], places[:, axis].max() + ELBOW_M[axis])
+        if axis < 2 and f"{name}-" not in box.seen:
+            low[axis] = min(low[axis], places[:, axis].min() - ELBOW_M[axis])
+    return low, high
+
+
+def _check_size(size: np.ndarray) -> None:
+    sides = (("long", size[0], SIDE_M), ("deep", size[1], SIDE_M), ("high", size[2], HEIGHT_M))
+    for word, length, (least, most) in sides:
+        if not least <= length <= most:
+            raise ImplausibleRoomError(
+                f"the room would be {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m; {least:g} to "
+                f"{most:g} m {word} is plausible: check the depth unit and that poses are in metres"
+            )
+
+
+def _notes(ground: Ground, box: Box, size: np.ndarray) -> tuple[str, ...]:
+    notes = []
+    if ground.floor_area_m2 == 0:
+        notes.append("no floor was seen; the lowest points stand for it")
+    sides = [side for side in ("x-", "x+", "y-", "y+") if side not in box.seen]
+    if sides:
+        notes.append(f"no wall was seen at {', '.join(sides)}; the room ends where its points end")
+    if "z+" not in box.seen:
+        notes.append(f"no ceiling was seen; the room is taken to be {size[2]:.2f} m high")
+    return tuple(notes)

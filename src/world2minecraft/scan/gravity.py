@@ -1,0 +1,118 @@
+"""Which way is up, and where the floor is.
+
+Up is the direction that much surface faces, that the cameras' image rows are level to, and that
+their image columns point away from; the floor is then fitted as a plane.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.scan.surface import Surface, profile
+
+DIRECTIONS = 3000  # Fibonacci points on the sphere: about 3.7 degrees apart.
+VOTERS = 6000
+WITHIN_DEG = 8.0
+ROLL_SIGMA = 0.20  # Sine of how far a hand-held camera rolls.
+FACING_DEG = 20.0
+FLOOR_LEAST_M2 = 0.3
+FLOOR_SHARE = 0.15  # Of the largest level surface: a table top is smaller than that many floors.
+BELOW_SHARE = 0.02  # Points that reflections and noise put under a true floor.
+
+
+@dataclass(frozen=True)
+class Ground:
+    """``up`` is a unit vector of the scan's frame; the floor is where ``up . p = height_m``."""
+
+    up: np.ndarray
+    height_m: float
+    floor_area_m2: float  # 0 where no floor was seen and the lowest points stand for it.
+
+
+def find_ground(surface: Surface) -> Ground:
+    """Return up and the floor's plane; see the module's text."""
+    up = _refined(surface.normals, _voted_up(surface))
+    height, area = _floor_height(surface, up)
+    if area == 0:
+        return Ground(up, height, 0.0)
+    for _ in range(2):
+        up, height = _fit_floor(surface, up, height)
+    return Ground(up, height, area)
+
+
+def _voted_up(surface: Surface) -> np.ndarray:
+    """Return the best of many directions by support, level image rows and upright images."""
+    directions = _sphere(DIRECTIONS)
+    every = max(1, len(surface.normals) // VOTERS)
+    voters = surface.normals[::every]
+    near = np.abs(directions @ voters.T) > np.cos(np.radians(WITHIN_DEG))
+    support = near.mean(axis=1) + 1e-4
+    right, down = surface.cameras[:, :3, 0], surface.cameras[:, :3, 1]
+    roll = np.mean((right @ directions.T) ** 2, axis=0)
+    upright = np.clip(-(down @ directions.T).mean(axis=0), 0.02, 1)
+    score = np.log(support) - roll / (2 * ROLL_SIGMA**2) + 2 * np.log(upright)
+    return directions[int(np.argmax(score))]
+
+
+def _sphere(count: int) -> np.ndarray:
+    """Return float64 [count, 3] unit vectors, evenly spread (Fibonacci's spiral)."""
+    index = np.arange(count) + 0.5
+    z = 1 - 2 * index / count
+    angle = index * np.pi * (1 + 5**0.5)
+    flat = np.sqrt(1 - z * z)
+    return np.stack([flat * np.cos(angle), flat * np.sin(angle), z], axis=1)
+
+
+def _refined(normals: np.ndarray, up: np.ndarray) -> np.ndarray:
+    """Move a direction to the middle of the normals around it, in narrowing cones."""
+    for within_deg in (10.0, 7.0, 5.0, 4.0, 4.0):
+        near = normals[np.abs(normals @ up) > np.cos(np.radians(within_deg))]
+        if len(near) < 10:
+            return up
+        _, vectors = np.linalg.eigh(near.T @ near)
+        up = vectors[:, -1] * np.sign(vectors[:, -1] @ up)
+    return up
+
+
+def _floor_height(surface: Surface, up: np.ndarray) -> tuple[float, float]:
+    """Return the height of the lowest large surface that faces up, and its area in m2."""
+    frame = frame_of_up(up)
+    points = surface.points_m @ frame.T
+    facing = points[surface.normals @ up > np.cos(np.radians(FACING_DEG))]
+    found = profile(facing, axis=2)
+    heights = np.sort(points[:, 2])
+    for height in found.peaks(max(FLOOR_LEAST_M2, FLOOR_SHARE * found.area_m2.max())):
+        if np.searchsorted(heights, height - 0.10) <= BELOW_SHARE * len(heights):
+            return float(height), found.area_at(float(height))
+    return float(np.quantile(heights, 0.005)), 0.0
+
+
+def frame_of_up(up: np.ndarray) -> np.ndarray:
+    """Return a rotation [3, 3] that carries ``up`` to +z; the turn about it is arbitrary."""
+    other = np.eye(3)[int(np.argmin(np.abs(up)))]
+    x = np.cross(other, up)
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(up, x), up])
+
+
+def _fit_floor(surface: Surface, up: np.ndarray, height_m: float) -> tuple[np.ndarray, float]:
+    """Fit the floor's plane by reweighted least squares (Tukey), starting from ``up``."""
+    frame = frame_of_up(up)
+    level = surface.normals @ up > np.cos(np.radians(FACING_DEG))
+    points = surface.points_m[level] @ frame.T
+    plane = np.array([0.0, 0.0, height_m])  # z = a x + b y + c
+    middle = np.zeros(2)
+    for limit_m in (0.08, 0.06, 0.04, 0.03, 0.03):
+        off = points[:, 2] - (points[:, :2] - middle) @ plane[:2] - plane[2]
+        weight = np.where(np.abs(off) < limit_m, (1 - (off / limit_m) ** 2) ** 2, 0.0)
+        if weight.sum() < 20:
+            break
+        shift = np.average(points[:, :2], axis=0, weights=weight)
+        columns = np.column_stack([points[:, :2] - shift, np.ones(len(points))])
+        moment = columns.T @ (columns * weight[:, None])
+        # A floor strip narrower than about 20 cm cannot say how it leans across.
+        moment[[0, 1], [0, 1]] += 0.01 * weight.sum() * 0.2**2
+        plane, middle = np.linalg.solve(moment, columns.T @ (weight * points[:, 2])), shift
+    normal = np.array([-plane[0], -plane[1], 1.0])
+    size = np.linalg.norm(normal)
+    return normal / size @ frame, float((plane[2] - plane[:2] @ middle) / size)

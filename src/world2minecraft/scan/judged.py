@@ -1,0 +1,79 @@
+"""A capture judged: its usable frames, the depth's unit and what was found on the way.
+
+This is the part that ``open_scan`` and ``describe_capture`` share; it decodes only a few images.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from world2minecraft.scan.checking import Skipped, check_frames
+from world2minecraft.scan.depth import DepthEncoding, find_encoding, read_depth
+from world2minecraft.scan.frames import Capture, FrameFiles
+from world2minecraft.scan.labels import attach_labels, check_labels
+from world2minecraft.scan.options import ScanOptions
+from world2minecraft.scan.poses import check_spread
+from world2minecraft.scan.sources import find_capture
+
+SAMPLED_FRAMES = 12
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedCapture:
+    """What can be used of a capture; ``typical_depth_m`` is the median over some frames."""
+
+    capture: Capture
+    frames: tuple[FrameFiles, ...]
+    skipped: Skipped
+    encoding: DepthEncoding
+    typical_depth_m: float
+    notes: tuple[str, ...]
+
+
+def judge_capture(
+    path: str | Path,
+    options: ScanOptions,
+    labels: Path | None = None,
+    step: Callable[[int, int], None] = lambda done, total: None,
+) -> JudgedCapture:
+    """Find out a capture's layout, check its frames and tell its depth unit.
+
+    Raises:
+        CaptureError: it cannot be used. LimitError: an image is too large.
+    """
+    capture = find_capture(path)
+    total = len(capture.frames[:: options.every])
+    capture = replace(capture, frames=capture.frames[:: options.every])
+    frames, skipped = check_frames(capture, lambda done: step(done, total))
+    if labels is not None:
+        frames = attach_labels(frames, labels)
+    check_labels(frames)
+    looked_at = spread_over([frame for frame in frames if frame.depth_path], SAMPLED_FRAMES)
+    paths = [frame.depth_path for frame in looked_at if frame.depth_path]
+    encoding = find_encoding(paths, options.depth_unit or capture.depth_unit)
+    typical_m = _typical_depth(paths, encoding)
+    frames, strayed = check_spread(frames, capture.folder, typical_m)
+    notes = list(capture.notes)
+    if encoding.guessed:
+        notes.append(f"depth is read as {encoding.said}, told from its values")
+    return JudgedCapture(capture, frames, (*skipped, *strayed), encoding, typical_m, tuple(notes))
+
+
+def spread_over(items: Sequence[T], count: int) -> list[T]:
+    """Return at most ``count`` of the items, evenly spread, the first among them."""
+    chosen = np.unique(np.linspace(0, len(items) - 1, min(count, len(items))).round().astype(int))
+    return [items[index] for index in chosen]
+
+
+def _typical_depth(paths: Sequence[Path], encoding: DepthEncoding) -> float:
+    """Return the median depth in metres over some images."""
+    medians = []
+    for path in paths[:4]:
+        depth = read_depth(path, encoding)[::4, ::4]
+        if (depth > 0).any():
+            medians.append(float(np.median(depth[depth > 0])))
+    return float(np.median(medians)) if medians else 0.0

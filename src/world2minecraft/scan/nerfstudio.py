@@ -1,0 +1,165 @@
+"""``transforms.json``, as nerfstudio, instant-ngp and most phone apps that export for them write.
+
+Cameras have OpenGL axes. Intrinsics stand once or in each frame; depth images are optional and
+share the colour image's camera at their own size. ``applied_scale`` says by what the poses were
+multiplied: it is divided out, so that they are in the unit of the depth again.
+"""
+
+import math
+from dataclasses import replace
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.coordinates import opengl_to_opencv_pose
+from world2minecraft.errors import CaptureError
+from world2minecraft.files import read_json
+from world2minecraft.scan.frames import Capture, FrameFiles
+from world2minecraft.scan.images import SUFFIXES, read_header
+from world2minecraft.types import Camera
+
+_MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "PERSPECTIVE", "SIMPLE_RADIAL", "RADIAL")
+
+
+class NerfstudioSource:
+    """Reads a folder with a ``transforms.json``."""
+
+    layout = "transforms.json with the images it names (nerfstudio, instant-ngp)"
+
+    def recognise(self, folder: Path) -> bool:
+        """Return whether there is a ``transforms.json``."""
+        return (folder / "transforms.json").is_file()
+
+    def read(self, folder: Path) -> Capture:
+        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        path = folder / "transforms.json"
+        stated = read_json(path)
+        entries = stated.get("frames") if isinstance(stated, dict) else None
+        if not isinstance(entries, list) or not entries:
+            raise CaptureError(path, 'must hold "frames", a list of {file_path, transform_matrix}')
+        if not any(isinstance(entry, dict) and "transform_matrix" in entry for entry in entries):
+            raise CaptureError(path, 'no frame has a pose ("transform_matrix")')
+        scale = _number(path, stated, "applied_scale", 1.0)
+        if scale <= 0:
+            raise CaptureError(path, f'"applied_scale" must be above 0, not {scale}')
+        frames = [_frame(path, stated, entry, scale) for entry in entries]
+        unit = stated.get("depth_unit_scale_factor")
+        notes = () if scale == 1 else (f"the poses are divided by applied_scale, {scale:g}",)
+        return Capture(
+            folder,
+            "nerfstudio",
+            tuple(sorted(_named_apart(frames), key=lambda frame: frame.name)),
+            depth_unit=None if unit is None else str(unit),
+            notes=notes,
+        )
+
+
+def _frame(path: Path, stated: dict[str, Any], entry: Any, scale: float) -> FrameFiles:
+    if not isinstance(entry, dict) or not isinstance(entry.get("file_path"), str):
+        raise CaptureError(path, 'every frame must be an object with "file_path"')
+    colour = _inside(path, entry["file_path"])
+    depth = entry.get("depth_file_path")
+    depth_path = _inside(path, depth) if isinstance(depth, str) else None
+    labels = path.parent / "labels" / f"{colour.stem}.png"
+    camera = _camera(path, {**stated, **entry}, colour)
+    pose = _pose(path, entry, scale)
+    return FrameFiles(
+        colour.stem,
+        pose,
+        colour,
+        camera,
+        depth_path,
+        camera if depth_path else None,
+        labels_path=labels if labels.is_file() else None,
+        problem="" if pose is not None else "has no transform_matrix",
+    )
+
+
+def _inside(path: Path, named: str) -> Path:
+    """Return the file that a frame names, which must lie in the capture's folder."""
+    pure = PurePosixPath(named.replace("\\", "/"))
+    if pure.is_absolute() or ".." in pure.parts or "\0" in named or not pure.name:
+        raise CaptureError(
+            path, f"names {named[:80]!r}; file paths must be relative and stay inside the folder"
+        )
+    found = path.parent / pure
+    if not pure.suffix and not found.is_file():  # Blender's export leaves the suffix out.
+        for suffix in SUFFIXES:
+            if found.with_suffix(suffix).is_file():
+                return found.with_suffix(suffix)
+    return found
+
+
+def _camera(path: Path, stated: dict[str, Any], image: Path) -> Camera:
+    model = stated.get("camera_model", "OPENCV")
+    if model not in _MODELS:
+        raise CaptureError(
+            path, f"camera_model {model!r} is not read; undistort to one of {', '.join(_MODELS)}"
+        )
+    if "w" in stated and "h" in stated:
+        width, height = _number(path, stated, "w"), _number(path, stated, "h")
+    else:
+        width, height = read_header(image).size
+    focal = _focal(path, stated, width)
+    lens = tuple(_number(path, stated, key, 0.0) for key in ("k1", "k2", "p1", "p2", "k3"))
+    if _number(path, stated, "k4", 0.0) != 0:
+        raise CaptureError(path, "has a fourth radial term k4, which is not read; undistort first")
+    try:
+        return Camera(
+            int(width),
+            int(height),
+            focal,
+            _number(path, stated, "fl_y", focal),
+            _number(path, stated, "cx", width / 2),
+            _number(path, stated, "cy", height / 2),
+            lens,
+        )
+    except ValueError as error:
+        raise CaptureError(path, f"intrinsics: {error}") from error
+
+
+def _focal(path: Path, stated: dict[str, Any], width: float) -> float:
+    if "fl_x" in stated:
+        return _number(path, stated, "fl_x")
+    if "camera_angle_x" not in stated:
+        raise CaptureError(path, "has no intrinsics (fl_x, fl_y, cx, cy, w, h or camera_angle_x)")
+    angle = _number(path, stated, "camera_angle_x")
+    if not 0 < angle < math.pi:
+        raise CaptureError(path, f"camera_angle_x must lie between 0 and pi, not {angle}")
+    return width / (2 * math.tan(angle / 2))
+
+
+def _number(path: Path, stated: dict[str, Any], key: str, default: float | None = None) -> float:
+    value = stated.get(key, default)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise CaptureError(path, f'"{key}" must be a number, not {str(value)[:40]}')
+    return float(value)
+
+
+def _pose(path: Path, entry: dict[str, Any], scale: float) -> np.ndarray | None:
+    if "transform_matrix" not in entry:
+        return None
+    try:
+        pose = np.array(entry["transform_matrix"], np.float64)
+    except (TypeError, ValueError):
+        pose = np.zeros(0)
+    if pose.shape == (3, 4):
+        pose = np.vstack([pose, [0, 0, 0, 1]])
+    if pose.shape != (4, 4):
+        raise CaptureError(
+            path, f"transform_matrix of {entry['file_path'][:80]!r} must be four rows of four"
+        )
+    pose = opengl_to_opencv_pose(pose)
+    pose[:3, 3] /= scale
+    return pose
+
+
+def _named_apart(frames: list[FrameFiles]) -> list[FrameFiles]:
+    """Number the frames whose files share a stem, as ``left/0001`` and ``right/0001`` do."""
+    seen: dict[str, int] = {}
+    named = []
+    for frame in frames:
+        count = seen[frame.name] = seen.get(frame.name, 0) + 1
+        named.append(frame if count == 1 else replace(frame, name=f"{frame.name}.{count}"))
+    return named

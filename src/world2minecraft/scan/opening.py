@@ -1,0 +1,79 @@
+"""``open_scan``: a capture on disk becomes a Scan that later stages read view by view."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from world2minecraft.errors import CaptureError, UsageError
+from world2minecraft.progress import Progress, silent
+from world2minecraft.scan.align import Alignment, ImplausibleRoomError, align
+from world2minecraft.scan.judged import JudgedCapture, judge_capture, spread_over
+from world2minecraft.scan.options import parse_options
+from world2minecraft.scan.stream import CaptureViews
+from world2minecraft.types import Scan
+
+ALIGNED_FRAMES = 24  # Of the kitchen's 40; more moved its floor by under 2 mm.
+MAX_CELLS = 40_000_000  # A grid of 400 x 400 x 250; its evidence takes about 2.5 GB.
+STAGE = "scan"
+STEPS = 100
+
+
+def open_scan(
+    path: str | Path,
+    *,
+    voxel_m: float = 0.08,
+    labels: Path | None = None,
+    progress: Progress = silent,
+    options: Mapping[str, str] | None = None,
+) -> Scan:
+    """Open a capture: find out its layout, check it and find the room in it.
+
+    Args:
+        path: the capture's folder.
+        voxel_m: the cell that the room will be cut into; a room of too many cells is refused
+            here, before any long work. The room's inner corner is a corner of a cell.
+        labels: a folder of label images ``NAME.png`` (uint8 class ids), one for each frame.
+        progress: told of the stage ``scan``.
+        options: see ``ScanOptions``: ``depth_unit``, ``every``, ``colour_camera``.
+
+    Raises:
+        CaptureError: the capture cannot be used; the message says why and what to do.
+        LimitError: an image is too large. UsageError: an option is wrong.
+    """
+    chosen = parse_options(options or {})
+    if not voxel_m > 0:
+        raise UsageError(f"the voxel must be above 0 m, not {voxel_m}")
+    judged = judge_capture(
+        path, chosen, labels, lambda done, total: progress(STAGE, 40 * done // total, STEPS)
+    )
+    stream = CaptureViews(judged.frames, judged.encoding)
+    progress(STAGE, 60, STEPS, "finding gravity and walls")
+    alignment = _aligned(judged, stream)
+    _check_cells(alignment, voxel_m)
+    progress(STAGE, STEPS, STEPS)
+    return Scan(
+        views=stream,
+        scan_to_room=alignment.scan_to_room,
+        room_size_m=alignment.room_size_m,
+        frames_used=tuple(frame.name for frame in stream.frames),
+        frames_skipped=judged.skipped,
+        source=judged.capture.source,
+        notes=(*judged.notes, *alignment.notes),
+    )
+
+
+def _aligned(judged: JudgedCapture, stream: CaptureViews) -> Alignment:
+    with_depth = [frame for frame in stream.frames if frame.depth_path]
+    try:
+        return align(stream.read(spread_over(with_depth, ALIGNED_FRAMES)))
+    except ImplausibleRoomError as error:
+        raise CaptureError(judged.capture.folder, str(error)) from error
+
+
+def _check_cells(alignment: Alignment, voxel_m: float) -> None:
+    volume_m3 = float(alignment.room_size_m.prod())
+    if volume_m3 / voxel_m**3 > MAX_CELLS:
+        least_m = (volume_m3 / MAX_CELLS) ** (1 / 3)
+        raise UsageError(
+            f"a voxel of {voxel_m:g} m would cut this room into {volume_m3 / voxel_m**3:,.0f} "
+            f"cells; take at least --voxel {least_m:.3f}"
+        )

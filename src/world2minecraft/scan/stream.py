@@ -1,0 +1,77 @@
+"""The views of a capture as a stream: each is decoded when its turn comes, and again next time."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.scan.depth import DepthEncoding, read_depth
+from world2minecraft.scan.frames import FrameFiles
+from world2minecraft.scan.images import read_colour, read_raw
+from world2minecraft.types import View
+
+
+@dataclass(eq=False, repr=False)
+class CaptureViews:
+    """Views read from disk one at a time, in the order of the frames.
+
+    ``damaged`` maps the names of frames whose files passed the check of their outside but could
+    not be decoded to the reason; they are left out while iterating, and listed here.
+    """
+
+    frames: tuple[FrameFiles, ...]
+    encoding: DepthEncoding
+    damaged: dict[str, str] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        """The number of frames, those that turn out damaged while decoding included."""
+        return len(self.frames)
+
+    def __iter__(self) -> Iterator[View]:
+        """Read the views from the first."""
+        return self.read(self.frames)
+
+    def read(self, frames: Sequence[FrameFiles]) -> Iterator[View]:
+        """Read the views of some frames; those that cannot be decoded are left out and noted."""
+        for frame in frames:
+            try:
+                view = read_view(frame, self.encoding)
+            except InputError as error:
+                self.damaged[frame.name] = str(error)
+                continue
+            yield view
+
+
+def read_view(frame: FrameFiles, encoding: DepthEncoding) -> View:
+    """Decode one frame. Raises InputError where a file cannot be decoded."""
+    colour = None if frame.colour_path is None else read_colour(frame.colour_path)
+    depth = None if frame.depth_path is None else read_depth(frame.depth_path, encoding)
+    try:
+        return View(
+            frame.name,
+            np.asarray(frame.camera_to_world),
+            colour,
+            frame.colour_camera,
+            depth,
+            frame.depth_camera,
+            frame.depth_to_colour,
+            _read_labels(frame, colour),
+        )
+    except ValueError as error:
+        path = frame.colour_path or frame.depth_path or frame.name
+        raise DamagedFileError(path, str(error)) from error
+
+
+def _read_labels(frame: FrameFiles, colour: np.ndarray | None) -> np.ndarray | None:
+    """Return a frame's label image, carried to the colour image's size by nearest pixels."""
+    if frame.labels_path is None or colour is None:
+        return None
+    labels = read_raw(frame.labels_path)
+    if labels.dtype != np.uint8 or labels.ndim != 2:
+        raise DamagedFileError(frame.labels_path, "must hold one 8-bit class id a pixel")
+    if labels.shape == colour.shape[:2]:
+        return labels
+    rows = (np.arange(colour.shape[0]) + 0.5) * labels.shape[0] / colour.shape[0]
+    columns = (np.arange(colour.shape[1]) + 0.5) * labels.shape[1] / colour.shape[1]
+    return np.ascontiguousarray(labels[rows.astype(np.intp)][:, columns.astype(np.intp)])
