@@ -12,6 +12,7 @@ from world2minecraft.find.facing import Surroundings, facing, surroundings
 from world2minecraft.find.growth import grow
 from world2minecraft.find.parameters import FindParameters
 from world2minecraft.find.rejoin import rejoin
+from world2minecraft.find.stacks import join_stacked
 from world2minecraft.types import ObjectInstance, OccupancyGrid
 
 MAX_OBJECTS = 65535
@@ -57,7 +58,10 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
     owners = grow(grid.labels, binary, candidates, cluster)
     if not chosen.paper_compat:
         owners = rejoin(
-            grid.labels, owners, min_cells=chosen.min_cells, join_radius=chosen.join_radius
+            grid.labels,
+            join_stacked(owners, grid.labels),
+            min_cells=chosen.min_cells,
+            join_radius=chosen.join_radius,
         )
     instances = _instances(grid, owners)
     marked = np.zeros(grid.shape, np.uint16)
