@@ -104,11 +104,12 @@ class EvidenceMap:
             np.floor(np.maximum(high, camera)).astype(np.int64) + 1 + REACH_CELLS,
         )
         add_points(
-            cells - self._low.astype(np.float32),
+            cells,
             evidence.weight,
             _NO_COLOUR if evidence.colour is None else evidence.colour,
             _NO_VOTES if evidence.votes is None else evidence.votes.astype(np.float32),
-            camera - self._low,
+            camera,
+            self._low,
             self._kernel_parameters,
             self._log_odds,
             self._votes,

@@ -1,7 +1,9 @@
 """The inner loops of fusion: points into cells, and rays through free space.
 
-Everything is in cell units of the map's array: a point at 3.7 lies in cell 3. The plain reading of
-both kernels is in the tests, which hold them against it.
+Everything is in cell units of the room: a point at 3.7 lies in cell 3, which stands at index
+``3 - low`` of the map's arrays. Only whole numbers are shifted, so that a map that has grown holds
+the same bits as one that was large from the start. The plain reading of the kernels is in the
+tests, which hold them against it.
 """
 
 import numpy as np
@@ -30,17 +32,18 @@ def to_cells(points_m, scan_to_cells):
 
 @njit
 def add_points(
-    points, weight, colour, votes, camera, parameters, log_odds, all_votes, colour_sum, offset_sum,
+    points, weight, colour, votes, camera, low, parameters, log_odds, all_votes, colour_sum, offset_sum,
     hits, slots,
 ):  # fmt: skip
     """Add one view's points to the map's arrays, in place.
 
     Args:
-        points: float32 [N, 3] in cells of the arrays.
+        points: float32 [N, 3] in cells of the room.
         weight: float32 [N], square metres that each point covers.
         colour: uint8 [N, 3], or [0, 3] for none.
         votes: float32 [N, 12], or [0, 12] for none.
-        camera: float64 [3] in cells of the arrays.
+        camera: float64 [3] in cells of the room.
+        low: int64 [3], the room cell at index (0, 0, 0) of the arrays.
         parameters: hit, free, limit log-odds; nudge in cells; least area in square metres; least
             points; clearance in cells; the cell's size in metres.
         log_odds: float32 [X, Y, Z], the map, as are the next four.
@@ -51,7 +54,7 @@ def add_points(
         slots: int32 [X, Y, Z], -1 everywhere; left so.
     """
     hit, free, limit, nudge, min_area, min_points, clear, voxel_m = parameters
-    cells, count, area, targets = _collect(points, weight, camera, nudge, slots)
+    cells, count, area, targets = _collect(points, weight, camera, low, nudge, slots)
     taken = np.zeros(len(cells), np.bool_)
     for s in range(len(cells)):
         taken[s] = count[s] >= min_points and area[s] >= min_area
@@ -60,15 +63,15 @@ def add_points(
             log_odds[i, j, k] = min(limit, log_odds[i, j, k] + hit)
             hits[i, j, k] += count[s]
             for axis in range(3):
-                mean = targets[s, axis] / count[s] - (cells[s, axis] + 0.5)
+                mean = targets[s, axis] / count[s] - (cells[s, axis] + low[axis] + 0.5)
                 offset_sum[i, j, k, axis] += mean * count[s] * voxel_m
-    _add_attributes(points, camera, nudge, colour, votes, taken, slots, colour_sum, all_votes)
+    _add_attributes(points, camera, low, nudge, colour, votes, taken, slots, colour_sum, all_votes)
     freed = np.empty((slots.size, 3), np.int32)
     freed_count = 0
     for s in range(len(cells)):
         if count[s] >= min_points:
             freed_count = _free_ray(
-                camera, targets[s] / count[s], clear, free, limit, log_odds, slots, freed,
+                camera, targets[s] / count[s], low, clear, free, limit, log_odds, slots, freed,
                 freed_count,
             )  # fmt: skip
     for s in range(len(cells)):
@@ -78,19 +81,19 @@ def add_points(
 
 
 @njit
-def _cell_behind(point, camera, nudge):
-    """Return the cell of the matter that a surface point belongs to: a nudge along its ray."""
+def _cell_behind(point, camera, low, nudge):
+    """Return the index of the cell of the matter behind a surface point: a nudge along its ray."""
     x, y, z = point[0] - camera[0], point[1] - camera[1], point[2] - camera[2]
     share = nudge / max(np.sqrt(x * x + y * y + z * z), 1e-6)
     return (
-        int(np.floor(point[0] + x * share)),
-        int(np.floor(point[1] + y * share)),
-        int(np.floor(point[2] + z * share)),
+        int(np.floor(point[0] + x * share)) - low[0],
+        int(np.floor(point[1] + y * share)) - low[1],
+        int(np.floor(point[2] + z * share)) - low[2],
     )
 
 
 @njit
-def _collect(points, weight, camera, nudge, slots):
+def _collect(points, weight, camera, low, nudge, slots):
     """Sum up the points of each touched cell, and number those cells in ``slots``."""
     cells = np.empty((len(points), 3), np.int32)
     count = np.zeros(len(points), np.int64)
@@ -98,7 +101,7 @@ def _collect(points, weight, camera, nudge, slots):
     targets = np.zeros((len(points), 3), np.float64)
     used = 0
     for n in range(len(points)):
-        i, j, k = _cell_behind(points[n], camera, nudge)
+        i, j, k = _cell_behind(points[n], camera, low, nudge)
         slot = slots[i, j, k]
         if slot < 0:
             slot = used
@@ -113,12 +116,12 @@ def _collect(points, weight, camera, nudge, slots):
 
 
 @njit
-def _add_attributes(points, camera, nudge, colour, votes, taken, slots, colour_sum, all_votes):
+def _add_attributes(points, camera, low, nudge, colour, votes, taken, slots, colour_sum, all_votes):
     """Add the colours and votes of the points whose cells were taken."""
     if len(colour) == 0 and len(votes) == 0:
         return
     for n in range(len(points)):
-        i, j, k = _cell_behind(points[n], camera, nudge)
+        i, j, k = _cell_behind(points[n], camera, low, nudge)
         if not taken[slots[i, j, k]]:
             continue
         if len(colour):
@@ -130,7 +133,7 @@ def _add_attributes(points, camera, nudge, colour, votes, taken, slots, colour_s
 
 
 @njit
-def _free_ray(camera, target, clear, free, limit, log_odds, slots, freed, freed_count):
+def _free_ray(camera, target, low, clear, free, limit, log_odds, slots, freed, freed_count):
     """Walk from the camera to a surface point; each cell crossed is freed once a view.
 
     A cell counts as crossed where the middle of the ray's way through it lies nearer than
@@ -154,7 +157,7 @@ def _free_ray(camera, target, clear, free, limit, log_odds, slots, freed, freed_
     while entry < end:
         axis = 0 if at[0] <= at[1] and at[0] <= at[2] else (1 if at[1] <= at[2] else 2)
         leave = at[axis]
-        i, j, k = cell
+        i, j, k = cell[0] - low[0], cell[1] - low[1], cell[2] - low[2]
         if (entry + leave) / 2 < end and slots[i, j, k] == UNTOUCHED:
             log_odds[i, j, k] = max(-limit, log_odds[i, j, k] + free)
             slots[i, j, k] = FREED
