@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Parameters
 
-SLAB_LIMIT = 0.75  # A rest above three quarters of a block reads better as a whole block.
+SLAB_LIMIT = 0.6  # A rest above this is nearer to a whole block, half a block allowed for.
 PLATE_LIMIT = 0.25  # A rest under a quarter of a block reads as a plate.
 
 
@@ -66,25 +66,24 @@ def _seat_state(i: int, j: int, last: int, wood: str, armed: bool) -> str:
 
 
 def table(size: BlockSize, wood: str) -> list[LocalBlock]:
-    """Return a top at its true height on fences under the corners."""
+    """Return a top at its true height on fences under the corners.
+
+    A plate needs a fence under it, so a wider thin top is of trapdoors, which hold themselves.
+    """
     layer, kind = level(size.exact[2])
+    alone = size.depth == size.width == 1
     state = {
-        "plate": f"minecraft:{wood}_pressure_plate[powered=false]",
+        "plate": f"minecraft:{wood}_pressure_plate[powered=false]"
+        if alone
+        else f"minecraft:{wood}_trapdoor[facing=east,half=bottom,open=false]",
         "slab": f"minecraft:{wood}_slab[type=bottom]",
         "block": f"minecraft:{wood}_slab[type=top]",
     }[kind]
-    blocks = [
-        LocalBlock((i, j, layer), state, "top")
-        for i in range(size.depth)
-        for j in range(size.width)
-    ]
+    plan = [(i, j) for i in range(size.depth) for j in range(size.width)]
     corners = sorted({(i, j) for i in (0, size.depth - 1) for j in (0, size.width - 1)})
-    legs = [
-        LocalBlock((i, j, k), f"minecraft:{wood}_fence", "leg")
-        for i, j in corners
-        for k in range(layer)
-    ]
-    return legs + blocks
+    fence = f"minecraft:{wood}_fence"
+    legs = [LocalBlock((i, j, k), fence, "leg") for i, j in corners for k in range(layer)]
+    return [*legs, *(LocalBlock((i, j, layer), state, "top") for i, j in plan)]
 
 
 def bed(size: BlockSize, colour: str, layer: int = 0) -> list[LocalBlock]:

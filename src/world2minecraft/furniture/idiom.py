@@ -13,6 +13,8 @@ from world2minecraft.types import Placement
 
 PARTS_FROM = 3.0  # Blocks per metre from which parts are at least a third of a block (fit.md).
 
+FENCE_SIDES = {"east": (1, 0), "north": (0, -1), "south": (0, 1), "west": (-1, 0)}
+
 
 class IdiomBlock(NamedTuple):
     """One block: its offset in block axes (x east, y up, z south), state and part role."""
@@ -69,4 +71,26 @@ def _turned(local: list[LocalBlock], quarter_turns: int) -> Idiom:
         offset = (along, k, wide - 1 - across)
         blocks.append(IdiomBlock(offset, turn_state(whole, quarter_turns), role))
     turned = (width, height, depth) if quarter_turns % 2 else (depth, height, width)
-    return Idiom(tuple(sorted(blocks)), turned)
+    return Idiom(tuple(sorted(_with_joined_fences(blocks))), turned)
+
+
+def _with_joined_fences(blocks: list[IdiomBlock]) -> list[IdiomBlock]:
+    """Join each fence to the fences and full cubes beside it, as the game would."""
+    from world2minecraft.minecraft.shapes import is_full_cube  # noqa: PLC0415
+    from world2minecraft.minecraft.states import parse_state  # noqa: PLC0415
+
+    state_at = {block.offset: block.state for block in blocks}
+
+    def joined(block: IdiomBlock) -> IdiomBlock:
+        state = parse_state(block.state)
+        if not state.name.endswith("_fence"):
+            return block
+        x, y, z = block.offset
+        sides = {}
+        for side, (dx, dz) in FENCE_SIDES.items():
+            beside = state_at.get((x + dx, y, z + dz))
+            joins = beside is not None and ("_fence[" in beside or is_full_cube(beside))
+            sides[side] = "true" if joins else "false"
+        return block._replace(state=str(state.having(**sides)))
+
+    return [joined(block) for block in blocks]
