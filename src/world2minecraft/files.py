@@ -7,8 +7,10 @@ renamed, so that a crash leaves the old file or the new one. Time stamps inside 
 import io
 import json
 import os
+import struct
 import tempfile
 import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -18,6 +20,18 @@ import numpy as np
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, OutputError
 
 FIXED_DATE = (2020, 1, 1, 0, 0, 0)
+# What zipfile and numpy raise over a damaged archive; RuntimeError is an encrypted member.
+UNREADABLE = (
+    zipfile.BadZipFile,
+    zlib.error,
+    ValueError,
+    EOFError,
+    OSError,
+    NotImplementedError,
+    RuntimeError,
+    struct.error,
+    OverflowError,
+)
 MAX_ARRAY_BYTES = 4 << 30  # A 400 x 400 x 100 grid of FusedEvidence takes about 1 GiB.
 
 
@@ -109,12 +123,8 @@ def read_npz(path: str | Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
     try:
         with zipfile.ZipFile(source) as archive:
             return {name: _read_member(archive, name, source) for name in names}
-    except (zipfile.BadZipFile, ValueError, EOFError, OSError, NotImplementedError) as error:
+    except UNREADABLE as error:
         raise DamagedFileError(source, f"is not a readable .npz ({error})") from error
-    except Exception as error:
-        if type(error).__module__ == "zlib":
-            raise DamagedFileError(source, f"is not a readable .npz ({error})") from error
-        raise
 
 
 def array_names(path: str | Path) -> tuple[str, ...]:
@@ -122,7 +132,7 @@ def array_names(path: str | Path) -> tuple[str, ...]:
     try:
         with zipfile.ZipFile(path) as archive:
             return tuple(sorted(name.removesuffix(".npy") for name in archive.namelist()))
-    except (zipfile.BadZipFile, OSError, ValueError) as error:
+    except UNREADABLE as error:
         raise DamagedFileError(path, f"is not a readable .npz ({error})") from error
 
 
@@ -134,7 +144,7 @@ def read_npy(path: str | Path) -> np.ndarray:
             _check_header(stream, source.stat().st_size, source, "of the file")
             stream.seek(0)
             return np.lib.format.read_array(stream, allow_pickle=False)
-    except (ValueError, EOFError, OSError) as error:
+    except UNREADABLE as error:
         raise DamagedFileError(source, f"is not a readable .npy ({error})") from error
 
 
@@ -143,7 +153,10 @@ def _read_member(archive: zipfile.ZipFile, name: str, source: Path) -> np.ndarra
     if member not in archive.namelist():
         held = ", ".join(sorted(entry.removesuffix(".npy") for entry in archive.namelist()))
         raise DamagedFileError(source, f"has no array {name!r}; it holds: {held or 'nothing'}")
-    declared = archive.getinfo(member).file_size
+    entry = archive.getinfo(member)
+    if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        raise DamagedFileError(source, f"array {name!r} is packed in a way no .npz is")
+    declared = entry.file_size
     if declared > MAX_ARRAY_BYTES:
         raise LimitError(source, f"array {name!r} has {declared:,} bytes; too large to read")
     with archive.open(member) as stream:
