@@ -1,0 +1,332 @@
+"""Constructors: each rule has a value that breaks it and the exact sentence it is answered with."""
+
+import numpy as np
+import pytest
+
+from world2minecraft import types
+
+EYE = np.eye(4)
+MIRROR = np.diag([-1.0, 1.0, 1.0, 1.0])
+SHEARED = EYE + np.outer([1.0, 0, 0, 0], [0, 0.01, 0, 0])
+OFF_LAST_ROW = EYE + np.outer([0, 0, 0, 1.0], [0, 0, 0.5, 0])
+CAMERA = types.Camera(4, 3, 2.0, 2.0, 2.0, 1.5)
+
+
+def zeros(*shape, dtype=np.uint8):
+    return np.zeros(shape, dtype)
+
+
+GOOD = {
+    types.Camera: dict(width_px=4, height_px=3, fx_px=2.0, fy_px=2.0, cx_px=2.0, cy_px=1.5),
+    types.View: dict(
+        name="f1",
+        camera_to_scan=EYE,
+        colour=zeros(3, 4, 3),
+        colour_camera=CAMERA,
+        depth_m=zeros(3, 4, dtype=np.float32),
+        depth_camera=CAMERA,
+        labels=zeros(3, 4),
+    ),
+    types.Scan: dict(views=[], scan_to_room=EYE, room_size_m=[4, 3, 2.5], frames_used=["f1"]),
+    types.PointEvidence: dict(
+        view="f1",
+        camera_m=[0, 0, 0],
+        points_m=zeros(5, 3, dtype=np.float32),
+        weight=zeros(5, dtype=np.float32),
+        colour=zeros(5, 3),
+        votes=zeros(5, 12, dtype=np.float16),
+    ),
+    types.GridEvidence: dict(
+        view="f1",
+        probabilities=zeros(2, 3, 4, 12, dtype=np.float16),
+        seen=zeros(2, 3, 4, dtype=np.bool_),
+        voxel_m=0.08,
+        grid_to_scan=EYE,
+    ),
+    types.FusedEvidence: dict(
+        log_odds=zeros(2, 3, 4, dtype=np.float16),
+        votes=zeros(2, 3, 4, 12, dtype=np.float16),
+        colour_sum=zeros(2, 3, 4, 3, dtype=np.float32),
+        offset_sum=zeros(2, 3, 4, 3, dtype=np.float32),
+        hits=zeros(2, 3, 4, dtype=np.uint16),
+        voxel_m=0.08,
+        origin_m=[0.16, -0.08, 0],
+        scan_to_room=EYE,
+    ),
+    types.OccupancyGrid: dict(
+        labels=np.full((2, 3, 4), 255, np.uint8),
+        confidence=zeros(2, 3, 4, dtype=np.float16),
+        colour=zeros(2, 3, 4, 3),
+        source=zeros(2, 3, 4),
+        instance=zeros(2, 3, 4, dtype=np.uint16),
+        voxel_m=0.08,
+        origin_m=[0, 0, -0.08],
+    ),
+    types.ObjectInstance: dict(
+        id=1,
+        class_id=5,
+        center_m=[1, 1, 0.4],
+        size_m=[0.5, 0.5, 0.8],
+        yaw_deg=90.0,
+        cells=zeros(2, 3, dtype=np.int32),
+        confidence=0.5,
+    ),
+    types.Placement: dict(
+        object_id=1,
+        class_id=5,
+        template="chair",
+        center_m=[1, 1, 0.4],
+        size_m=[0.5, 0.5, 0.8],
+        quarter_turns=1,
+        iou=0.7,
+    ),
+    types.Opening: dict(kind="door", start_m=[0, 0], end_m=[1, 0], sill_m=0.0, head_m=2.0),
+    types.LayoutObject: dict(class_id=5, center_m=[1, 1, 0], size_m=[1, 1, 1], yaw_deg=0.0),
+    types.Layout: dict(floor_polygon_m=[[0, 0], [4, 0], [4, 3]], wall_height_m=2.5),
+    types.BlockVolume: dict(
+        states=zeros(2, 3, 4, dtype=np.uint16),
+        palette=(types.AIR,),
+        semantic=zeros(2, 3, 4),
+        instance=zeros(2, 3, 4, dtype=np.uint16),
+        corner=(0, 63, 0),
+        block_to_room=EYE,
+    ),
+    types.Operation: dict(
+        kind="fill",
+        cells=zeros(2, 3, dtype=np.int32),
+        before=np.array([0, 255], np.uint8),
+        after=np.array([3, 3], np.uint8),
+    ),
+}
+
+BAD = [
+    (types.Camera, dict(width_px=0), "width_px must be 1 to 20000, not 0"),
+    (types.Camera, dict(height_px=20_001), "height_px must be 1 to 20000, not 20001"),
+    (types.Camera, dict(width_px=4.5), "width_px must be 1 to 20000, not 4.5"),
+    (types.Camera, dict(fx_px=0.0), "fx_px must be above 0, not 0.0"),
+    (types.Camera, dict(fy_px=float("nan")), "fy_px must be above 0, not nan"),
+    (types.Camera, dict(cx_px=float("inf")), "cx_px, cy_px must be finite, not [inf, 1.5]"),
+    (types.Camera, dict(distortion=(0.0,)), "distortion must have shape 5, not (1,)"),
+    (
+        types.View,
+        dict(name="a/b"),
+        "name must be a short printable name without slashes, not 'a/b'",
+    ),
+    (types.View, dict(name=""), "name must be a short printable name without slashes, not ''"),
+    (
+        types.View,
+        dict(camera_to_scan=MIRROR),
+        f"camera_to_scan must be a rotation and a translation, not {MIRROR.tolist()}",
+    ),
+    (
+        types.View,
+        dict(depth_to_colour=SHEARED),
+        f"depth_to_colour must be a rotation and a translation, not {SHEARED.tolist()}",
+    ),
+    (
+        types.View,
+        dict(camera_to_scan=OFF_LAST_ROW),
+        "camera_to_scan must end with the row 0 0 0 1, not [0.0, 0.0, 0.5, 1.0]",
+    ),
+    (types.View, dict(camera_to_scan=np.eye(3)), "camera_to_scan must have shape 4x4, not (3, 3)"),
+    (types.View, dict(colour_camera=None), "colour and colour_camera come together"),
+    (types.View, dict(depth_m=None), "depth_m and depth_camera come together"),
+    (types.View, dict(colour=zeros(4, 3, 3)), "colour must have shape 3x4x3, not (4, 3, 3)"),
+    (types.View, dict(labels=zeros(4, 3)), "labels must have shape 3x4, not (4, 3)"),
+    (
+        types.View,
+        dict(colour=None, colour_camera=None),
+        "labels lie on the colour image; there is none",
+    ),
+    (types.View, dict(depth_m=zeros(3, 4)), "depth_m must be float32, not uint8"),
+    (
+        types.View,
+        dict(depth_m=np.full((3, 4), np.nan, np.float32)),
+        "depth_m must be finite and not negative; holes are 0",
+    ),
+    (
+        types.View,
+        dict(depth_m=np.full((3, 4), -1, np.float32)),
+        "depth_m must be finite and not negative; holes are 0",
+    ),
+    (types.Scan, dict(room_size_m=[4, 0, 2]), "room_size_m must be above 0, not [4.0, 0.0, 2.0]"),
+    (
+        types.Scan,
+        dict(scale="guessed"),
+        "scale must be metric, estimated or unknown, not 'guessed'",
+    ),
+    (
+        types.PointEvidence,
+        dict(points_m=zeros(5, 3, dtype=np.float64)),
+        "points_m must be float32, not float64",
+    ),
+    (
+        types.PointEvidence,
+        dict(points_m=zeros(5, 2, dtype=np.float32)),
+        "points_m must have shape anyx3, not (5, 2)",
+    ),
+    (
+        types.PointEvidence,
+        dict(weight=zeros(4, dtype=np.float32)),
+        "weight must have shape 5, not (4,)",
+    ),
+    (types.PointEvidence, dict(colour=zeros(4, 3)), "colour must have shape 5x3, not (4, 3)"),
+    (
+        types.PointEvidence,
+        dict(votes=zeros(5, 11, dtype=np.float16)),
+        "votes must have shape 5x12, not (5, 11)",
+    ),
+    (types.PointEvidence, dict(camera_m=[0, 0]), "camera_m must have shape 3, not (2,)"),
+    (
+        types.GridEvidence,
+        dict(probabilities=zeros(2, 3, 4, 11, dtype=np.float16)),
+        "probabilities must have shape anyxanyxanyx12, not (2, 3, 4, 11)",
+    ),
+    (types.GridEvidence, dict(seen=zeros(2, 3, 4)), "seen must be bool, not uint8"),
+    (types.GridEvidence, dict(voxel_m=-0.08), "voxel_m must be above 0, not -0.08"),
+    (
+        types.GridEvidence,
+        dict(grid_to_scan=MIRROR),
+        f"grid_to_scan must be a rotation and a translation, not {MIRROR.tolist()}",
+    ),
+    (
+        types.FusedEvidence,
+        dict(votes=zeros(2, 3, 5, 12, dtype=np.float16)),
+        "votes must have shape 2x3x4x12, not (2, 3, 5, 12)",
+    ),
+    (
+        types.FusedEvidence,
+        dict(hits=zeros(2, 3, 4, dtype=np.int32)),
+        "hits must be uint16, not int32",
+    ),
+    (
+        types.FusedEvidence,
+        dict(origin_m=[0.04, 0, 0]),
+        "origin_m must be a whole multiple of 0.08 m, not [0.04, 0.0, 0.0]",
+    ),
+    (
+        types.OccupancyGrid,
+        dict(labels=np.full((2, 3, 4), 12, np.uint8)),
+        "labels must hold class ids 0 to 11 or 255, not 12",
+    ),
+    (
+        types.OccupancyGrid,
+        dict(labels=zeros(0, 3, 4)),
+        "labels must have cells, not shape (0, 3, 4)",
+    ),
+    (
+        types.OccupancyGrid,
+        dict(labels=zeros(2, 3, 4)),
+        "labels must be 255 exactly where source is 0 (unseen)",
+    ),
+    (
+        types.OccupancyGrid,
+        dict(source=np.full((2, 3, 4), 3, np.uint8)),
+        "source must be 0, 1 or 2, not 3",
+    ),
+    (
+        types.OccupancyGrid,
+        dict(source=np.ones((2, 3, 4), np.uint8)),
+        "labels must be 255 exactly where source is 0 (unseen)",
+    ),
+    (
+        types.OccupancyGrid,
+        dict(confidence=np.full((2, 3, 4), np.nan, np.float16)),
+        "confidence must lie between 0 and 1",
+    ),
+    (
+        types.OccupancyGrid,
+        dict(colour=zeros(2, 3, 4)),
+        "colour must have shape 2x3x4x3, not (2, 3, 4)",
+    ),
+    (
+        types.OccupancyGrid,
+        dict(origin_m=[0, 0, 0.01]),
+        "origin_m must be a whole multiple of 0.08 m, not [0.0, 0.0, 0.01]",
+    ),
+    (types.ObjectInstance, dict(id=0), "id must be 1 to 65535, not 0"),
+    (types.ObjectInstance, dict(id=65_536), "id must be 1 to 65535, not 65536"),
+    (
+        types.ObjectInstance,
+        dict(class_id=3),
+        "class_id must be an object class, 5 to 11, not 3",
+    ),
+    (types.ObjectInstance, dict(confidence=1.5), "confidence must lie between 0 and 1, not 1.5"),
+    (types.ObjectInstance, dict(yaw_deg=float("nan")), "yaw_deg must be finite, not [nan]"),
+    (
+        types.ObjectInstance,
+        dict(cells=zeros(2, 3, dtype=np.int64)),
+        "cells must be int32, not int64",
+    ),
+    (types.Placement, dict(quarter_turns=4), "quarter_turns must be 0 to 3, not 4"),
+    (types.Placement, dict(iou=-0.1), "iou must lie between 0 and 1, not -0.1"),
+    (
+        types.Placement,
+        dict(template="../x"),
+        "template must be a short printable name without slashes, not '../x'",
+    ),
+    (types.Opening, dict(kind="hatch"), "kind must be window, door or doorway, not 'hatch'"),
+    (types.Opening, dict(sill_m=2.0), "sill_m must lie under head_m, not 2.0, 2.0"),
+    (types.LayoutObject, dict(size_m=[1, 1, 0]), "size_m must be above 0, not [1.0, 1.0, 0.0]"),
+    (
+        types.Layout,
+        dict(floor_polygon_m=[[0, 0], [1, 0]]),
+        "floor_polygon_m needs 3 corners or more, not 2",
+    ),
+    (types.Layout, dict(wall_height_m=0), "wall_height_m must be above 0, not 0"),
+    (
+        types.BlockVolume,
+        dict(palette=("minecraft:stone",)),
+        "palette must begin with minecraft:air, not ('minecraft:stone',)",
+    ),
+    (types.BlockVolume, dict(palette=()), "palette must begin with minecraft:air, not ()"),
+    (
+        types.BlockVolume,
+        dict(states=np.ones((2, 3, 4), np.uint16)),
+        "states go to 1, the palette has 1",
+    ),
+    (
+        types.BlockVolume,
+        dict(semantic=np.full((2, 3, 4), 99, np.uint8)),
+        "semantic must hold class ids 0 to 11 or 255, not 99",
+    ),
+    (types.BlockVolume, dict(corner=(0, 63)), "corner must be three whole numbers, not (0, 63)"),
+    (types.Operation, dict(after=zeros(3)), "after must have shape 2, not (3,)"),
+    (
+        types.Operation,
+        dict(kind=""),
+        "kind must be a short printable name without slashes, not ''",
+    ),
+]
+
+
+@pytest.mark.parametrize("kind", GOOD, ids=lambda kind: kind.__name__)
+def test_a_good_value_is_taken(kind):
+    assert isinstance(kind(**GOOD[kind]), kind)
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "message"), BAD, ids=lambda value: getattr(value, "__name__", "")
+)
+def test_a_bad_value_is_answered_with_a_sentence(kind, change, message):
+    with pytest.raises(ValueError) as caught:
+        kind(**{**GOOD[kind], **change})
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize("kind", GOOD, ids=lambda kind: kind.__name__)
+def test_a_value_cannot_be_changed(kind):
+    value = kind(**GOOD[kind])
+    name = next(iter(GOOD[kind]))
+    with pytest.raises(AttributeError):
+        setattr(value, name, None)
+    held = [item for item in vars(value).values() if isinstance(item, np.ndarray)]
+    assert all(not item.flags.writeable for item in held)
+
+
+@pytest.mark.parametrize("kind", GOOD, ids=lambda kind: kind.__name__)
+def test_a_callers_array_stays_its_own(kind):
+    """Values hold views: the array that was given can still be written by its owner."""
+    given = {name: item for name, item in GOOD[kind].items() if isinstance(item, np.ndarray)}
+    kind(**GOOD[kind])
+    assert all(item.flags.writeable for item in given.values())
