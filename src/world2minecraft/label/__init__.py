@@ -1,9 +1,45 @@
 """Stage 4: what each occupied cell is.
 
-A labeller takes the grid and the evidence behind it and gives the grid back with classes and
-confidence. It never empties an observed cell and never fills an empty one.
+A labeller takes the grid and the evidence behind it and gives the grid back with a class and a
+confidence for each occupied cell. Evidence wins: observed cells stay occupied, but for the spill
+of the floor, which is carried down. ``LABELLERS`` holds the built-in ones; others join through the
+entry point group ``world2minecraft.labeller``.
 """
 
-from world2minecraft.label.labellers import LABELLERS, Labeller
+from typing import Protocol
 
-__all__ = ["LABELLERS", "Labeller"]
+from world2minecraft.registry import Registry
+from world2minecraft.types import FusedEvidence, OccupancyGrid
+
+LABELLERS = Registry(
+    "labeller",
+    {
+        "geometric": "world2minecraft.label.geometric:GeometricLabeller",
+        "votes": "world2minecraft.label.votes:VotesLabeller",
+    },
+)
+
+
+class Labeller(Protocol):
+    """Stage 4. An implementation is made without arguments, or with its parameters."""
+
+    def label(self, grid: OccupancyGrid, evidence: FusedEvidence) -> OccupancyGrid:
+        """Return the grid with a class and a confidence for each occupied cell.
+
+        Args:
+            grid: the cleaned read-out; its occupied cells are labelled anew.
+            evidence: what the grid was read from, of the same shape, origin and cell.
+
+        Raises:
+            ValueError: grid and evidence do not lie on the same cells.
+        """
+        ...
+
+
+def labeller(name: str) -> Labeller:
+    """Return a new labeller by name.
+
+    Raises:
+        UnknownNameError: none has this name; the message suggests the nearest.
+    """
+    return LABELLERS.load(name)()
