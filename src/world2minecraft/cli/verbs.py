@@ -17,11 +17,18 @@ from world2minecraft import __version__
 from world2minecraft.cli.failures import STOPPED
 
 VERBS: dict[str, str] = {
+    "demo": "Try this first: a room is generated, scanned, built.",
+    "scan": "Tell what a capture holds, before any long work.",
+    "reconstruct": "Turn a capture into a Minecraft world, with a report.",
+    "build": "Turn any occupancy grid into a Minecraft world.",
     "convert": "Turn one Minecraft format into another.",
     "doctor": "Check that this machine can run the program.",
 }
 
 EXAMPLES = """\
+w2m demo                                  a room to OUT/, nothing needed
+w2m scan my_scan                          what is in this folder?
+w2m reconstruct my_scan --out OUT         the whole way
 w2m doctor                                check this machine
 w2m convert house.schem worlds/house      a schematic becomes a world
 """
