@@ -1,0 +1,51 @@
+"""A piece of furniture as coloured metric boxes.
+
+A model stands in its own frame: the origin in the middle of its footprint, z = 0 at its bottom,
+its front looks along +x. Sizes are multiples of 2 cm, so that boxes fall on whole voxels.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+Colour = tuple[int, int, int]
+Grain = Literal["plain", "wood", "fabric", "glow"]
+STEP_M = 0.02
+
+
+@dataclass(frozen=True)
+class Part:
+    """One box: ``box_m`` is x0 y0 z0 x1 y1 z1, and ``grain`` how its colour varies."""
+
+    box_m: tuple[float, float, float, float, float, float]
+    colour: Colour
+    grain: Grain = "plain"
+
+
+@dataclass(frozen=True)
+class Model:
+    """A named object: ``size_m`` is front-to-back, side to side, height; parts lie within it."""
+
+    name: str
+    class_id: int
+    size_m: tuple[float, float, float]
+    parts: tuple[Part, ...]
+
+
+def whole(length_m: float) -> float:
+    """Round a length to a multiple of 2 cm."""
+    return round(length_m / STEP_M) * STEP_M
+
+
+def shade(colour: Colour, factor: float) -> Colour:
+    """Return a darker (factor < 1) or lighter colour."""
+    red, green, blue = (max(0, min(255, round(value * factor))) for value in colour)
+    return red, green, blue
+
+
+def legs(depth: float, width: float, height: float, side: float, colour: Colour) -> list[Part]:
+    """Return four legs at the corners of a footprint."""
+    spots = []
+    for x in (-depth / 2, depth / 2 - side):
+        for y in (-width / 2, width / 2 - side):
+            spots.append(Part((x, y, 0, x + side, y + side, height), colour, "wood"))
+    return spots

@@ -1,0 +1,144 @@
+"""The depth camera: what a consumer sensor makes of exact depth.
+
+``rgbd`` follows structured-light sensors: axial noise that grows with the square of distance,
+depth in steps of disparity, lost pixels at edges, on dark and on grazing surfaces, and holes.
+``clean`` gives exact depth and exact poses.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.errors import UnknownNameError
+
+BASELINE_M = 0.075  # Between projector and camera, of the sensors that the model follows.
+NATIVE_WIDTH_PX = 640  # Disparity is counted in pixels of the sensor, whatever size is handed out.
+EDGE_SHARE = 0.03  # A step between neighbours of over 3 % of the depth, and 3 cm, is an edge.
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """The figures of a sensor; zero switches an effect off.
+
+    The ``rgbd`` figures: axial sigma 1.2 mm + 1.9 mm x (z - 0.4 m)^2, disparity steps of 1/8 px,
+    2 % holes, pose jitter of 5 mm and 0.2 degrees, range 0.4 to 5 m.
+    """
+
+    sigma_m: float = 0.0012
+    sigma_growth: float = 0.0019
+    disparity_step_px: float = 0.125
+    edge_px: int = 1
+    hole_share: float = 0.02
+    dark_below: float = 36.0  # Luminance, 0 to 255; half of that is lost for certain.
+    grazing_cosine: float = 0.20  # 78 degrees from square; half of it is lost for certain.
+    range_m: tuple[float, float] = (0.4, 5.0)
+    jitter_m: float = 0.005
+    jitter_deg: float = 0.2
+    colour_sigma: float = 1.5
+
+
+CLEAN = Sensor(0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, (0.0, np.inf), 0.0, 0.0, 0.0)
+SENSORS = {"rgbd": Sensor(), "clean": CLEAN}
+
+
+def sensor(name: str) -> Sensor:
+    """Return a sensor by name.
+
+    Raises:
+        UnknownNameError: no sensor has this name.
+    """
+    if name not in SENSORS:
+        raise UnknownNameError("sensor", name, SENSORS)
+    return SENSORS[name]
+
+
+def sense_depth(
+    model: Sensor,
+    depth_m: np.ndarray,
+    cosine: np.ndarray,
+    luminance: np.ndarray,
+    fx_px: float,
+    rng: np.random.Generator,
+) -> np.ndarray:
+    """Return what the sensor says of exact depth, float32 [H, W], 0 where it says nothing.
+
+    Args:
+        model: the sensor.
+        depth_m: float32 [H, W], exact z-depth, 0 where there is nothing.
+        cosine: float32 [H, W], between ray and surface.
+        luminance: float32 [H, W], 0 to 255.
+        fx_px: the focal length of this image.
+        rng: the frame's own source of noise.
+    """
+    focal_px = fx_px * NATIVE_WIDTH_PX / depth_m.shape[1]
+    noise = rng.standard_normal(depth_m.shape, np.float32)
+    sensed = depth_m + noise * axial_sigma_m(model, depth_m)
+    sensed = disparity_steps(model, sensed, focal_px)
+    lost = (depth_m <= 0) | (sensed < model.range_m[0]) | (sensed > model.range_m[1])
+    if model.edge_px:
+        lost |= edges(depth_m)
+    lost |= _holes(model, depth_m.shape, rng)
+    chance = np.maximum(_below(luminance, model.dark_below), _below(cosine, model.grazing_cosine))
+    lost |= rng.random(depth_m.shape, np.float32) < chance
+    return np.where(lost, np.float32(0), sensed).astype(np.float32)
+
+
+def axial_sigma_m(model: Sensor, depth_m: np.ndarray) -> np.ndarray:
+    """Return the standard deviation of depth at a depth."""
+    return np.float32(model.sigma_m) + np.float32(model.sigma_growth) * (depth_m - 0.4) ** 2
+
+
+def disparity_steps(model: Sensor, depth_m: np.ndarray, focal_px: float) -> np.ndarray:
+    """Round depth so that its disparity is a whole number of steps."""
+    if not model.disparity_step_px:
+        return depth_m
+    reach = np.float32(focal_px * BASELINE_M / model.disparity_step_px)
+    steps = np.round(reach / np.maximum(depth_m, 1e-3))
+    return reach / np.maximum(steps, 1)
+
+
+def edges(depth_m: np.ndarray) -> np.ndarray:
+    """Tell which pixels lie at a depth edge: one of their four neighbours is far off."""
+    found = np.zeros(depth_m.shape, bool)
+    for axis in (0, 1):
+        a, b = np.moveaxis(depth_m, axis, 0)[:-1], np.moveaxis(depth_m, axis, 0)[1:]
+        step = np.abs(a - b) > np.maximum(EDGE_SHARE * np.minimum(a, b), 0.03)
+        rows = np.moveaxis(found, axis, 0)
+        rows[:-1] |= step
+        rows[1:] |= step
+    return found
+
+
+def _holes(model: Sensor, shape: tuple[int, ...], rng: np.random.Generator) -> np.ndarray:
+    """Return holes of 2x2 pixels that cover the sensor's share of the image."""
+    half = rng.random(((shape[0] + 1) // 2, (shape[1] + 1) // 2), np.float32) < model.hole_share
+    return half.repeat(2, axis=0).repeat(2, axis=1)[: shape[0], : shape[1]]
+
+
+def _below(values: np.ndarray, limit: float) -> np.ndarray:
+    """Return a chance that rises from 0 at ``limit`` to 1 at half of it."""
+    if not limit:
+        return np.zeros(values.shape, np.float32)
+    return np.clip((limit - values) / np.float32(limit / 2), 0, 1)
+
+
+def jittered_pose(
+    model: Sensor, camera_to_room: np.ndarray, rng: np.random.Generator
+) -> np.ndarray:
+    """Return the pose that the sensor's tracker states: off by its jitter along each axis."""
+    shift = rng.standard_normal(3) * model.jitter_m
+    angles = np.radians(rng.standard_normal(3) * model.jitter_deg)
+    stated = camera_to_room.copy()
+    stated[:3, :3] = camera_to_room[:3, :3] @ rotation_of_vector(angles)
+    stated[:3, 3] += shift
+    return stated
+
+
+def rotation_of_vector(vector: np.ndarray) -> np.ndarray:
+    """Return the 3x3 rotation about a vector by its length in radians."""
+    angle = float(np.linalg.norm(vector))
+    if angle < 1e-12:
+        return np.eye(3)
+    x, y, z = vector / angle
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross

@@ -1,0 +1,172 @@
+"""A furnished plan becomes voxels: labels, instances and colours at 2 cm."""
+
+import numpy as np
+
+from world2minecraft.classes import SemanticClass
+from world2minecraft.rooms.kinds import Rug
+from world2minecraft.rooms.model import STEP_M, Colour, Part, shade
+from world2minecraft.rooms.openings import RECESS_M, Hole
+from world2minecraft.rooms.place import Item
+from world2minecraft.rooms.style import WHITE, Style
+
+VOXEL_M = STEP_M
+SHELL_M = 0.12  # Walls, floor slab and ceiling; the truth needs 0.1 m or more.
+SHELL = round(SHELL_M / VOXEL_M)
+WINDOW = int(SemanticClass.WINDOW)
+
+
+class Canvas:
+    """The arrays that are painted. Indices count from the outer corner of the shell."""
+
+    def __init__(self, size_m: tuple[float, float, float]):
+        inner = [round(side / VOXEL_M) for side in size_m]
+        shape = tuple(side + 2 * SHELL for side in inner)
+        self.inner = inner
+        self.labels = np.zeros(shape, np.uint8)
+        self.instance = np.zeros(shape, np.uint16)
+        self.colour = np.zeros((*shape, 3), np.uint8)
+
+    @property
+    def origin_m(self) -> np.ndarray:
+        """The minimum corner of voxel (0, 0, 0) in the room."""
+        return np.full(3, -SHELL * VOXEL_M)
+
+    def cells(self, box_m: tuple[float, ...]) -> tuple[slice, slice, slice]:
+        """Return the voxels of a box; one at least along each axis."""
+        low = [round(value / VOXEL_M) + SHELL for value in box_m[:3]]
+        high = [round(value / VOXEL_M) + SHELL for value in box_m[3:]]
+        a, b, c = (slice(x, max(x + 1, y)) for x, y in zip(low, high, strict=True))
+        return a, b, c
+
+    def fill(self, cells: tuple[slice, slice, slice], label: int, instance: int, colour) -> None:
+        """Paint a box of voxels; ``colour`` is one colour or broadcasts to the box."""
+        self.labels[cells] = label
+        self.instance[cells] = instance
+        self.colour[cells] = colour
+
+
+def paint_shell(canvas: Canvas, style: Style, floor: str, rng: np.random.Generator) -> None:
+    """Paint walls, ceiling, skirting boards and the floor."""
+    everywhere = (slice(None),) * 3
+    canvas.fill(everywhere, int(SemanticClass.WALL), 0, style.wall)
+    accent = int(rng.integers(4))
+    side = [slice(None), slice(None), slice(None)]
+    side[accent % 2] = slice(0, SHELL) if accent < 2 else slice(-SHELL, None)
+    canvas.colour[tuple(side)] = style.accent_wall
+    canvas.colour[:, :, SHELL : SHELL + 4] = shade(WHITE, 0.96)
+    canvas.fill((*everywhere[:2], slice(-SHELL, None)), int(SemanticClass.CEILING), 0, (244, 243, 239))
+    pattern = _planks if floor == "planks" else _tiles
+    colours = pattern(canvas.labels.shape[:2], style.floor_wood, rng)
+    canvas.fill((*everywhere[:2], slice(0, SHELL)), int(SemanticClass.FLOOR), 0, colours[:, :, None])
+    air = tuple(slice(SHELL, -SHELL) for _ in range(3))
+    canvas.fill(air, 0, 0, 0)
+
+
+def _planks(shape: tuple[int, int], wood: Colour, rng: np.random.Generator) -> np.ndarray:
+    """Return uint8 [X, Y, 3]: boards 14 cm wide and 1.4 m long, each with its own tone."""
+    x, y = np.meshgrid(np.arange(shape[0]), np.arange(shape[1]), indexing="ij")
+    row = y // 7
+    offset = rng.integers(0, 70, row.max() + 1)[row]
+    column = (x + offset) // 70
+    tones = rng.uniform(0.9, 1.08, (row.max() + 1, column.max() + 1))[row, column]
+    streaks = rng.uniform(0.97, 1.03, (shape[1],))[None, :]
+    seam = np.where((y % 7 == 0) | ((x + offset) % 70 == 0), 0.86, 1.0)
+    return _toned(wood, tones * streaks * seam)
+
+
+def _tiles(shape: tuple[int, int], wood: Colour, rng: np.random.Generator) -> np.ndarray:
+    """Return uint8 [X, Y, 3]: tiles of 40 cm with light joints."""
+    x, y = np.meshgrid(np.arange(shape[0]), np.arange(shape[1]), indexing="ij")
+    checker = np.where((x // 20 + y // 20) % 2 == 0, 1.0, 0.84)
+    tones = rng.uniform(0.97, 1.03, (shape[0] // 20 + 1, shape[1] // 20 + 1))[x // 20, y // 20]
+    joint = np.where((x % 20 == 0) | (y % 20 == 0), 0.9, 1.0)
+    return _toned((212, 206, 196), checker * tones * joint)
+
+
+def paint_rug(canvas: Canvas, rug: Rug) -> None:
+    """Colour the floor under a flat rug; it stays floor."""
+    x0, y0, x1, y1, colour = rug
+    width, depth = (side * VOXEL_M for side in canvas.inner[:2])
+    box = (max(x0, 0.1), max(y0, 0.1), -VOXEL_M, min(x1, width - 0.1), min(y1, depth - 0.1), 0.0)
+    a, b, c = canvas.cells(box)
+    light = shade(colour, 1.25)
+    canvas.colour[a, b, c] = colour
+    canvas.colour[a.start + 4 : a.stop - 4, b.start + 4 : b.stop - 4, c] = light
+    canvas.colour[a.start + 6 : a.stop - 6, b.start + 6 : b.stop - 6, c] = shade(colour, 1.05)
+
+
+def paint_item(canvas: Canvas, item: Item, instance: int, rng: np.random.Generator) -> None:
+    """Paint the parts of an item, turned into place by quarters."""
+    for part in item.model.parts:
+        cells = canvas.cells(_turned_box(item, part))
+        shape = tuple(side.stop - side.start for side in cells)
+        tone = _grain(part, shape, rng)
+        canvas.fill(cells, item.model.class_id, instance, _toned(part.colour, tone))
+
+
+def _turned_box(item: Item, part: Part) -> tuple[float, ...]:
+    x0, y0, z0, x1, y1, z1 = part.box_m
+    ax, ay = item.point(x0, y0)
+    bx, by = item.point(x1, y1)
+    return (
+        min(ax, bx), min(ay, by), item.z_m + z0, max(ax, bx), max(ay, by), item.z_m + z1,
+    )  # fmt: skip
+
+
+def _grain(part: Part, shape: tuple[int, ...], rng: np.random.Generator) -> np.ndarray:
+    """Return the tone of each voxel of a part: streaks along wood, specks in cloth."""
+    if part.grain == "wood":
+        along = int(np.argmax(shape))
+        cross = tuple(1 if axis == along else side for axis, side in enumerate(shape))
+        return np.broadcast_to(rng.uniform(0.93, 1.05, cross), shape)
+    spread = 0.035 if part.grain == "fabric" else 0.008
+    return rng.uniform(1 - spread, 1 + spread, shape)
+
+
+def _toned(colour: Colour, tone: np.ndarray) -> np.ndarray:
+    return np.clip(np.array(colour) * tone[..., None] + 0.5, 0, 255).astype(np.uint8)
+
+
+def paint_hole(canvas: Canvas, hole: Hole) -> None:
+    """Cut a recess for a window or a door, and glaze a window."""
+    deep = round(RECESS_M / VOXEL_M)
+    recess = _in_wall(canvas, hole, 0, deep)
+    canvas.fill(recess, 0, 0, 0)
+    if hole.kind == "door":
+        return
+    pane = _in_wall(canvas, hole, deep, SHELL)
+    heights = np.linspace(0, 1, pane[2].stop - pane[2].start)[:, None]
+    sky = np.array([196, 214, 224]) * (1 - heights) + np.array([146, 192, 232]) * heights
+    view = np.where(heights < 0.22, np.array([128, 158, 112]), sky).astype(np.uint8)
+    canvas.fill(pane, WINDOW, 0, view)
+    for bar in _frame(canvas, hole, deep):
+        canvas.fill(bar, WINDOW, 0, WHITE)
+
+
+def _frame(canvas: Canvas, hole: Hole, deep: int):
+    """Yield the bars of a window's frame, 6 cm wide, and its middle post."""
+    x, y, z = _in_wall(canvas, hole, deep - 2, deep)
+    along = [x, y]
+    run = along[1 - _axis(hole)]
+    middle = (run.start + run.stop) // 2
+    for low, high in ((run.start, run.start + 3), (run.stop - 3, run.stop), (middle - 1, middle + 2)):
+        bar = [x, y]
+        bar[1 - _axis(hole)] = slice(low, high)
+        yield bar[0], bar[1], z
+    yield x, y, slice(z.start, z.start + 3)
+    yield x, y, slice(z.stop - 3, z.stop)
+
+
+def _axis(hole: Hole) -> int:
+    """Return the axis across the hole's wall."""
+    return hole.wall % 2
+
+
+def _in_wall(canvas: Canvas, hole: Hole, near: int, far: int) -> tuple[slice, slice, slice]:
+    """Return the voxels of a hole between two depths behind the wall's inner face."""
+    first, last = (round(value / VOXEL_M) + SHELL for value in (hole.first_m, hole.last_m))
+    low, high = (round(value / VOXEL_M) + SHELL for value in (hole.sill_m, hole.head_m))
+    face = SHELL if hole.wall < 2 else SHELL + canvas.inner[_axis(hole)]
+    across = slice(face - far, face - near) if hole.wall < 2 else slice(face + near, face + far)
+    run, up = slice(first, last), slice(low, high)
+    return (across, run, up) if _axis(hole) == 0 else (run, across, up)
