@@ -51,6 +51,7 @@ class NerfstudioSource:
             "nerfstudio",
             tuple(sorted(_named_apart(frames), key=lambda frame: frame.name)),
             depth_unit=None if unit is None else str(unit),
+            one_matrix=True,
             notes=notes,
         )
 

@@ -53,7 +53,7 @@ class PlainSource:
         names = [frame.name for frame in frames]
         if len(set(names)) != len(names):
             raise CaptureError(path, "names a frame twice; every name must be its own")
-        return Capture(folder, "plain", frames, depth_unit=unit)
+        return Capture(folder, "plain", frames, depth_unit=unit, one_matrix="camera" in stated)
 
 
 def _files_by_stem(folder: Path) -> dict[str, dict[str, Path]]:
@@ -95,7 +95,7 @@ def _frame(
 
 
 def _camera(path: Path, stated: dict[str, Any], key: str) -> Camera:
-    value = stated.get(key)
+    value = stated.get(key, stated.get("camera"))  # "camera" stands for both.
     if not isinstance(value, dict):
         raise CaptureError(path, f'has no "{key}" with {", ".join(_CAMERA_FIELDS)}')
     try:

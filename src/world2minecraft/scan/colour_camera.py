@@ -1,0 +1,182 @@
+"""The colour camera of captures that state one matrix for depth and colour.
+
+Depth sensors of the Kinect kind see depth and colour through two lenses, yet many captures state
+one matrix. Where depth jumps, colour mostly changes too: the scale of the focal length and the
+shift of the principal point that lay depth edges on colour edges are the colour camera's. They
+are sought on one half of the frames and used only if the other half gains clearly from them.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from PIL import Image
+from scipy.ndimage import gaussian_filter
+
+from world2minecraft.jit import njit
+from world2minecraft.types import Camera, View
+
+WORK_WIDTH_PX = 320  # Shifts below are in pixels of a colour image of this width.
+BLUR_PX = 1.5  # So wide that the coarse steps below cannot pass a peak by.
+JUMP = 0.06  # Of the nearer depth: more than noise and slanted surfaces give between two pixels.
+POINTS_PER_MAP = 700
+SCALES = np.arange(0.80, 1.2001, 0.02)
+SHIFTS_PX = np.arange(-15.0, 15.1, 3.0)
+REFINEMENTS = ((0.01, 1.5), (0.005, 0.75), (0.0025, 0.375))
+CLEAR_GAIN = 1.5  # The kitchen's is over 3; where depth and colour share a camera it is near 1.
+LEAST_SCORE = 0.04  # Edges must lie on more colour change than the image's mean, by this of 1.
+LEAST_POINTS = 400
+
+
+@dataclass(frozen=True)
+class ColourEstimate:
+    """The colour camera relative to the stated matrix; shifts in pixels of the colour image.
+
+    ``gain`` is how much better the frames that were kept apart fit, as a ratio; ``clear`` says
+    whether it is enough to use the estimate.
+    """
+
+    scale: float
+    shift_x_px: float
+    shift_y_px: float
+    gain: float
+    clear: bool
+
+    def applied(self, camera: Camera) -> Camera:
+        """Return the stated camera with the estimate laid on it."""
+        return replace(
+            camera,
+            fx_px=camera.fx_px * self.scale,
+            fy_px=camera.fy_px * self.scale,
+            cx_px=camera.cx_px + self.shift_x_px,
+            cy_px=camera.cy_px + self.shift_y_px,
+        )
+
+
+@dataclass(frozen=True)
+class _FrameEdges:
+    """One frame's depth edges as rays, float64 [N, 2], and maps of colour change, float32 [h, w].
+
+    Edges across the image's rows come first, then those along them; each has its own map.
+    """
+
+    rays: tuple[np.ndarray, np.ndarray]
+    change: tuple[np.ndarray, np.ndarray]
+
+
+def estimate_colour_camera(views: Iterable[View]) -> ColourEstimate | None:
+    """Estimate the colour camera from some views, read once and one at a time.
+
+    Returns:
+        The estimate, clear or not, or None where there are too few edges to say anything.
+    """
+    edges: list[_FrameEdges] = []
+    stated = None
+    for view in views:
+        if view.depth_m is not None and view.colour_camera is not None:
+            stated = view.colour_camera
+            edges.append(_frame_edges(view))
+    sought, apart = edges[0::2], edges[1::2]
+    if stated is None or min(_count(sought), _count(apart)) < LEAST_POINTS:
+        return None
+    enlarged = stated.width_px / WORK_WIDTH_PX
+    matrix = np.array([stated.fx_px, stated.fy_px, stated.cx_px, stated.cy_px]) / enlarged
+    scale, shift_x, shift_y = _search(sought, matrix)
+    before, after = (
+        _score(apart, matrix, *values) for values in ((1.0, 0.0, 0.0), (scale, shift_x, shift_y))
+    )
+    gain = after / max(before, 1e-3)
+    clear = gain > CLEAR_GAIN and after > LEAST_SCORE
+    return ColourEstimate(scale, shift_x * enlarged, shift_y * enlarged, gain, clear)
+
+
+def _count(frames: Sequence[_FrameEdges]) -> int:
+    return sum(len(rays) for frame in frames for rays in frame.rays)
+
+
+def _frame_edges(view: View) -> _FrameEdges:
+    depth, camera, colour = view.depth_m, view.depth_camera, view.colour
+    if depth is None or camera is None or colour is None:
+        raise ValueError(f"view {view.name} has not both depth and colour")
+    down, across = _jumps(depth.T), _jumps(depth)
+    focal = np.array([camera.fx_px, camera.fy_px])
+    center = np.array([camera.cx_px, camera.cy_px])
+    rays = ((across - center) / focal, (down[:, ::-1] - center) / focal)
+    small = Image.fromarray(colour).resize(
+        (WORK_WIDTH_PX, round(colour.shape[0] * WORK_WIDTH_PX / colour.shape[1])),
+        Image.Resampling.BOX,
+    )
+    pixels = np.asarray(small, np.float32)
+    return _FrameEdges(rays, (_change(pixels, 1), _change(pixels, 0)))
+
+
+def _jumps(depth_m: np.ndarray) -> np.ndarray:
+    """Return where depth jumps along rows, float64 [N, 2]: the borders' x and y in pixels."""
+    left, right = depth_m[:, :-1], depth_m[:, 1:]
+    near = np.minimum(left, right)
+    rows, columns = np.nonzero((near > 0) & (np.abs(left - right) > JUMP * near))
+    every = max(1, len(rows) // POINTS_PER_MAP)
+    return np.column_stack([columns[::every] + 1.0, rows[::every] + 0.5])
+
+
+def _change(pixels: np.ndarray, axis: int) -> np.ndarray:
+    """Return how much colour changes along an axis, 0 to 1 with its mean taken off."""
+    order = (0, 1) if axis == 1 else (1, 0)
+    steep = np.zeros(pixels.shape[:2], np.float32)
+    for channel in range(3):
+        slope = gaussian_filter(pixels[..., channel], BLUR_PX, order=order)
+        np.maximum(steep, np.abs(slope), out=steep)
+    # A strong border must not outweigh many plain ones: change saturates at what is steep here.
+    change = steep / (steep + np.percentile(steep, 85) + 1e-3)
+    return np.ascontiguousarray(change - change.mean(), np.float32)
+
+
+def _search(frames: Sequence[_FrameEdges], matrix: np.ndarray) -> tuple[float, float, float]:
+    """Return the best scale and shifts: all coarse ones, then the best one's neighbours."""
+    tried = {
+        (scale, x, y): _score(frames, matrix, scale, x, y)
+        for scale in SCALES.tolist()
+        for x in SHIFTS_PX.tolist()
+        for y in SHIFTS_PX.tolist()
+    }
+    best = max(tried, key=lambda values: tried[values])
+    score = tried[best]
+    for scale_step, shift_step in REFINEMENTS:
+        moved = True
+        while moved:
+            moved = False
+            for turn in np.ndindex(3, 3, 3):
+                a, b, c = (index - 1 for index in turn)
+                other = (
+                    best[0] + a * scale_step,
+                    best[1] + b * shift_step,
+                    best[2] + c * shift_step,
+                )
+                found = _score(frames, matrix, *other)
+                if found > score + 1e-9:
+                    best, score, moved = other, found, True
+    return best
+
+
+def _score(
+    frames: Sequence[_FrameEdges], matrix: np.ndarray, scale: float, shift_x: float, shift_y: float
+) -> float:
+    """Return the mean colour change under the depth edges; outside the image there is none."""
+    total, count = 0.0, 0
+    for frame in frames:
+        for rays, change in zip(frame.rays, frame.change, strict=True):
+            total += _sum_under(rays, change, matrix, scale, shift_x, shift_y)
+            count += len(rays)
+    return total / count
+
+
+@njit
+def _sum_under(rays, change, matrix, scale, shift_x, shift_y):
+    height, width = change.shape
+    total = 0.0
+    for index in range(len(rays)):
+        u = int(np.floor(rays[index, 0] * matrix[0] * scale + matrix[2] + shift_x))
+        v = int(np.floor(rays[index, 1] * matrix[1] * scale + matrix[3] + shift_y))
+        if 0 <= u < width and 0 <= v < height:
+            total += change[v, u]
+    return total
