@@ -1,0 +1,93 @@
+"""One voxel, one block: every occupied cell becomes one full block, by integer maps."""
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.build.canvas import BARRIER, Canvas
+from world2minecraft.build.hues import default_colour, spread
+from world2minecraft.build.lattice import Lattice
+from world2minecraft.build.paint import paint
+from world2minecraft.build.palettes import Palette
+from world2minecraft.build.parameters import BuildParameters
+from world2minecraft.build.structure import STANDING_M, WALL, WINDOW
+from world2minecraft.types import UNSEEN, OccupancyGrid
+
+
+def put_cells_exactly(
+    canvas: Canvas,
+    grid: OccupancyGrid,
+    colours: np.ndarray,
+    coloured: np.ndarray,
+    palette: Palette,
+    parameters: BuildParameters,
+) -> np.ndarray:
+    """Set every occupied cell as one block; return the footprint, bool [X, Y] of the lattice.
+
+    The floor's unseen holes are closed with invisible barriers, which carry class 0: one can walk
+    on them, and the occupied blocks are the occupied cells and no others.
+    """
+    start = _start(grid, canvas.lattice)
+    inside = tuple(slice(low, low + size) for low, size in zip(start, grid.shape, strict=True))
+    states = np.zeros(grid.shape, np.uint16)
+    occupied = grid.occupied
+    surfaces = np.where(occupied, grid.labels.astype(np.int32) << 16, 0)
+    surfaces[occupied] += grid.instance[occupied]
+    for surface in np.unique(surfaces[occupied]):
+        mask = surfaces == surface
+        class_id, number = int(surface) >> 16, int(surface) & 0xFFFF
+        limit = parameters.object_colours if number else parameters.structure_colours * 2
+        if class_id == WINDOW:
+            states[mask] = canvas.id_of(palette.glass)
+            continue
+        states[mask] = _painted(
+            canvas, mask, colours, coloured, class_id, palette, parameters, limit
+        )
+    canvas.states[inside] = states
+    canvas.semantic[inside] = np.where(occupied, grid.labels, 0)
+    canvas.instance[inside] = np.where(occupied, grid.instance, 0)
+    footprint = np.zeros(canvas.states.shape[:2], bool)
+    footprint[inside[:2]] = _footprint(grid)
+    _close_floor(canvas, footprint)
+    return footprint
+
+
+def _start(grid: OccupancyGrid, lattice: Lattice) -> tuple[int, int, int]:
+    """Return the lattice index of cell (0, 0, 0), a whole number by construction."""
+    at = lattice.coordinates_of(grid.origin_m)
+    x, y, z = np.rint(at).astype(int).tolist()
+    return x, y, z
+
+
+def _painted(canvas, mask, colours, coloured, class_id, palette, parameters, limit) -> np.ndarray:
+    default = palette.defaults[class_id]
+    if not (coloured & mask).any():
+        return np.full(int(mask.sum()), canvas.id_of(default), np.uint16)
+    found = spread(colours, coloured & mask, mask, default_colour(default))
+    choices = palette.blocks[class_id]
+    index = paint(
+        found,
+        np.argwhere(mask),
+        choices,
+        most=limit,
+        lightness_weight=parameters.lightness_weight,
+        calm_step=parameters.calm,
+    )
+    used, inverse = np.unique(index, return_inverse=True)
+    return canvas.ids_of([choices[number] for number in used])[inverse]
+
+
+def _footprint(grid: OccupancyGrid) -> np.ndarray:
+    """Return the columns in which one stands: seen free or furnished low down, and no wall."""
+    low = int(np.clip(np.rint(-grid.origin_m[2] / grid.voxel_m), 0, grid.shape[2] - 1))
+    high = low + max(2, int(STANDING_M / grid.voxel_m))
+    labels, source = grid.labels[:, :, low:high], grid.source[:, :, low:high]
+    stood = (((labels == 0) & (source != UNSEEN)) | ((labels > WINDOW) & (labels != 255))).any(2)
+    walls = np.isin(labels, (WALL, WINDOW)).any(2)
+    return ndimage.binary_fill_holes(stood & ~walls)
+
+
+def _close_floor(canvas: Canvas, footprint: np.ndarray) -> None:
+    layer = canvas.lattice.ground - 1
+    plan = ndimage.binary_dilation(footprint, np.ones((3, 3), bool))
+    holes = plan & (canvas.states[:, :, layer] == 0)
+    canvas.states[:, :, layer][holes] = canvas.id_of(BARRIER)

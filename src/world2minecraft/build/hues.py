@@ -1,0 +1,98 @@
+"""The colours of cells and of the blocks that cover them, in Oklab."""
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
+from world2minecraft.minecraft.colours import colour_of
+from world2minecraft.types import OccupancyGrid
+
+# Exposure: the brightest twentieth of a room's surfaces comes to this linear light, about that of
+# white concrete. Photos of dim rooms come out darker than any wall paint is.
+BRIGHT_LIGHT, BRIGHT_QUANTILE = 0.6, 0.95
+GAIN_LIMIT = 1.8
+# White balance: bright cells that are nearly grey are taken for grey.
+GREY_CHROMA, CAST_LIMIT = 0.05, 1.15
+LEAST_CELLS = 50
+
+
+def seen_colours(grid: OccupancyGrid) -> np.ndarray:
+    """Return bool [X, Y, Z]: which cells carry a colour. Black, exactly 0, stands for none."""
+    return grid.occupied & grid.colour.any(-1)
+
+
+def cell_colours(grid: OccupancyGrid, expose: bool) -> np.ndarray:
+    """Return the Oklab colours of all cells, float32 [X, Y, Z, 3]; zero where there is none."""
+    seen = seen_colours(grid)
+    result = np.zeros((*grid.shape, 3), np.float32)
+    colours = grid.colour[seen]
+    if not len(colours):
+        return result
+    if expose:
+        linear = linear_of_srgb(colours)
+        result[seen] = oklab_of_linear(np.clip(linear * gains_of(linear), 0, 1))
+    else:
+        result[seen] = oklab_of_srgb(colours)
+    return result
+
+
+def gains_of(linear: np.ndarray) -> np.ndarray:
+    """Return the factors, float64 [3], that light a dim room and take away its colour cast.
+
+    Args:
+        linear: float64 [N, 3], the linear light of its surfaces.
+    """
+    if len(linear) < LEAST_CELLS:
+        return np.ones(3)
+    light = linear @ np.array([0.2126, 0.7152, 0.0722])
+    bright = np.quantile(light, BRIGHT_QUANTILE)
+    exposure = np.clip(BRIGHT_LIGHT / max(bright, 1e-6), 1.0, GAIN_LIMIT)
+    grey = linear[
+        (np.hypot(*oklab_of_linear(linear)[:, 1:].T) < GREY_CHROMA) & (light >= 0.5 * bright)
+    ]
+    if len(grey) < LEAST_CELLS:
+        return np.full(3, exposure)
+    mean = np.maximum(grey.mean(0), 1e-6)
+    return exposure * np.clip(mean.mean() / mean, 1 / CAST_LIMIT, CAST_LIMIT)
+
+
+def default_colour(block: str) -> np.ndarray:
+    """Return the Oklab colour, float32 [3], of a block state."""
+    return oklab_of_srgb(np.array(colour_of(block), np.uint8))
+
+
+def group_medians(groups: np.ndarray, colours: np.ndarray, count: int) -> tuple:
+    """Return the median colour of each group, float32 [count, 3], and how many it has, int [count].
+
+    Args:
+        groups: int [N], the group of each colour.
+        colours: float32 [N, 3].
+        count: the number of groups; an empty one has median 0.
+    """
+    sizes = np.bincount(groups, minlength=count)
+    starts = np.cumsum(sizes) - sizes
+    medians = np.zeros((count, 3), np.float32)
+    full = sizes > 0
+    low = starts[full] + (sizes[full] - 1) // 2
+    high = starts[full] + sizes[full] // 2
+    for channel in range(3):
+        ordered = colours[np.lexsort((colours[:, channel], groups)), channel]
+        medians[full, channel] = (ordered[low] + ordered[high]) / 2
+    return medians, sizes
+
+
+def spread(colours: np.ndarray, known: np.ndarray, wanted: np.ndarray, default: np.ndarray):
+    """Return the colours, float32 [N, 3], at ``wanted``: each its own, or the nearest known one.
+
+    Args:
+        colours: float32 [X, Y, Z, 3].
+        known: bool [X, Y, Z], where ``colours`` holds one.
+        wanted: bool [X, Y, Z] with N cells set.
+        default: float32 [3], for all where none is known.
+    """
+    if not known.any():
+        return np.broadcast_to(default, (int(wanted.sum()), 3)).astype(np.float32)
+    if known[wanted].all():
+        return colours[wanted]
+    nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
+    return colours[tuple(axis[wanted] for axis in nearest)]

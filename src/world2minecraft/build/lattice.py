@@ -1,0 +1,150 @@
+"""Where the blocks stand in the room: the block lattice, and cells resampled onto it.
+
+Within build/ every array is in room axes, ``[x, y, z]`` with z up, one entry a block; only the
+finished volume is carried to block axes, by ``coordinates.grid_to_block_axes``.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.coordinates import ROOM_CORNER_BLOCK, apply, room_to_block
+from world2minecraft.errors import UsageError
+from world2minecraft.types import OccupancyGrid
+
+MAX_BLOCKS = 1 << 27  # A 40 x 40 x 5 m hall at 12.5 blocks a metre has 16 million.
+FLOOR_LAYER = ROOM_CORNER_BLOCK[1] - 1
+MARGIN = 2  # The shell and the invisible edge stand outside the room.
+
+
+@dataclass(frozen=True, eq=False)
+class Lattice:
+    """A box of blocks over a grid of cells.
+
+    ``corner`` is the world position of the block at index (0, ny - 1, 0): the least x, y and z
+    in block axes. ``shape`` counts blocks along room x, y, z. A room point p lies at lattice
+    coordinate ``p * blocks_per_metre + offset``.
+    """
+
+    corner: tuple[int, int, int]
+    shape: tuple[int, int, int]
+    corner_m: np.ndarray
+    blocks_per_metre: float
+
+    @property
+    def offset(self) -> np.ndarray:
+        """float64 [3]: the lattice coordinate of the room's origin."""
+        at = apply(room_to_block(self.corner_m, self.blocks_per_metre), np.zeros(3))
+        east, up, south = at - self.corner
+        return np.array([east, self.shape[1] - south, up])
+
+    @property
+    def ground(self) -> int:
+        """The index along z of the first layer above the floor."""
+        return ROOM_CORNER_BLOCK[1] - self.corner[1]
+
+    def coordinates_of(self, points_m: np.ndarray) -> np.ndarray:
+        """Return the lattice coordinates, float64 [..., 3], of room points in metres."""
+        return np.asarray(points_m) * self.blocks_per_metre + self.offset
+
+    def edges_of(self, grid: OccupancyGrid, axis: int) -> np.ndarray:
+        """Return the lattice coordinates, float64 [N + 1], of the cell edges along an axis."""
+        edges_m = grid.origin_m[axis] + np.arange(grid.shape[axis] + 1) * grid.voxel_m
+        edges = edges_m * self.blocks_per_metre + self.offset[axis]
+        return np.round(edges, 9)  # So that 12.5 * 0.08 does not fall short of a whole block.
+
+
+def is_exact(grid: OccupancyGrid, blocks_per_metre: float) -> bool:
+    """Whether one voxel is one block, so that cells go by integer maps."""
+    return abs(grid.voxel_m * blocks_per_metre - 1) < 1e-9
+
+
+def snapped_corner_m(grid: OccupancyGrid, corner_m: np.ndarray) -> np.ndarray:
+    """Return the corner as the nearest whole multiple of the voxel, float64 [2]."""
+    return np.round(np.asarray(corner_m, np.float64) / grid.voxel_m) * grid.voxel_m
+
+
+def lattice_over(
+    grid: OccupancyGrid, corner_m: np.ndarray, blocks_per_metre: float, top_m: float = 0.0
+) -> Lattice:
+    """Return the lattice that holds the whole grid, the floor layer and a margin.
+
+    Raises:
+        UsageError: it would have more than ``MAX_BLOCKS`` blocks.
+    """
+    ends_m = np.stack([grid.origin_m, grid.origin_m + np.array(grid.shape) * grid.voxel_m])
+    ends_m[1, 2] = max(ends_m[1, 2], top_m)
+    ends = apply(room_to_block(corner_m, blocks_per_metre), ends_m)
+    low = np.floor(ends.min(0) + 1e-6).astype(int) - MARGIN
+    high = np.ceil(ends.max(0) - 1e-6).astype(int) + MARGIN
+    low[1] = min(low[1], FLOOR_LAYER) if is_exact(grid, blocks_per_metre) else FLOOR_LAYER
+    east, up, south = (high - low).tolist()
+    if float(east) * up * south > MAX_BLOCKS:
+        raise UsageError(
+            f"{blocks_per_metre:g} blocks a metre make {east} x {up} x {south} blocks of this "
+            f"room; at most {MAX_BLOCKS:,} are built. Choose fewer blocks a metre"
+        )
+    return Lattice(tuple(low.tolist()), (east, south, up), corner_m, blocks_per_metre)
+
+
+def overlaps(edges: np.ndarray, count: int) -> np.ndarray:
+    """Return how much of each block [0, count) each cell covers along one axis.
+
+    Args:
+        edges: float64 [N + 1], rising lattice coordinates of the cell edges.
+        count: the number of blocks.
+
+    Returns:
+        float32 [count, N], 0 to 1.
+    """
+    starts = np.arange(count)[:, None]
+    low = np.maximum(edges[None, :-1], starts)
+    high = np.minimum(edges[None, 1:], starts + 1)
+    return np.maximum(high - low, 0).astype(np.float32)
+
+
+def memberships(edges: np.ndarray, count: int) -> np.ndarray:
+    """Return which cells belong to which block along one axis, float32 [count, N] of 0 and 1.
+
+    A cell belongs to the block that holds its centre, and a block smaller than a cell to the
+    cell that holds its own.
+    """
+    centres = (edges[:-1] + edges[1:]) / 2
+    starts = np.arange(count)[:, None]
+    inside = (centres >= starts) & (centres < starts + 1)
+    around = (edges[:-1] <= starts + 0.5) & (starts + 0.5 < edges[1:])
+    return (inside | around).astype(np.float32)
+
+
+def carry(values: np.ndarray, weights: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+    """Return ``values`` [X, Y, Z] summed along each axis by weights [blocks, cells]."""
+    result = values.astype(np.float32)
+    for axis in range(3):
+        result = np.moveaxis(np.tensordot(weights[axis], result, axes=(1, axis)), 0, axis)
+    return result
+
+
+def face_shares(mask: np.ndarray, edges: list[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
+    """Return the share of a block's face that the cells in it cover, seen along its best axis.
+
+    A sheet one cell thin that crosses a block covers it wholly, seen square on, though it fills
+    a third of its volume: so thin things survive.
+
+    Args:
+        mask: bool [X, Y, Z].
+        edges: the lattice coordinates of the cell edges along each axis.
+        shape: the number of blocks along each axis.
+
+    Returns:
+        float32 [shape], 0 to 1.
+    """
+    cover = [overlaps(edges[axis], shape[axis]) for axis in range(3)]
+    member = [memberships(edges[axis], shape[axis]) for axis in range(3)]
+    best = np.zeros(shape, np.float32)
+    for axis in range(3):
+        seen = np.tensordot(member[axis], mask.astype(np.float32), axes=(1, axis)) > 0
+        share = np.moveaxis(seen, 0, axis).astype(np.float32)
+        for other in {0, 1, 2} - {axis}:
+            share = np.moveaxis(np.tensordot(cover[other], share, axes=(1, other)), 0, other)
+        np.maximum(best, share, out=best)
+    return best

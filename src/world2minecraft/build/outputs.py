@@ -1,0 +1,52 @@
+"""What a build leaves on disk: the world, the schematic, the data pack and the scene's labels."""
+
+from pathlib import Path
+
+from world2minecraft.build.spawn import find_spawn
+from world2minecraft.exchange.scene import scene_of, write_scene
+from world2minecraft.minecraft.datapack import write_datapack
+from world2minecraft.minecraft.schem import write_schem
+from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
+from world2minecraft.minecraft.world import write_world
+from world2minecraft.types import BlockVolume
+
+
+def write_build(
+    folder: str | Path,
+    volume: BlockVolume,
+    *,
+    mc_version: str = DEFAULT_VERSION,
+    name: str = "World2Minecraft room",
+) -> None:
+    """Write ``world/``, ``room.schem``, ``datapack.zip``, ``scene.json`` and ``scene.npz``.
+
+    Args:
+        folder: where to write; made when it is not there.
+        volume: the room.
+        mc_version: the game to write for, such as ``1.20.1``.
+        name: the world's name, as the game lists it.
+
+    Raises:
+        UnknownNameError: the version is not known. OutputError: the folder cannot be written.
+    """
+    target = Path(folder)
+    version = game_version(mc_version)
+    spawn = find_spawn(volume)
+    write_world(
+        volume,
+        target / "world",
+        name=name,
+        spawn=spawn.position,
+        spawn_yaw_deg=spawn.yaw_deg,
+        version=version,
+    )
+    write_schem(volume, target / "room.schem", version=version)
+    write_datapack(volume, target / "datapack.zip", version=version, name="room")
+    scene = scene_of(
+        volume,
+        mc_version=version.name,
+        data_version=version.data_version,
+        spawn=spawn.position,
+        spawn_yaw_deg=spawn.yaw_deg,
+    )
+    write_scene(target, scene)

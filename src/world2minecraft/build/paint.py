@@ -1,0 +1,111 @@
+"""From the colours of a surface to the few blocks that show it calmly.
+
+A surface takes the block nearest in Oklab among those its class allows. Alone that is noisy, so
+first a few blocks are chosen that serve the whole surface (one more only when it pays), then each
+block weighs its own colour against its neighbours: a plain wall becomes plain, while the edge
+between a red front and a dark counter stays.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.minecraft.colours import colours_of
+
+NOTICED = 0.09  # Oklab distance from which a part of a surface deserves a block of its own.
+LEAST_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
+LEAST_BLOCKS = 3.0
+ROUNDS = 4
+MAX_DISTANCES = 1 << 24  # Blocks times candidates held at once: 64 MB.
+
+
+def distances(colours: np.ndarray, candidates: Sequence[str], lightness_weight: float):
+    """Return squared distances, float32 [N, M], of Oklab colours [N, 3] to M blocks."""
+    scale = np.array([np.sqrt(lightness_weight), 1, 1], np.float32)
+    wanted = colours.astype(np.float32) * scale
+    offered = oklab_of_srgb(colours_of(candidates)) * scale
+    return ((wanted[:, None] - offered) ** 2).sum(-1)
+
+
+def choose_few(costs: np.ndarray, most: int) -> np.ndarray:
+    """Return the columns of ``costs`` [N, M] that serve all rows best, ``most`` at the most.
+
+    Greedy: the column that serves all best, then each next one that saves more than it costs;
+    one must be worth it for as many blocks as make a part, at a distance that is noticed.
+    """
+    price = NOTICED**2 * max(LEAST_BLOCKS, LEAST_PART * len(costs))
+    chosen = [int(costs.sum(0).argmin())]
+    served = costs[:, chosen[0]].copy()
+    while len(chosen) < most:
+        gains = np.maximum(served[:, None] - costs, 0).sum(0)
+        best = int(gains.argmax())
+        if gains[best] <= price:
+            break
+        chosen.append(best)
+        np.minimum(served, costs[:, best], out=served)
+    return np.array(sorted(chosen))
+
+
+def neighbour_table(positions: np.ndarray) -> np.ndarray:
+    """Return the six face neighbours, int64 [N, 6], of blocks int [N, 3]; N where there is none."""
+    low = positions.min(0) - 1
+    shape = positions.max(0) - low + 2
+    flat = np.ravel_multi_index(tuple((positions - low).T), tuple(shape))
+    order = np.argsort(flat, kind="stable")
+    strides = np.array([shape[1] * shape[2], shape[2], 1])
+    steps = np.concatenate([strides, -strides])
+    wanted = flat[:, None] + steps
+    found = np.minimum(np.searchsorted(flat[order], wanted), len(flat) - 1)
+    return np.where(flat[order][found] == wanted, order[found], len(flat))
+
+
+def calm(costs: np.ndarray, positions: np.ndarray, step: float) -> np.ndarray:
+    """Return a column of ``costs`` [N, M] for each block, neighbours agreeing where they can.
+
+    Blocks of even and of odd places take turns, so that no two neighbours change at once.
+    """
+    chosen = costs.argmin(1)
+    if costs.shape[1] == 1 or step == 0 or len(costs) == 1:
+        return chosen
+    neighbours = neighbour_table(positions)
+    odd = positions.sum(1) % 2
+    for turn in range(ROUNDS):
+        mine = np.flatnonzero(odd == turn % 2)
+        around = np.append(chosen, -1)[neighbours[mine]]
+        energy = costs[mine].copy()
+        for column in range(costs.shape[1]):
+            differing = ((around != column) & (around >= 0)).sum(1)
+            energy[:, column] += step**2 * differing
+        chosen[mine] = energy.argmin(1)
+    return chosen
+
+
+def paint(
+    colours: np.ndarray,
+    positions: np.ndarray,
+    candidates: Sequence[str],
+    *,
+    most: int,
+    lightness_weight: float,
+    calm_step: float,
+) -> np.ndarray:
+    """Return which candidate each block of a surface becomes.
+
+    Args:
+        colours: float32 [N, 3], the Oklab colours of its blocks.
+        positions: int [N, 3], where they are, each once.
+        candidates: M block states.
+        most: at most so many different blocks.
+        lightness_weight: how much lightness counts against hue and chroma.
+        calm_step: the Oklab distance given up for each neighbour that agrees.
+
+    Returns:
+        intp [N], indices into ``candidates``.
+    """
+    if not len(colours):
+        return np.zeros(0, np.intp)
+    stride = -(-len(colours) * len(candidates) // MAX_DISTANCES)
+    few = choose_few(distances(colours[::stride], candidates, lightness_weight), most)
+    costs = distances(colours, [candidates[index] for index in few], lightness_weight)
+    return few[calm(costs, positions, calm_step)]

@@ -1,0 +1,67 @@
+"""What a builder may choose, with where each default comes from."""
+
+from dataclasses import dataclass
+
+from world2minecraft.errors import UsageError
+
+EDGES = ("barrier", "none")
+
+
+@dataclass(frozen=True)
+class BuildParameters:
+    """How a room is built. Each default is a decision; its origin stands beside it.
+
+    palette: the palette file; see docs/building.md.
+    ceiling: build the ceiling where it was seen; without it one looks in from above.
+    lights: put invisible light blocks, so that the room is lit and safe at night.
+    edge: what stands where the floor ends and no wall was seen: invisible ``barrier`` blocks, so
+        that nobody walks into the void, or ``none``.
+    expose: lift the colours of a dim room and take its colour cast away.
+    structure_colours: at most so many blocks a wall, the floor or the ceiling. 3: a wall, its
+        skirting and one thing on it; more looked like noise.
+    object_colours: at most so many blocks an object. 6: a shelf with things on it.
+    lightness_weight: how much lightness counts against hue and chroma (1 = Oklab as it is).
+        0.4: a red cupboard in the shade stays red; at 1 it came out brown.
+    calm: the Oklab distance that a block gives up for each neighbour it agrees with. 0.04: about
+        the noise of fused colours on one plain surface.
+    face_share: the share of a block's face that structure must cover. 0.3: a wall seen in part.
+    object_share: the same for objects. 0.3: a chair leg, one cell wide, fills a third of a face
+        at 4 blocks a metre.
+    plane_reach_blocks: surfaces nearer than this to a wall's plane belong to it. 0.75: noise of
+        two cells at 4 blocks a metre, under the depth of a chimney breast.
+    plane_area_m2: the least area of a plane that draws others to itself. A guess.
+    gap_m: unseen holes in a wall up to this wide are closed. A guess: less than a doorway.
+    slab_margin: the Oklab distance that a colour may lose to become a slab. 0.05: about two
+        barely visible steps, so wood and stone become slabs and red does not.
+    """
+
+    palette: str = "vanilla"
+    ceiling: bool = True
+    lights: bool = True
+    edge: str = "barrier"
+    expose: bool = True
+    structure_colours: int = 3
+    object_colours: int = 6
+    lightness_weight: float = 0.4
+    calm: float = 0.04
+    face_share: float = 0.3
+    object_share: float = 0.3
+    plane_reach_blocks: float = 0.75
+    plane_area_m2: float = 0.3
+    gap_m: float = 0.6
+    slab_margin: float = 0.05
+
+    def __post_init__(self):
+        if self.edge not in EDGES:
+            raise UsageError(f"build.edge must be {' or '.join(EDGES)}, not {self.edge!r}")
+        for name in ("structure_colours", "object_colours"):
+            if getattr(self, name) < 1:
+                raise UsageError(f"build.{name} must be 1 or more, not {getattr(self, name)}")
+        for name in ("lightness_weight", "calm", "gap_m", "slab_margin", "plane_area_m2"):
+            if not 0 <= getattr(self, name) < 1e6:
+                raise UsageError(f"build.{name} must be 0 or more, not {getattr(self, name)}")
+        for name in ("face_share", "object_share", "plane_reach_blocks"):
+            if not 0 < getattr(self, name) <= 1:
+                raise UsageError(
+                    f"build.{name} must be above 0, up to 1, not {getattr(self, name)}"
+                )

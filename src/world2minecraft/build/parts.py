@@ -1,0 +1,85 @@
+"""A furniture template as blocks: its metric parts snapped onto the block lattice.
+
+The placement's box is snapped to whole blocks first and the parts are stretched with it, in the
+template's own frame: so a symmetric chair stays symmetric, equal chairs come out equal, and the
+quarter turn comes last.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.build.halves import of_half_layers
+from world2minecraft.build.lattice import Lattice
+from world2minecraft.coordinates import turn_grid
+from world2minecraft.furniture import Part
+from world2minecraft.types import Placement
+
+THIN = 0.75  # Blocks: a part thinner than this along an axis is one layer.
+POST = 0.5  # Blocks: an upright part thinner than this both ways is a post.
+
+
+class Design(NamedTuple):
+    """A template on the lattice: which part fills each half block, 1 = the first, 0 = none."""
+
+    low: np.ndarray  # int [3], the lattice index of the first block
+    halves: np.ndarray  # uint8 [X, Y, Z]
+    part: np.ndarray  # int16 [X, Y, Z], index into the parts + 1
+    posts: np.ndarray  # bool [X, Y, Z]
+
+
+def design_of(placement: Placement, parts: Sequence[Part], lattice: Lattice) -> Design:
+    """Return the half blocks of a placement's parts, turned and in place."""
+    sizes = placement.size_m * lattice.blocks_per_metre
+    count = np.maximum(np.floor(sizes[:2] + 0.5), 1).astype(int)
+    middle = lattice.coordinates_of(placement.center_m)
+    bottom = _half(middle[2] - sizes[2] / 2)
+    ground = float(lattice.ground)
+    bottom = ground if bottom < ground + 1 else bottom
+    top = max(_half(middle[2] + sizes[2] / 2), bottom + 0.5)
+    base = int(np.floor(bottom))
+    height = int(np.ceil(top)) - base
+    owner = np.zeros((count[0], count[1], 2 * height), np.int16)
+    posts = np.zeros(owner.shape, bool)
+    order = sorted(range(len(parts)), key=lambda i: -_volume(parts[i].box_m))
+    scale = np.array([*(count / sizes[:2]), (top - bottom) / sizes[2]])
+    for index in order:
+        box = parts[index].box_m.reshape(2, 3) * lattice.blocks_per_metre
+        box[:, :2] += sizes[:2] / 2
+        box *= scale
+        spans = [_span(box[0, axis], box[1, axis], int(count[axis])) for axis in (0, 1)]
+        lower = 2 * (bottom - base)
+        spans.append(_span(2 * box[0, 2] + lower, 2 * box[1, 2] + lower, 2 * height))
+        where = tuple(slice(*span) for span in spans)
+        wide = box[1] - box[0]
+        owner[where] = index + 1
+        posts[where] = bool((wide[:2] < POST).all() and wide[2] > 1)
+    return _turned(owner, posts, middle, base, count, placement.quarter_turns)
+
+
+def _turned(owner, posts, middle, base, count, quarter_turns) -> Design:
+    owner, posts = (turn_grid(values, quarter_turns) for values in (owner, posts))
+    size = count[::-1] if quarter_turns % 2 else count
+    low = np.array([*np.floor(middle[:2] - size / 2 + 0.5).astype(int), base])
+    halves = of_half_layers(owner > 0)
+    upper, lower = owner[:, :, 1::2], owner[:, :, 0::2]
+    part = np.where(upper > 0, upper, lower)
+    return Design(low, halves, part, posts[:, :, 0::2] & posts[:, :, 1::2])
+
+
+def _half(value: float) -> float:
+    return float(np.floor(2 * value + 0.5) / 2)
+
+
+def _volume(box: np.ndarray) -> float:
+    return float(np.prod(box[3:] - box[:3]))
+
+
+def _span(low: float, high: float, count: int) -> tuple[int, int]:
+    """Return the layers [start, stop) of a part from low to high, the same for its mirror image."""
+    if high - low < THIN:
+        start = int(np.clip(np.floor((low + high) / 2), 0, count - 1))
+        return start, start + 1
+    start = int(np.clip(np.floor(low + 0.5), 0, count - 1))
+    return start, int(np.clip(np.ceil(high - 0.5), start + 1, count))

@@ -1,0 +1,88 @@
+"""Setting the shell on the canvas: painted floor, walls, ceiling, glass and the unseen edge."""
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.build.canvas import BARRIER, Canvas
+from world2minecraft.build.palettes import Palette
+from world2minecraft.build.parameters import BuildParameters
+from world2minecraft.build.structure import CEILING, FLOOR, WALL, WINDOW, Shell
+from world2minecraft.build.surfaces import block_colours, painted, put_painted
+
+LEAST_PATCH = 12  # Blocks; smaller patches take their colours from the walls as a whole.
+
+
+def put_shell(
+    canvas: Canvas,
+    shell: Shell,
+    colours: np.ndarray,
+    coloured: np.ndarray,
+    palette: Palette,
+    parameters: BuildParameters,
+) -> None:
+    """Paint the surfaces of a shell and set them.
+
+    Args:
+        canvas: an empty canvas.
+        shell: which blocks are what.
+        colours: float32 [X, Y, Z, 3], the Oklab colours of the grid's cells.
+        coloured: bool [X, Y, Z], which cells have one.
+        palette: what may be used.
+        parameters: how many colours, how calm.
+    """
+    seen = coloured[tuple(shell.cells.T)]
+    tinted, known = block_colours(
+        canvas.states.shape, shell.blocks[seen], colours[tuple(shell.cells[seen].T)]
+    )
+    for mask, class_id in ((shell.ceiling, CEILING), (shell.walls, WALL), (shell.floor, FLOOR)):
+        for patch in _patches(mask, shell.patches):
+            states = painted(
+                patch,
+                tinted,
+                known & mask,
+                class_id,
+                palette,
+                parameters,
+                parameters.structure_colours,
+            )
+            put_painted(canvas, patch, states, class_id)
+    _put_windows(canvas, shell.windows, palette)
+
+
+def _patches(mask: np.ndarray, numbers: np.ndarray):
+    """Yield the surfaces of a mask; the small ones come together as one."""
+    held = numbers[mask]
+    counts = np.bincount(held, minlength=1)
+    small = counts < LEAST_PATCH
+    if (small[held]).any():
+        yield mask & small[numbers]
+    for number in np.flatnonzero(~small):
+        yield mask & (numbers == number)
+
+
+def _put_windows(canvas: Canvas, windows: np.ndarray, palette: Palette) -> None:
+    """Set panes where they join something on both sides, else glass blocks."""
+    if not windows.any():
+        return
+    held = np.pad((canvas.states > 0) | windows, ((1, 1), (1, 1), (0, 0)))
+    along_x = held[2:, 1:-1] & held[:-2, 1:-1]
+    along_y = held[1:-1, 2:] & held[1:-1, :-2]
+    panes = windows & (along_x ^ along_y)
+    canvas.put(panes, np.uint16(canvas.id_of(palette.pane)), WINDOW)
+    canvas.put(windows & ~panes, np.uint16(canvas.id_of(palette.glass)), WINDOW)
+
+
+def put_edge(canvas: Canvas, footprint: np.ndarray) -> None:
+    """Stand invisible barriers where the floor ends and no wall was seen.
+
+    Args:
+        canvas: the finished shell and objects.
+        footprint: bool [X, Y], the columns within the room.
+    """
+    ground = canvas.lattice.ground
+    ring = ndimage.binary_dilation(footprint, np.ones((3, 3), bool)) & ~footprint
+    layers = np.flatnonzero((canvas.semantic > 0).any((0, 1)))
+    top = max(int(layers.max()) if len(layers) else 0, ground + 1)
+    open_cells = canvas.states[:, :, ground : top + 1] == 0
+    open_cells &= ring[:, :, None]
+    canvas.states[:, :, ground : top + 1][open_cells] = canvas.id_of(BARRIER)

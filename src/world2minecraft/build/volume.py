@@ -1,0 +1,95 @@
+"""Stage 7: the labelled grid and its placements become a volume of blocks."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from world2minecraft.build.canvas import Canvas
+from world2minecraft.build.connect import connect
+from world2minecraft.build.exact import put_cells_exactly
+from world2minecraft.build.hues import cell_colours, seen_colours
+from world2minecraft.build.lattice import is_exact, lattice_over, snapped_corner_m
+from world2minecraft.build.lights import put_lights
+from world2minecraft.build.objects import ObjectBuilder
+from world2minecraft.build.palettes import Palette, load_palette
+from world2minecraft.build.parameters import BuildParameters
+from world2minecraft.build.shell import put_edge, put_shell
+from world2minecraft.build.structure import build_shell
+from world2minecraft.errors import UsageError
+from world2minecraft.types import BlockVolume, ObjectInstance, OccupancyGrid, Placement
+
+
+def build_volume(
+    grid: OccupancyGrid,
+    placements: Sequence[Placement],
+    instances: Sequence[ObjectInstance],
+    *,
+    corner_m: np.ndarray | None = None,
+    blocks_per_metre: float = 4.0,
+    parameters: BuildParameters | None = None,
+) -> BlockVolume:
+    """Build a room of blocks.
+
+    Args:
+        grid: what each cell is; colours come from it.
+        placements: furniture in its place; object cells without one are built as they are.
+        instances: the objects, whose cells are those of ``grid.instance``.
+        corner_m: (x_min, y_max) of the room's inner box, which comes to stand at block
+            (0, 64, 0); rounded to whole voxels. None takes the grid's own corner.
+        blocks_per_metre: the scale. At one block a voxel, every occupied cell is one block.
+        parameters: how to build.
+
+    Raises:
+        UsageError: the scale is not above 0, or makes too many blocks.
+        UnknownNameError: no palette has this name.
+    """
+    chosen = parameters or BuildParameters()
+    if not 0 < blocks_per_metre < 1e4:
+        raise UsageError(f"blocks_per_metre must be above 0, not {blocks_per_metre}; try 4")
+    corner = grid_corner_m(grid) if corner_m is None else snapped_corner_m(grid, corner_m)
+    canvas = Canvas(lattice_over(grid, corner, blocks_per_metre))
+    palette = load_palette(chosen.palette)
+    colours, coloured = cell_colours(grid, chosen.expose), seen_colours(grid)
+    source = (grid, colours, coloured, palette, chosen)
+    if is_exact(grid, blocks_per_metre):
+        footprint = put_cells_exactly(canvas, *source)
+    else:
+        footprint = _put_room(canvas, placements, *source)
+    connect(canvas)
+    if chosen.edge == "barrier":
+        put_edge(canvas, footprint)
+    if chosen.lights:
+        put_lights(canvas, footprint)
+    return canvas.volume()
+
+
+def _put_room(
+    canvas: Canvas,
+    placements: Sequence[Placement],
+    grid: OccupancyGrid,
+    colours: np.ndarray,
+    coloured: np.ndarray,
+    palette: Palette,
+    parameters: BuildParameters,
+) -> np.ndarray:
+    """Set shell and objects; return the footprint, bool [X, Y]."""
+    shell = build_shell(grid, canvas.lattice, parameters)
+    put_shell(canvas, shell, colours, coloured, palette, parameters)
+    ObjectBuilder(canvas, grid, colours, coloured, palette, parameters).put_all(placements)
+    return shell.footprint
+
+
+def grid_corner_m(grid: OccupancyGrid) -> np.ndarray:
+    """Return (x_min, y_max) of the grid's occupied cells, float64 [2], for a room of no known box.
+
+    A layer of wall cells there counts as shell, outside the corner.
+    """
+    occupied = grid.occupied.any(2)
+    if not occupied.any():
+        return np.array([grid.origin_m[0], grid.origin_m[1] + grid.shape[1] * grid.voxel_m])
+    along_x, along_y = np.flatnonzero(occupied.any(1)), np.flatnonzero(occupied.any(0))
+    first, last = int(along_x[0]), int(along_y[-1])
+    walls = np.isin(grid.labels, (3, 4)).any(2)
+    first += bool(walls[first].any())
+    last -= bool(walls[:, last].any())
+    return grid.origin_m[:2] + np.array([first, last + 1]) * grid.voxel_m
