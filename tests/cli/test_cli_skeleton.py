@@ -1,0 +1,181 @@
+"""``w2m`` itself: help, usage, exit codes, and one line for whatever goes wrong."""
+
+import errno
+import subprocess
+import sys
+
+import pytest
+
+from world2minecraft import __version__, cli
+from world2minecraft.cli import failures, verbs
+from world2minecraft.errors import CaptureError, UsageError
+
+
+@pytest.fixture
+def verb(monkeypatch):
+    """Put a verb ``probe`` in the table whose run is a function of the test's choice."""
+
+    def put(function):
+        module = type(sys)("world2minecraft.cli.probe")
+        module.run, module.EXAMPLES = function, "w2m probe      an example\n"
+        monkeypatch.setitem(sys.modules, "world2minecraft.cli.probe", module)
+        monkeypatch.setitem(verbs.VERBS, "probe", "Probe the skeleton.")
+
+    return put
+
+
+def failing(error):
+    def run() -> None:
+        """Fail."""
+        raise error
+
+    return run
+
+
+def test_help_lists_every_verb_with_its_line(capsys):
+    assert cli.run(["--help"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    for name, line in verbs.VERBS.items():
+        assert f"{name} {line}" in text
+
+
+def test_no_words_at_all_ask_for_help(capsys):
+    assert cli.run([]) == 0
+    assert capsys.readouterr().out.startswith("Usage: w2m")
+
+
+def test_version(capsys):
+    assert cli.run(["--version"]) == 0
+    assert capsys.readouterr().out == f"w2m {__version__}\n"
+
+
+@pytest.mark.parametrize("name", verbs.VERBS)
+def test_each_verb_has_a_help_that_ends_with_examples(name, capsys):
+    assert cli.run([name, "--help"]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith(f"Usage: w2m {name}")
+    assert f"  w2m {name}" in text.partition("Examples:")[2]
+    assert "Args:" not in text
+
+
+def test_help_imports_nothing_heavy():
+    code = (
+        "import sys; from world2minecraft import cli; cli.run(['--help']); "
+        "print(sorted({'numpy', 'numba', 'scipy', 'pydantic', 'rich', 'torch'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (["doctr"], "error: no verb is named 'doctr'; did you mean 'doctor'?\n"),
+        (["--nope"], "error: no such option: --nope; see w2m --help\n"),
+        (["doctor", "x"], "error: got unexpected extra argument(s) (x); see w2m doctor --help\n"),
+        (["convert", "a"], "error: missing argument 'B'; see w2m convert --help\n"),
+        (["convert", "--forc"], "--force"),
+    ],
+)
+def test_wrong_usage_is_one_line_and_exit_code_2(words, line, capsys):
+    assert cli.run(words) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert line in err
+    assert err.count("\n") == 1
+
+
+FAILURES = [
+    (UsageError("give --out"), "error: give --out\n", 2),
+    (CaptureError("cap", "has no poses"), "error: cap: has no poses\n", 3),
+    (CaptureError("cap", "a\n\n b"), "error: cap: a b\n", 3),
+    (KeyboardInterrupt(), "stopped; run the same command again to go on\n", 130),
+    (
+        MemoryError(),
+        "error: out of memory; try a larger --voxel, or close other programs\n",
+        1,
+    ),
+    (
+        OSError(errno.ENOSPC, "No space left on device", "OUT/room.npz"),
+        "error: OUT/room.npz: the disk is full; free some space and run the same command again\n",
+        3,
+    ),
+    (
+        KeyError("x"),
+        "error: unexpected KeyError: 'x' (please report it, with --traceback for details)\n",
+        1,
+    ),
+    (
+        ZeroDivisionError(),
+        "error: unexpected ZeroDivisionError (please report it, with --traceback for details)\n",
+        1,
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("error", "line", "code"), FAILURES, ids=lambda value: type(value).__name__
+)
+def test_what_goes_wrong_is_one_line_and_an_exit_code(verb, capsys, error, line, code):
+    verb(failing(error))
+    assert cli.run(["probe"]) == code
+    assert capsys.readouterr().err == line
+
+
+@pytest.mark.parametrize("words", [["probe", "--traceback"], ["--traceback", "probe"]])
+def test_a_traceback_is_shown_where_it_is_asked_for(verb, capsys, words):
+    verb(failing(KeyError("x")))
+    assert cli.run(words) == 1
+    text = capsys.readouterr().err
+    assert "Traceback" in text
+    assert text.endswith(
+        "error: unexpected KeyError: 'x' (please report it, with --traceback for details)\n"
+    )
+
+
+def test_the_environment_asks_for_a_traceback_too(verb, capsys, monkeypatch):
+    monkeypatch.setenv("W2M_TRACEBACK", "1")
+    verb(failing(UsageError("no")))
+    assert cli.run(["probe"]) == 2
+    assert "Traceback" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("returned", "code"), [(None, 0), (0, 0), (1, 1)])
+def test_a_verb_returns_its_exit_code(verb, returned, code):
+    def run() -> int | None:
+        """Return it."""
+        return returned
+
+    verb(run)
+    assert cli.run(["probe"]) == code
+
+
+def test_a_verbs_help_shows_its_docstring_to_its_args(verb, capsys):
+    def run(scale: float = 4.0) -> None:
+        """Not shown: the table has the line.
+
+        Shown, as a paragraph.
+
+        Args:
+            scale: not shown.
+        """
+
+    verb(run)
+    assert cli.run(["probe", "--help"]) == 0
+    text = capsys.readouterr().out
+    assert "Probe the skeleton." in text
+    assert "Shown, as a paragraph." in text
+    assert "ot shown" not in text
+    assert "4.0" in text
+
+
+def test_system_exit_keeps_its_code():
+    assert failures.report(SystemExit(7)) == 7
+    assert failures.report(SystemExit(None)) == 0
+
+
+def test_main_leaves_with_the_exit_code(monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["w2m", "doctr"])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert caught.value.code == 2
