@@ -81,18 +81,7 @@ def read_nbt(
     Raises:
         DamagedFileError: the bytes are no NBT. LimitError: they ask for too much.
     """
-    reader = _Reader(data, path, limits)
-    try:
-        if not data or data[0] != COMPOUND:
-            raise reader.damaged("does not begin with a compound tag")
-        reader.at = 1
-        name = reader.string()
-        root = reader.value(COMPOUND, 1)
-    except (struct.error, IndexError) as error:
-        raise reader.damaged("ends too early") from error
-    if reader.at != len(data):
-        raise reader.damaged(f"has {len(data) - reader.at} bytes after its end")
-    return name, root
+    return NbtReader(data, path, limits).root()
 
 
 def write_nbt(root: Mapping[str, Any], name: str = "") -> bytes:
@@ -140,18 +129,35 @@ def pack_gzip(data: bytes, level: int = 6) -> bytes:
     return head + body + struct.pack("<II", zlib.crc32(data), len(data) & 0xFFFFFFFF)
 
 
-class _Reader:
-    """A place in the bytes, and how much the tree has asked for."""
+class NbtReader:
+    """A place in the bytes, and how much the tree has asked for; ``read_nbt`` is its use."""
 
     def __init__(self, data: bytes, path: str | Path, limits: NbtLimits):
         self.data, self.path, self.limits = data, path, limits
         self.at = 0
+        self.key = ""  # The name of the value that is read now.
         self.values_left = limits.values
 
+    def root(self) -> tuple[str, dict[str, Any]]:
+        """Read the whole tree; see ``read_nbt``."""
+        try:
+            if not self.data or self.data[0] != COMPOUND:
+                raise self.damaged("does not begin with a compound tag")
+            self.at = 1
+            name = self.string()
+            root = self.compound(1)
+        except (struct.error, IndexError) as error:
+            raise self.damaged("ends too early") from error
+        if self.at != len(self.data):
+            raise self.damaged(f"has {len(self.data) - self.at} bytes after its end")
+        return name, root
+
     def damaged(self, reason: str) -> DamagedFileError:
+        """Return the error to raise at this place."""
         return DamagedFileError(self.path, f"is no valid NBT: at byte {self.at} it {reason}")
 
     def string(self) -> str:
+        """Read a text."""
         start = self.at + 2
         end = start + _UINT16.unpack_from(self.data, self.at)[0]
         if end > len(self.data):
@@ -164,6 +170,7 @@ class _Reader:
             raise self.damaged("has a string that is no modified UTF-8") from error
 
     def value(self, tag: int, depth: int) -> Any:
+        """Read a value of the kind ``tag``."""
         if tag in _NUMBERS:
             layout, kind = _NUMBERS[tag]
             number = layout.unpack_from(self.data, self.at)[0]
@@ -177,12 +184,13 @@ class _Reader:
             reason = f"nests deeper than {self.limits.depth} tags; at most that is read"
             raise LimitError(self.path, reason)
         if tag == COMPOUND:
-            return self._compound(depth)
+            return self.compound(depth)
         if tag == LIST:
-            return self._list(depth)
+            return self.items(depth)
         raise self.damaged(f"has a tag of the unknown kind {tag}")
 
-    def _compound(self, depth: int) -> dict[str, Any]:
+    def compound(self, depth: int) -> dict[str, Any]:
+        """Read a compound, the names of which must differ."""
         result: dict[str, Any] = {}
         while tag := self.data[self.at]:
             self._take(1)
@@ -190,11 +198,13 @@ class _Reader:
             name = self.string()
             if name in result:
                 raise self.damaged(f"names {name[:40]!r} twice")
+            self.key = name
             result[name] = self.value(tag, depth + 1)
         self.at += 1
         return result
 
-    def _list(self, depth: int) -> list[Any]:
+    def items(self, depth: int) -> list[Any]:
+        """Read a list."""
         tag = self.data[self.at]
         count = _INT32.unpack_from(self.data, self.at + 1)[0]
         self.at += 5
@@ -204,6 +214,10 @@ class _Reader:
             return []
         self._hold(count, _LEAST[tag])
         self._take(count)
+        return self.elements(tag, count, depth)
+
+    def elements(self, tag: int, count: int, depth: int) -> list[Any]:
+        """Read the values of a list, after its head."""
         return [self.value(tag, depth + 1) for _ in range(count)]
 
     def _array(self, dtype: np.dtype) -> np.ndarray:

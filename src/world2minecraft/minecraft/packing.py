@@ -134,3 +134,39 @@ def read_varints(data, values):  # pragma: no cover
                 return -2
         values[index] = value
     return at
+
+
+@njit
+def skip_texts(data, at, ends):  # pragma: no cover
+    """Find where each of ``len(ends)`` compounds of texts and of compounds of texts ends.
+
+    Args:
+        data: uint8 [N], NBT.
+        at: where the first compound's content begins.
+        ends: int64 out, the byte after each compound's end.
+
+    Returns:
+        False where something else is there, or the data ends too early.
+    """
+    for index in range(len(ends)):
+        depth = 1
+        while depth:
+            if at + 3 > len(data):
+                if at < len(data) and data[at] == 0 and depth == 1:
+                    at += 1
+                    break
+                return False
+            tag = data[at]
+            at += 1
+            if tag == 0:
+                depth -= 1
+                continue
+            at += 2 + (np.int64(data[at]) << 8 | np.int64(data[at + 1]))
+            if tag == 10:
+                depth += 1
+            elif tag == 8 and at + 2 <= len(data):
+                at += 2 + (np.int64(data[at]) << 8 | np.int64(data[at + 1]))
+            else:
+                return False
+        ends[index] = at
+    return at <= len(data)

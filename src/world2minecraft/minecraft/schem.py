@@ -9,6 +9,7 @@ import numpy as np
 from world2minecraft.coordinates import block_to_room
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.files import read_bytes, write_bytes
+from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.nbt import (
     NbtLimits,
     Short,
@@ -20,7 +21,6 @@ from world2minecraft.minecraft.nbt import (
 from world2minecraft.minecraft.packing import read_varints, write_varints
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.versions import GameVersion, game_version, name_in_version
-from world2minecraft.minecraft.world import entity_nbt
 from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
 MAX_CELLS = 256 << 20

@@ -1,0 +1,20 @@
+"""Entities as NBT."""
+
+import hashlib
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.minecraft.nbt import Float
+from world2minecraft.types import Entity
+
+
+def entity_nbt(entity: Entity, number: int) -> dict[str, Any]:
+    """Return an entity's tags; its UUID comes from its number, so that no two are the same."""
+    digest = hashlib.sha256(f"{number} {entity.id} {entity.position}".encode()).digest()
+    common = {
+        "Motion": [0.0, 0.0, 0.0],
+        "Rotation": [Float(0), Float(0)],
+        "UUID": np.frombuffer(digest[:16], ">i4").astype(np.int32),
+    }
+    return {**common, **entity.nbt, "id": entity.id, "Pos": [float(v) for v in entity.position]}

@@ -1,0 +1,177 @@
+"""World folders of Minecraft Java, read back as volumes."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.coordinates import block_to_room
+from world2minecraft.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.files import read_bytes
+from world2minecraft.minecraft.anvil import read_region
+from world2minecraft.minecraft.chunks import Section, read_chunk
+from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, unpack
+from world2minecraft.minecraft.packing import unpack_section
+from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
+
+MAX_CELLS = 256 << 20  # A volume of this size takes 1.3 GB.
+MAX_UNPACKED_BYTES = 2 << 30  # All chunks of one world together.
+LEVEL_LIMITS = NbtLimits(values=200_000, bytes=32 << 20)
+Place = tuple[int, int]
+Box = tuple[int, int, int, int, int, int]
+
+
+def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
+    """Read the overworld of a world folder, of 1.18 or later.
+
+    Args:
+        folder: the folder that holds ``level.dat``.
+        box: x0 y0 z0 x1 y1 z1 in blocks, the last ones not included; the smallest box of all
+            that is not air where it is left out.
+
+    Returns:
+        The volume, without labels and with one block a metre: a world does not say its scale.
+
+    Raises:
+        InputError: there is no world. DamagedFileError: a file of it is broken.
+        LimitError: it is too large to hold; give a box.
+    """
+    root = Path(folder)
+    read_level(root)
+    regions = _region_files(root)
+    if not regions:
+        raise InputError(root, "holds no region files of an overworld; nothing to read")
+    sections, block_entities = _gather(regions, box)
+    palette = [AIR, *sorted({s for part in sections for s in part.palette} - {AIR})]
+    if len(palette) > 65_535:
+        raise LimitError(root, f"holds {len(palette):,} block states; at most 65,535 are read")
+    states, corner = _fill(root, sections, palette, box)
+    if box is None:
+        states, corner = _trimmed(states, corner)
+    high = np.array(corner) + states.shape
+
+    def inside(position: Any) -> bool:
+        return bool((np.array(corner) <= position).all() and (position < high).all())
+
+    entities = _read_entities(regions)
+    return BlockVolume(
+        states=states,
+        palette=tuple(palette),
+        semantic=np.zeros(states.shape, np.uint8),
+        instance=np.zeros(states.shape, np.uint16),
+        corner=corner,
+        block_to_room=block_to_room(np.zeros(2), 1.0),
+        block_entities=tuple(e for e in block_entities if inside(e.block_pos)),
+        entities=tuple(e for e in entities if box is None or inside(e.position)),
+    )
+
+
+def read_level(folder: Path) -> dict[str, Any]:
+    """Return the ``Data`` of a world's ``level.dat``.
+
+    Raises:
+        InputError: there is none. DamagedFileError: it is broken. LimitError: it is too large.
+    """
+    path = folder / "level.dat"
+    if not path.is_file():
+        raise InputError(folder, "is no world folder: it has no level.dat")
+    data = unpack(read_bytes(path, LEVEL_LIMITS.bytes), path, LEVEL_LIMITS.bytes)
+    _, root = read_nbt(data, path, LEVEL_LIMITS)
+    if not isinstance(root.get("Data"), dict):
+        raise DamagedFileError(path, "has no Data")
+    return root["Data"]
+
+
+def _region_files(root: Path) -> list[Path]:
+    """The overworld's regions: beside level.dat, or from 26.1 on in a tree of dimensions."""
+    for folder in (root / "region", root / "dimensions" / "minecraft" / "overworld" / "region"):
+        found = sorted(folder.glob("r.*.mca"))
+        if found:
+            return found
+    return []
+
+
+def _gather(regions: list[Path], box: Box | None) -> tuple[list[Section], list[BlockEntity]]:
+    sections: list[Section] = []
+    entities: list[BlockEntity] = []
+    known: dict[bytes, str] = {}
+    unpacked = 0
+    for path in regions:
+        for place, data in read_region(path):
+            if box is not None and not _meets(place, box):
+                continue
+            unpacked += len(data)
+            if unpacked > MAX_UNPACKED_BYTES:
+                reason = f"the world unpacks to more than {MAX_UNPACKED_BYTES:,} bytes"
+                raise LimitError(path, f"{reason}; give a box of it")
+            root, found = read_chunk(data, place, path, known)
+            sections.extend(found)
+            entities.extend(_block_entities(root, path))
+    return sections, entities
+
+
+def _meets(place: Place, box: Box) -> bool:
+    x, z = place[0] * 16, place[1] * 16
+    return box[0] < x + 16 and x < box[3] and box[2] < z + 16 and z < box[5]
+
+
+def _block_entities(root: dict[str, Any], path: Path) -> Iterator[BlockEntity]:
+    for nbt in root.get("block_entities", []):
+        try:
+            rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
+            position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
+            yield BlockEntity(position, str(nbt["id"]), rest)
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise DamagedFileError(path, "has a block entity without id and place") from error
+
+
+def _fill(
+    root: Path, sections: list[Section], palette: list[str], box: Box | None
+) -> tuple[np.ndarray, tuple[int, int, int]]:
+    if box is None:
+        places = np.array([section.place for section in sections] or [(0, 4, 0)])
+        low, high = places.min(axis=0) * 16, (places.max(axis=0) + 1) * 16
+    else:
+        low, high = np.array(box[:3]), np.array(box[3:])
+    size = high - low
+    if (size <= 0).any() or size.astype(float).prod() > MAX_CELLS:
+        shown = " x ".join(str(side) for side in size.tolist())
+        raise LimitError(root, f"{shown} blocks; at most {MAX_CELLS:,} are read: give a box")
+    states = np.zeros(tuple(size.tolist()), np.uint16)
+    number_of = {state: number for number, state in enumerate(palette)}
+    for section in sections:
+        numbers = np.array([number_of[state] for state in section.palette], np.uint16)
+        origin = np.array(section.place, np.int64) * 16 - low
+        if not unpack_section(section.words, numbers, states, origin):
+            raise DamagedFileError(root, f"section {section.place} points outside its palette")
+    x, y, z = low.tolist()
+    return states, (x, y, z)
+
+
+def _trimmed(
+    states: np.ndarray, corner: tuple[int, int, int]
+) -> tuple[np.ndarray, tuple[int, int, int]]:
+    """Cut away the layers of air around the blocks."""
+    cuts = []
+    for axis in range(3):
+        filled = np.flatnonzero(states.any(axis=tuple({0, 1, 2} - {axis})))
+        cuts.append(slice(filled[0], filled[-1] + 1) if len(filled) else slice(0, 1))
+    x, y, z = (int(low + cut.start) for low, cut in zip(corner, cuts, strict=True))
+    return np.ascontiguousarray(states[tuple(cuts)]), (x, y, z)
+
+
+def _read_entities(regions: list[Path]) -> list[Entity]:
+    folder = regions[0].parent.parent / "entities"
+    found: list[Entity] = []
+    for path in sorted(folder.glob("r.*.mca")):
+        for _, data in read_region(path):
+            _, root = read_nbt(data, path)
+            try:
+                for nbt in root["Entities"]:
+                    x, y, z = (float(value) for value in nbt["Pos"])
+                    rest = {key: nbt[key] for key in nbt if key not in ("id", "Pos")}
+                    found.append(Entity((x, y, z), str(nbt["id"]), rest))
+            except (KeyError, TypeError, ValueError, AttributeError) as error:
+                raise DamagedFileError(path, "has an entity without id and place") from error
+    return found
