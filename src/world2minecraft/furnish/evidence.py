@@ -7,7 +7,7 @@ import numpy as np
 from world2minecraft.classes import UNKNOWN, SemanticClass
 from world2minecraft.types import OccupancyGrid
 
-IGNORED, AGAINST, OWN = 0, 1, 2
+IGNORED, AGAINST, OWN, BEYOND = 0, 1, 2, 3
 MARGIN = 3  # Shift, slack and one more cell around the largest box that is tried.
 
 
@@ -17,7 +17,8 @@ class Evidence:
 
     ``code`` says for each cell what a template that covers it gains: OWN is a cell of the object,
     AGAINST one that was seen to be free or structure, IGNORED one that was never seen or belongs
-    to another object, and so counts neither way. ``low`` and ``high`` bound the object's own
+    to another object, and so counts neither way; BEYOND is such a cell outside the object's own
+    box. ``low`` and ``high`` bound the object's own
     cells, ``floor`` is the first layer above the floor, all in cells of the window.
     """
 
@@ -50,10 +51,18 @@ def evidence_of(
         code[here] = np.where(
             (labels <= SemanticClass.WINDOW) & (labels != UNKNOWN), AGAINST, IGNORED
         )
+        code[_outside(code.shape, low - begin, high - begin) & (code == IGNORED)] = BEYOND
     code[tuple((cells - begin).T)] = OWN
     return Evidence(
         code, begin, _triple(low - begin), _triple(high - begin), floor - int(begin[2]), len(cells)
     )
+
+
+def _outside(shape: tuple[int, ...], low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Return a mask of the columns outside the box; under and over it is within."""
+    mask = np.ones(shape, np.bool_)
+    mask[low[0] : high[0], low[1] : high[1]] = False
+    return mask
 
 
 def _triple(values: np.ndarray) -> tuple[int, int, int]:

@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.furnish.evidence import Evidence
 from world2minecraft.furnish.parameters import FurnishParameters
 from world2minecraft.furnish.seeds import limits, seeds
-from world2minecraft.furnish.trial import Bias, Cells, Scored, Trial, score_shifts
+from world2minecraft.furnish.trial import Bias, Scored, Trial, score_shifts
 from world2minecraft.furniture import Template
 
 NO_SHIFT = np.zeros((1, 3), np.int64)
@@ -21,7 +21,7 @@ def best_matches(
 ) -> list[Scored]:
     """Return the best trial of each template and turn, refined, best first."""
     first: dict[tuple[str, int], Scored] = {}
-    for trial in seeds(templates, evidence, bias.voxel_m):
+    for trial in seeds(templates, evidence, bias.voxel_m, anywhere=chosen.paper_compat):
         scored = score_shifts(evidence, trial, NO_SHIFT, bias)
         _keep(first, scored)
     coarse = sorted(first.values(), key=lambda one: -one.score)
@@ -46,7 +46,7 @@ def _refine(seed: Scored, evidence: Evidence, bias: Bias, chosen: FurnishParamet
         for name, _value in seed.trial.values:
             best = _first_best(best, _with_parameter(best.trial, name), evidence, bias)
         for axis in range(3):
-            moves = _with_size(best.trial, seed.trial.counts, axis, bias.voxel_m, chosen)
+            moves = _with_size(best.trial, seed.trial, axis, bias.voxel_m, chosen)
             best = _first_best(best, moves, evidence, bias)
         best = _shifted(best, seed.trial, evidence, bias, chosen.shift_cells)
         if best is before:
@@ -64,7 +64,9 @@ def _first_best(best: Scored, trials: Iterator[Trial], evidence: Evidence, bias:
 def _shifted(best: Scored, seed: Trial, evidence: Evidence, bias: Bias, shift_cells: int) -> Scored:
     """Try every shift around the seed's place; the smallest first, so that equals stay."""
     home = best.trial._replace(corner=seed.corner)
-    scored = score_shifts(evidence, home, shifts_within(shift_cells), bias)
+    shifts = shifts_within(shift_cells)
+    shifts = shifts[seed.corner[2] + shifts[:, 2] >= min(evidence.floor, seed.corner[2])]
+    scored = score_shifts(evidence, home, shifts, bias)
     return scored if scored.score > best.score else best
 
 
@@ -84,16 +86,19 @@ def _with_parameter(trial: Trial, name: str) -> Iterator[Trial]:
 
 
 def _with_size(
-    trial: Trial, seed: Cells, axis: int, voxel_m: float, chosen: FurnishParameters
+    trial: Trial, seed: Trial, axis: int, voxel_m: float, chosen: FurnishParameters
 ) -> Iterator[Trial]:
-    """Give the trial one cell smaller or larger along one of its own axes, at either end."""
+    """Give the trial one cell smaller or larger along one of its own axes, at either end.
+
+    The bottom stays: it is the floor's, or the shift's to find.
+    """
     least, most = limits(trial.template, voxel_m, axis)
     room_axis = 1 - axis if axis < 2 and trial.quarter_turns % 2 else axis
     for step in (-1, 1):
         count = trial.counts[axis] + step
-        if not least <= count <= most or abs(count - seed[axis]) > chosen.size_slack:
+        if not least <= count <= most or abs(count - seed.counts[axis]) > chosen.size_slack:
             continue
-        for shift in (0, -step):
+        for shift in (0,) if axis == 2 else (0, -step):
             yield _resized(trial, axis, count, room_axis, shift)
 
 

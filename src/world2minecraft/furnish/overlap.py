@@ -7,7 +7,7 @@ from world2minecraft.jit import njit
 
 @njit
 def overlaps(template, code, corners):  # pragma: no cover - compiled
-    """Return int64 [S, 2]: own cells covered and cells covered against, for each corner.
+    """Return int64 [S, 3]: own cells covered, cells against, cells beyond, for each corner.
 
     Args:
         template: bool [A, B, C], the turned template's cells, C order.
@@ -15,7 +15,7 @@ def overlaps(template, code, corners):  # pragma: no cover - compiled
         corners: int64 [S, 3], where the template's first cell lies; what falls outside the
             window counts against.
     """
-    counts = np.zeros((len(corners), 2), np.int64)
+    counts = np.zeros((len(corners), 3), np.int64)
     for x in range(template.shape[0]):
         for y in range(template.shape[1]):
             for z in range(template.shape[2]):
@@ -35,4 +35,6 @@ def overlaps(template, code, corners):  # pragma: no cover - compiled
                         counts[s, 1] += 1
                     elif code[i, j, k] == 2:
                         counts[s, 0] += 1
+                    elif code[i, j, k] == 3:
+                        counts[s, 2] += 1
     return counts

@@ -18,30 +18,37 @@ class FurnishParameters:
     alternatives: how many other templates and turns a placement lists.
     cut_below: an object matched worse than this is cut into runs, in case they match better. An
         L of two equal wings fills 5/9 to 3/4 of its box.
-    cut_gain: by how much the runs together must match better than the whole.
+    cut_gain: by how much the runs together must match better than the whole, for each cut; less
+        lets noise cut a table into several (seen on a real kitchen).
+    cut_from_m: an object shorter than this is not cut: two chairs side by side are not shorter,
+        and the wings of an L are not either.
     max_runs: into how many runs an object is cut at most; a kitchen has four to six.
     min_run_cells: a run of fewer cells of the floor plan is left to its neighbours.
     tie_weight: how much IoU an unusual size may cost or the front seen by find/ may bring. It
         decides between equals and never against a clear match.
+    beyond_weight: the score that a template loses where it lies wholly in the unseen outside the
+        object's box; a tenth, so that it outweighs tie_weight and no clear match.
     paper_compat: the paper's equation to the letter: every cell of the template and of the
         object counts, seen or not, nothing breaks ties but the library's order, and nothing is
         cut into runs.
     """
 
-    min_iou: float = 0.45
+    min_iou: float = 0.5
     shift_cells: int = 1
     size_slack: int = 1
     finalists: int = 6
     alternatives: int = 5
     cut_below: float = 0.75
-    cut_gain: float = 0.08
+    cut_gain: float = 0.05
+    cut_from_m: float = 1.2
     max_runs: int = 8
     min_run_cells: int = 6
     tie_weight: float = 0.02
+    beyond_weight: float = 0.1
     paper_compat: bool = False
 
     def __post_init__(self):
-        for name in ("min_iou", "cut_below", "cut_gain", "tie_weight"):
+        for name in ("min_iou", "cut_below", "cut_gain", "tie_weight", "beyond_weight"):
             if not 0 <= getattr(self, name) <= 1:
                 raise UsageError(f"{name} must lie between 0 and 1, not {getattr(self, name)}")
         for name in ("shift_cells", "size_slack", "alternatives"):

@@ -39,15 +39,20 @@ def _furnish_one(
     if not len(instance.cells):
         return []
     whole, matches = _match(grid, instance, instance.cells, chosen)
-    if matches and (chosen.paper_compat or matches[0].iou >= chosen.cut_below):
+    single = matches[0].iou if matches else 0.0
+    if chosen.paper_compat or single >= chosen.cut_below or _is_short(grid, whole, chosen):
         return [_placement(grid, instance, whole, matches, chosen)]
     runs = cut_into_runs(whole, chosen.max_runs, chosen.min_run_cells)
-    if len(runs) > 1:
-        cells = [(run + whole.corner).astype(np.int32) for run in runs]
-        parts = [_match(grid, instance, run, chosen) for run in cells]
-        if _together(parts) >= (matches[0].iou if matches else 0.0) + chosen.cut_gain:
-            return [_placement(grid, instance, *part, chosen) for part in parts]
+    parts = [_match(grid, instance, (run + whole.corner).astype(np.int32), chosen) for run in runs]
+    cuts = sum(evidence.own >= chosen.min_run_cells for evidence, _ in parts) - 1
+    if cuts > 0 and _together(parts) >= single + chosen.cut_gain * cuts:
+        return [_placement(grid, instance, *part, chosen) for part in parts]
     return [_placement(grid, instance, whole, matches, chosen)]
+
+
+def _is_short(grid: OccupancyGrid, evidence: Evidence, chosen: FurnishParameters) -> bool:
+    sides = [evidence.high[axis] - evidence.low[axis] for axis in (0, 1)]
+    return max(sides) * grid.voxel_m < chosen.cut_from_m
 
 
 def _match(
@@ -56,8 +61,8 @@ def _match(
     templates = templates_of(instance.class_id)
     reach = reach_of(templates, grid.voxel_m)
     evidence = evidence_of(grid, cells, reach, chosen.paper_compat)
-    weight = 0.0 if chosen.paper_compat else chosen.tie_weight
-    bias = Bias(_turns_of(instance), grid.voxel_m, weight)
+    weights = (0.0, 0.0) if chosen.paper_compat else (chosen.tie_weight, chosen.beyond_weight)
+    bias = Bias(_turns_of(instance), grid.voxel_m, *weights)
     return evidence, best_matches(templates, evidence, bias, chosen)
 
 

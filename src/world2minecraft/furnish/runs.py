@@ -1,6 +1,7 @@
 """An object that is no box, such as an L of counters, cut into axis-aligned runs."""
 
 import numpy as np
+from scipy import ndimage
 
 from world2minecraft.furnish.evidence import IGNORED, OWN, Evidence
 from world2minecraft.jit import njit
@@ -11,12 +12,13 @@ COMMON_TOPS = 3  # How many of the commonest tops are tried for the next run.
 
 
 def cut_into_runs(evidence: Evidence, max_runs: int, min_run_cells: int) -> list[np.ndarray]:
-    """Return the cells, int64 [N, 3] in the window, of each run; every own cell is in one at most.
+    """Return the cells, int64 [N, 3] in the window, of each run; and all own cells are in one.
 
     The object is first parted by height where its plan nearly vanishes (cupboards over a
     counter). Then the largest rectangle of columns with about the same top is taken from the
     plan, again and again. Columns that were never seen may lie inside a rectangle: of a tall
-    cupboard only the front is seen. What remains is one last run.
+    cupboard only the front is seen. What remains
+    joins the run it touches, or is a run by itself.
     """
     runs: list[np.ndarray] = []
     rest: list[np.ndarray] = []
@@ -27,8 +29,31 @@ def cut_into_runs(evidence: Evidence, max_runs: int, min_run_cells: int) -> list
         found, left = _rectangles(storey, unseen, max_runs - len(runs), min_run_cells)
         runs += found
         rest.append(left)
-    left = np.concatenate(rest)
-    return [*runs, left] if len(left) else runs
+    return _with_rest(runs, np.concatenate(rest))
+
+
+def _with_rest(runs: list[np.ndarray], rest: np.ndarray) -> list[np.ndarray]:
+    """Give what remains to the first run whose box it touches; other pieces are their own runs."""
+    boxes = [(run.min(axis=0) - 1, run.max(axis=0) + 1) for run in runs]
+    joined = [[run] for run in runs]
+    loose = np.ones(len(rest), np.bool_)
+    for box, cells in zip(boxes, joined, strict=True):
+        near = loose & ((rest >= box[0]) & (rest <= box[1])).all(axis=1)
+        cells.append(rest[near])
+        loose &= ~near
+    return [*(np.concatenate(cells) for cells in joined), *_pieces(rest[loose])]
+
+
+def _pieces(cells: np.ndarray) -> list[np.ndarray]:
+    if not len(cells):
+        return []
+    low = cells.min(axis=0)
+    mask = np.zeros(np.ptp(cells, axis=0) + 1, np.bool_)
+    mask[tuple((cells - low).T)] = True
+    numbers = np.empty(mask.shape, np.int32)
+    ndimage.label(mask, np.ones((3, 3, 3)), output=numbers)
+    count = int(numbers.max())
+    return [np.argwhere(numbers == number) + low for number in range(1, count + 1)]
 
 
 def _storeys(own: np.ndarray) -> list[tuple[int, int]]:

@@ -42,27 +42,30 @@ class Scored(NamedTuple):
 
 
 class Bias(NamedTuple):
-    """What breaks ties: the front seen by find/, the cell size and how much of IoU it may weigh."""
+    """What decides beside IoU: the front seen by find/, the cell size, and how much each weighs."""
 
     quarter_turns: int
     voxel_m: float
     tie_weight: float
+    beyond_weight: float
 
 
 def score_shifts(evidence: Evidence, trial: Trial, shifts: np.ndarray, bias: Bias) -> Scored:
     """Return the best of a trial at several shifts, int64 [S, 3]; of equals the first.
 
     IoU = covered own cells / (own cells + cells covered against): the paper's equation, in which
-    cells that say nothing are left out of the template.
+    cells that say nothing are left out of the template. Growing into what was never seen costs
+    score, not IoU, so that a template goes beyond the object only as far as it must.
     """
     solid = _turned(trial.template, trial.counts, trial.values, bias.voxel_m, trial.quarter_turns)
     counts = overlaps(solid, evidence.code, shifts + np.array(trial.corner))
     ious = counts[:, 0] / (evidence.own + counts[:, 1])
-    best = int(np.argmax(np.round(ious, 12)))
+    scores = ious - bias.beyond_weight * counts[:, 2] / np.count_nonzero(solid)
+    best = int(np.argmax(np.round(scores, 12)))
     x, y, z = (int(a) + int(b) for a, b in zip(trial.corner, shifts[best], strict=True))
-    iou = float(ious[best])
     moved = trial._replace(corner=(x, y, z))
-    return Scored(round(iou + tie_break(trial, bias), 12), iou, moved)
+    score = round(float(scores[best]) + tie_break(trial, bias), 12)
+    return Scored(score, float(ious[best]), moved)
 
 
 def tie_break(trial: Trial, bias: Bias) -> float:

@@ -13,7 +13,7 @@ def _build(depth: float, width: float, height: float, p: Parameters) -> list[Par
 TEMPLATE = Template(
     name="box",
     class_id=SemanticClass.OBJS,
-    size_m=(Span(0.1, 0.4, 0.8), Span(0.1, 0.4, 1.0), Span(0.08, 0.4, 2.0)),
+    size_m=(Span(0.08, 0.4, 2.0), Span(0.08, 0.4, 2.0), Span(0.08, 0.4, 2.0)),
     build=_build,
     design=filled("minecraft:barrel[facing=up,open=false]", "body"),
     turns=1,

@@ -31,7 +31,7 @@ def _design(size: BlockSize, p: Parameters) -> list[LocalBlock]:
 TEMPLATE = Template(
     name="lamp",
     class_id=SemanticClass.OBJS,
-    size_m=(Span(0.2, 0.38, 0.6), Span(0.2, 0.38, 0.6), Span(0.35, 1.5, 2.0)),
+    size_m=(Span(0.24, 0.38, 0.6), Span(0.24, 0.38, 0.6), Span(0.5, 1.5, 2.0)),
     build=_build,
     design=_design,
     parameters={"shade_share": Span(0.15, 0.22, 0.5)},

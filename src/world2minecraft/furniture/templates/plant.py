@@ -33,7 +33,7 @@ def _design(size: BlockSize, p: Parameters) -> list[LocalBlock]:
 TEMPLATE = Template(
     name="plant",
     class_id=SemanticClass.OBJS,
-    size_m=(Span(0.2, 0.45, 1.0), Span(0.2, 0.45, 1.0), Span(0.3, 0.9, 2.0)),
+    size_m=(Span(0.28, 0.45, 1.0), Span(0.28, 0.45, 1.0), Span(0.5, 0.9, 2.0)),
     build=_build,
     design=_design,
     parameters={"pot_share": Span(0.15, 0.3, 0.45)},
