@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from PIL import Image
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter1d
 
 from world2minecraft.jit import njit
 from world2minecraft.types import Camera, View
@@ -121,10 +121,10 @@ def _jumps(depth_m: np.ndarray) -> np.ndarray:
 
 def _change(pixels: np.ndarray, axis: int) -> np.ndarray:
     """Return how much colour changes along an axis, 0 to 1 with its mean taken off."""
-    order = (0, 1) if axis == 1 else (1, 0)
     steep = np.zeros(pixels.shape[:2], np.float32)
     for channel in range(3):
-        slope = gaussian_filter(pixels[..., channel], BLUR_PX, order=order)
+        calm = gaussian_filter1d(pixels[..., channel], BLUR_PX, axis=1 - axis)
+        slope = gaussian_filter1d(calm, BLUR_PX, axis=axis, order=1)
         np.maximum(steep, np.abs(slope), out=steep)
     # A strong border must not outweigh many plain ones: change saturates at what is steep here.
     change = steep / (steep + np.percentile(steep, 85) + 1e-3)
