@@ -11,21 +11,19 @@ from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.minecraft.states import parse_state
 
 _STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # Room axes; the facing of 0 to 3 quarter turns.
-_KINDS = {"pane": ("_pane", "iron_bars"), "fence": ("_fence",)}
+# Kinds that join among themselves; a nether brick fence and a wooden one do not.
+_KINDS = (("_pane", "iron_bars"), ("nether_brick_fence",), ("_fence",))
+_NOT = {("_fence",): ("minecraft:nether_brick",)}
 
 
 def connect(canvas: Canvas) -> None:
     """Give every pane and fence of a canvas its connections, in place."""
-    names = [state.partition("[")[0] for state in canvas.palette]
-    solid = np.array([_is_sturdy(state) for state in canvas.palette])
-    for kind, endings in _KINDS.items():
-        alike = np.array([name.endswith(endings) for name in names])
-        if kind == "fence":
-            # A nether brick fence and a wooden one do not join.
-            _connect_kind(
-                canvas, alike & (np.array(names) != "minecraft:nether_brick_fence"), solid
-            )
-            alike &= np.array(names) == "minecraft:nether_brick_fence"
+    for kind in _KINDS:
+        names = [state.partition("[")[0] for state in canvas.palette]
+        alike = np.array(
+            [name.endswith(kind) and not name.startswith(_NOT.get(kind, ())) for name in names]
+        )
+        solid = np.array([_is_sturdy(state) for state in canvas.palette])
         _connect_kind(canvas, alike, solid)
 
 

@@ -4,12 +4,11 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.build.canvas import BARRIER, Canvas
-from world2minecraft.build.hues import default_colour, spread
 from world2minecraft.build.lattice import Lattice
-from world2minecraft.build.paint import paint
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.structure import STANDING_M, WALL, WINDOW
+from world2minecraft.build.surfaces import painted
 from world2minecraft.types import UNSEEN, OccupancyGrid
 
 
@@ -39,9 +38,9 @@ def put_cells_exactly(
         if class_id == WINDOW:
             states[mask] = canvas.id_of(palette.glass)
             continue
-        states[mask] = _painted(
-            canvas, mask, colours, coloured, class_id, palette, parameters, limit
-        )
+        chosen = painted(mask, colours, coloured, class_id, palette, parameters, limit)
+        names, index = np.unique(chosen.astype(str), return_inverse=True)
+        states[mask] = canvas.ids_of(names.tolist())[index]
     canvas.states[inside] = states
     canvas.semantic[inside] = np.where(occupied, grid.labels, 0)
     canvas.instance[inside] = np.where(occupied, grid.instance, 0)
@@ -56,24 +55,6 @@ def _start(grid: OccupancyGrid, lattice: Lattice) -> tuple[int, int, int]:
     at = lattice.coordinates_of(grid.origin_m)
     x, y, z = np.rint(at).astype(int).tolist()
     return x, y, z
-
-
-def _painted(canvas, mask, colours, coloured, class_id, palette, parameters, limit) -> np.ndarray:
-    default = palette.defaults[class_id]
-    if not (coloured & mask).any():
-        return np.full(int(mask.sum()), canvas.id_of(default), np.uint16)
-    found = spread(colours, coloured & mask, mask, default_colour(default))
-    choices = palette.blocks[class_id]
-    index = paint(
-        found,
-        np.argwhere(mask),
-        choices,
-        most=limit,
-        lightness_weight=parameters.lightness_weight,
-        calm_step=parameters.calm,
-    )
-    used, inverse = np.unique(index, return_inverse=True)
-    return canvas.ids_of([choices[number] for number in used])[inverse]
 
 
 def _footprint(grid: OccupancyGrid) -> np.ndarray:

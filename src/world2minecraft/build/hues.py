@@ -14,6 +14,9 @@ GAIN_LIMIT = 1.8
 # White balance: bright cells that are nearly grey are taken for grey.
 GREY_CHROMA, CAST_LIMIT = 0.05, 1.15
 LEAST_CELLS = 50
+# Chroma under which a colour is a grey with a cast, and from which it is meant.
+FAINT_CHROMA, CLEAR_CHROMA = 0.02, 0.06
+NEAR_BLOCKS = 2.0  # So far a block that nobody saw takes the colour of the nearest that was seen.
 
 
 def seen_colours(grid: OccupancyGrid) -> np.ndarray:
@@ -21,8 +24,14 @@ def seen_colours(grid: OccupancyGrid) -> np.ndarray:
     return grid.occupied & grid.colour.any(-1)
 
 
-def cell_colours(grid: OccupancyGrid, expose: bool) -> np.ndarray:
-    """Return the Oklab colours of all cells, float32 [X, Y, Z, 3]; zero where there is none."""
+def cell_colours(grid: OccupancyGrid, expose: bool, saturation: float) -> np.ndarray:
+    """Return the Oklab colours of all cells, float32 [X, Y, Z, 3]; zero where there is none.
+
+    Args:
+        grid: the room.
+        expose: whether to light a dim room and take away its colour cast.
+        saturation: the factor on the chroma of clear colours; greys stay as they are.
+    """
     seen = seen_colours(grid)
     result = np.zeros((*grid.shape, 3), np.float32)
     colours = grid.colour[seen]
@@ -33,6 +42,9 @@ def cell_colours(grid: OccupancyGrid, expose: bool) -> np.ndarray:
         result[seen] = oklab_of_linear(np.clip(linear * gains_of(linear), 0, 1))
     else:
         result[seen] = oklab_of_srgb(colours)
+    chroma = np.hypot(result[..., 1], result[..., 2])
+    clear = np.clip((chroma - FAINT_CHROMA) / (CLEAR_CHROMA - FAINT_CHROMA), 0, 1)
+    result[..., 1:] *= (1 + (saturation - 1) * clear)[..., None]
     return result
 
 
@@ -84,6 +96,8 @@ def group_medians(groups: np.ndarray, colours: np.ndarray, count: int) -> tuple:
 def spread(colours: np.ndarray, known: np.ndarray, wanted: np.ndarray, default: np.ndarray):
     """Return the colours, float32 [N, 3], at ``wanted``: each its own, or the nearest known one.
 
+    Far from all known ones it is their median: a floor under a table is like the rest of it.
+
     Args:
         colours: float32 [X, Y, Z, 3].
         known: bool [X, Y, Z], where ``colours`` holds one.
@@ -94,5 +108,7 @@ def spread(colours: np.ndarray, known: np.ndarray, wanted: np.ndarray, default: 
         return np.broadcast_to(default, (int(wanted.sum()), 3)).astype(np.float32)
     if known[wanted].all():
         return colours[wanted]
-    nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
-    return colours[tuple(axis[wanted] for axis in nearest)]
+    away, nearest = ndimage.distance_transform_edt(~known, return_indices=True)
+    result = colours[tuple(axis[wanted] for axis in nearest)]
+    result[away[wanted] > NEAR_BLOCKS] = np.median(colours[known], axis=0)
+    return result

@@ -20,12 +20,21 @@ ROUNDS = 4
 MAX_DISTANCES = 1 << 24  # Blocks times candidates held at once: 64 MB.
 
 
-def distances(colours: np.ndarray, candidates: Sequence[str], lightness_weight: float):
-    """Return squared distances, float32 [N, M], of Oklab colours [N, 3] to M blocks."""
+def costs_of(
+    colours: np.ndarray,
+    candidates: Sequence[str],
+    lightness_weight: float,
+    handicaps: np.ndarray,
+) -> np.ndarray:
+    """Return squared distances, float32 [N, M], of Oklab colours [N, 3] to M blocks.
+
+    ``handicaps`` float [M] are added to the distances.
+    """
     scale = np.array([np.sqrt(lightness_weight), 1, 1], np.float32)
     wanted = colours.astype(np.float32) * scale
     offered = oklab_of_srgb(colours_of(candidates)) * scale
-    return ((wanted[:, None] - offered) ** 2).sum(-1)
+    apart = np.sqrt(((wanted[:, None] - offered) ** 2).sum(-1))
+    return (apart + handicaps.astype(np.float32)) ** 2
 
 
 def choose_few(costs: np.ndarray, most: int) -> np.ndarray:
@@ -89,6 +98,7 @@ def paint(
     most: int,
     lightness_weight: float,
     calm_step: float,
+    handicaps: np.ndarray | None = None,
 ) -> np.ndarray:
     """Return which candidate each block of a surface becomes.
 
@@ -99,6 +109,7 @@ def paint(
         most: at most so many different blocks.
         lightness_weight: how much lightness counts against hue and chroma.
         calm_step: the Oklab distance given up for each neighbour that agrees.
+        handicaps: float [M], Oklab distances added to those of each candidate; None adds none.
 
     Returns:
         intp [N], indices into ``candidates``.
@@ -106,6 +117,9 @@ def paint(
     if not len(colours):
         return np.zeros(0, np.intp)
     stride = -(-len(colours) * len(candidates) // MAX_DISTANCES)
-    few = choose_few(distances(colours[::stride], candidates, lightness_weight), most)
-    costs = distances(colours, [candidates[index] for index in few], lightness_weight)
+    extra = np.zeros(len(candidates)) if handicaps is None else handicaps
+    sample = costs_of(colours[::stride], candidates, lightness_weight, extra)
+    few = choose_few(sample, most)
+    offered = [candidates[index] for index in few]
+    costs = costs_of(colours, offered, lightness_weight, extra[few])
     return few[calm(costs, positions, calm_step)]

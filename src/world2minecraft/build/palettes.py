@@ -1,7 +1,7 @@
 """Which blocks a surface of a class may be made of: palette files, read and checked."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -16,19 +16,19 @@ PALETTE_FILES = {"vanilla": "palette_vanilla.json"}
 
 @dataclass(frozen=True)
 class Palette:
-    """Blocks by class. States are complete; ``slabs`` and ``fences`` go by full block."""
+    """Blocks by class. States are complete; ``slabs`` and ``fences`` go by full block.
+
+    ``preferred`` are the blocks that win where colours are about as near: a table is of wood.
+    """
 
     name: str
     blocks: Mapping[int, tuple[str, ...]]
+    preferred: Mapping[int, frozenset[str]]
     defaults: Mapping[int, str]
     slabs: Mapping[str, str]
     fences: Mapping[str, str]
     glass: str
     pane: str
-
-    def with_slab(self, blocks: Sequence[str]) -> tuple[str, ...]:
-        """Return those of the blocks that have a slab."""
-        return tuple(block for block in blocks if block in self.slabs)
 
 
 @cache
@@ -53,6 +53,14 @@ def palette_of(raw: Mapping) -> Palette:
         blocks={
             number: tuple(block for group in chosen for block in groups[group])
             for number, chosen in classes.items()
+        },
+        preferred={
+            number: frozenset(
+                block
+                for group in raw["prefers"].get(CLASS_NAMES[number], ())
+                for block in groups[group]
+            )
+            for number in classes
         },
         defaults={CLASS_NAMES.index(k): _full(block) for k, block in raw["defaults"].items()},
         slabs={_full(block): slab for block, slab in raw["slabs"].items()},

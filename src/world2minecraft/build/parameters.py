@@ -5,6 +5,16 @@ from dataclasses import dataclass
 from world2minecraft.errors import UsageError
 
 EDGES = ("barrier", "none")
+_DISTANCES = (
+    "saturation",
+    "preference",
+    "structure_lightness_weight",
+    "lightness_weight",
+    "calm",
+    "gap_m",
+    "slab_margin",
+    "plane_area_m2",
+)
 
 
 @dataclass(frozen=True)
@@ -20,6 +30,12 @@ class BuildParameters:
     structure_colours: at most so many blocks a wall, the floor or the ceiling. 3: a wall, its
         skirting and one thing on it; more looked like noise.
     object_colours: at most so many blocks an object. 6: a shelf with things on it.
+    saturation: how much clear colours are strengthened. 1.3: haze, glare and the mixing of
+        neighbouring things in a cell wash colours out; the kitchen's reds came out purple.
+    preference: the Oklab distance by which a block of the palette's preferred groups may lie
+        farther off. 0.02: one barely visible step, so that a table is of wood.
+    structure_lightness_weight: ``lightness_weight`` of the shell. 0.15: light falls unevenly on
+        walls and floors, far more than on things.
     lightness_weight: how much lightness counts against hue and chroma (1 = Oklab as it is).
         0.4: a red cupboard in the shade stays red; at 1 it came out brown.
     calm: the Oklab distance that a block gives up for each neighbour it agrees with. 0.04: about
@@ -42,6 +58,9 @@ class BuildParameters:
     expose: bool = True
     structure_colours: int = 3
     object_colours: int = 6
+    saturation: float = 1.3
+    preference: float = 0.02
+    structure_lightness_weight: float = 0.15
     lightness_weight: float = 0.4
     calm: float = 0.04
     face_share: float = 0.3
@@ -57,7 +76,7 @@ class BuildParameters:
         for name in ("structure_colours", "object_colours"):
             if getattr(self, name) < 1:
                 raise UsageError(f"build.{name} must be 1 or more, not {getattr(self, name)}")
-        for name in ("lightness_weight", "calm", "gap_m", "slab_margin", "plane_area_m2"):
+        for name in _DISTANCES:
             if not 0 <= getattr(self, name) < 1e6:
                 raise UsageError(f"build.{name} must be 0 or more, not {getattr(self, name)}")
         for name in ("face_share", "object_share", "plane_reach_blocks"):

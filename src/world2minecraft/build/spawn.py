@@ -87,5 +87,5 @@ def _on_top(volume: BlockVolume) -> Spawn:
     x, _, z = (size // 2 for size in volume.states.shape)
     filled = np.flatnonzero(volume.states[x, :, z])
     top = int(filled.max()) + 1 if len(filled) else 0
-    feet = np.array(volume.corner) + [x, top, z]
+    feet = np.array([x, top, z]) + volume.corner
     return Spawn((float(feet[0]) + 0.5, float(feet[1]), float(feet[2]) + 0.5), 0.0)

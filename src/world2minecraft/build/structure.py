@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.build.faces import Faces, blocks_behind, find_faces, straighten, vote
+from world2minecraft.build.faces import blocks_behind, find_faces, straighten, vote
 from world2minecraft.build.lattice import Lattice, carry, face_shares, overlaps
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.classes import SemanticClass
@@ -209,11 +209,11 @@ def _windows(grid, walls, free, lattice, parameters) -> np.ndarray:
         for faces in find_faces(grid, solid, free, lattice, axis):
             straight = straighten(faces, lattice, grid.voxel_m, parameters)
             kinds = grid.labels[tuple(straight.cells.T)]
-            for kind, total in area.items():
+            for kind in area:
                 chosen = straight._replace(
                     cells=straight.cells[kinds == kind], planes=straight.planes[kinds == kind]
                 )
-                total += vote(Faces(*chosen), grid, lattice).area
+                area[kind] += vote(chosen, grid, lattice).area
     return walls & (area[WINDOW] > area[WALL])
 
 

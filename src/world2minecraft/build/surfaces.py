@@ -7,6 +7,7 @@ from world2minecraft.build.hues import default_colour, group_medians, spread
 from world2minecraft.build.paint import paint
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
+from world2minecraft.classes import STRUCTURE_CLASSES
 
 
 def block_colours(
@@ -38,19 +39,32 @@ def painted(
     parameters: BuildParameters,
     most: int,
 ) -> np.ndarray:
-    """Return the block states, object [N], for the N blocks of a mask, all of one surface."""
+    """Return the block states, object [N], for the N blocks of a mask, all of one surface.
+
+    Args:
+        mask: bool [X, Y, Z].
+        colours: float32 [X, Y, Z, 3], Oklab.
+        known: bool [X, Y, Z], where ``colours`` holds one.
+        class_id: whose blocks of the palette may be used.
+        palette: what may be used.
+        parameters: how colours are weighed.
+        most: at most so many different blocks.
+    """
     default = palette.defaults[class_id]
     if not (known & mask).any():
         return np.full(int(mask.sum()), default, object)
     choices = palette.blocks[class_id]
-    found = spread(colours, known & mask, mask, default_colour(default))
+    preferred = palette.preferred[class_id]
     index = paint(
-        found,
+        spread(colours, known & mask, mask, default_colour(default)),
         np.argwhere(mask),
         choices,
         most=most,
-        lightness_weight=parameters.lightness_weight,
+        lightness_weight=parameters.structure_lightness_weight
+        if class_id in STRUCTURE_CLASSES
+        else parameters.lightness_weight,
         calm_step=parameters.calm,
+        handicaps=np.array([parameters.preference * (block not in preferred) for block in choices]),
     )
     return np.array(choices, object)[index]
 

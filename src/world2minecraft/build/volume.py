@@ -49,7 +49,8 @@ def build_volume(
     corner = grid_corner_m(grid) if corner_m is None else snapped_corner_m(grid, corner_m)
     canvas = Canvas(lattice_over(grid, corner, blocks_per_metre))
     palette = load_palette(chosen.palette)
-    colours, coloured = cell_colours(grid, chosen.expose), seen_colours(grid)
+    colours = cell_colours(grid, chosen.expose, chosen.saturation)
+    coloured = seen_colours(grid)
     source = (grid, colours, coloured, palette, chosen)
     if is_exact(grid, blocks_per_metre):
         footprint = put_cells_exactly(canvas, *source)
