@@ -8,11 +8,11 @@ from world2minecraft.coordinates import cell_centers_m
 from world2minecraft.errors import UsageError
 from world2minecraft.find.clusters import cluster_candidates
 from world2minecraft.find.density import candidate_cells, density_map, object_cells
-from world2minecraft.find.facing import Surroundings, facing, surroundings
 from world2minecraft.find.growth import grow
 from world2minecraft.find.parameters import FindParameters
 from world2minecraft.find.rejoin import rejoin
 from world2minecraft.find.stacks import join_stacked
+from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.types import ObjectInstance, OccupancyGrid
 
 MAX_OBJECTS = 65535

@@ -23,6 +23,8 @@ class FurnishParameters:
     cut_from_m: an object shorter than this is not cut: two chairs side by side are not shorter,
         and the wings of an L are not either.
     max_runs: into how many runs an object is cut at most; a kitchen has four to six.
+    min_run_share: a run with less of the object's cells than this stays its own cells and counts
+        as unmatched when a cut is weighed: crumbs always match something.
     min_run_cells: a run of fewer cells of the floor plan is left to its neighbours.
     tie_weight: how much IoU an unusual size may cost or the front seen by find/ may bring. It
         decides between equals and never against a clear match.
@@ -39,16 +41,24 @@ class FurnishParameters:
     finalists: int = 6
     alternatives: int = 5
     cut_below: float = 0.75
-    cut_gain: float = 0.05
+    cut_gain: float = 0.1
     cut_from_m: float = 1.2
     max_runs: int = 8
+    min_run_share: float = 0.08
     min_run_cells: int = 6
     tie_weight: float = 0.02
     beyond_weight: float = 0.1
     paper_compat: bool = False
 
     def __post_init__(self):
-        for name in ("min_iou", "cut_below", "cut_gain", "tie_weight", "beyond_weight"):
+        for name in (
+            "min_iou",
+            "cut_below",
+            "cut_gain",
+            "tie_weight",
+            "beyond_weight",
+            "min_run_share",
+        ):
             if not 0 <= getattr(self, name) <= 1:
                 raise UsageError(f"{name} must lie between 0 and 1, not {getattr(self, name)}")
         for name in ("shift_cells", "size_slack", "alternatives"):

@@ -1,6 +1,7 @@
 """Stage 6: each object becomes furniture of the library, in its place, or stays its own cells."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,11 +10,29 @@ from world2minecraft.furnish.match import best_matches
 from world2minecraft.furnish.parameters import FurnishParameters
 from world2minecraft.furnish.runs import cut_into_runs
 from world2minecraft.furnish.seeds import reach_of
-from world2minecraft.furnish.trial import Bias, Scored
+from world2minecraft.furnish.trial import Bias, Cells, Scored
 from world2minecraft.furniture import templates_of
+from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.types import Alternative, ObjectInstance, OccupancyGrid, Placement
 
 OWN_CELLS = "cells"
+
+
+class Matched(NamedTuple):
+    """Some cells of an object, the way they look, and what matches them, best first."""
+
+    evidence: Evidence
+    quarter_turns: int
+    matches: tuple[Scored, ...]
+
+    @property
+    def iou(self) -> float:
+        """The IoU of the best match, 0 without one."""
+        return self.matches[0].iou if self.matches else 0.0
+
+    def unmatched(self) -> "Matched":
+        """The same cells, to be built as they are."""
+        return self._replace(matches=())
 
 
 def furnish(
@@ -27,91 +46,96 @@ def furnish(
     ``min_iou`` the template is ``cells`` and ``iou`` is that of the best one refused.
     """
     chosen = parameters or FurnishParameters()
+    around = surroundings(grid.labels)
     placed: list[Placement] = []
     for instance in instances:
-        placed += _furnish_one(grid, instance, chosen)
+        if len(instance.cells):
+            placed += _furnish_one(grid, instance, around, chosen)
     return tuple(placed)
 
 
 def _furnish_one(
-    grid: OccupancyGrid, instance: ObjectInstance, chosen: FurnishParameters
+    grid: OccupancyGrid, instance: ObjectInstance, around: Surroundings, chosen: FurnishParameters
 ) -> list[Placement]:
-    if not len(instance.cells):
-        return []
-    whole, matches = _match(grid, instance, instance.cells, chosen)
-    single = matches[0].iou if matches else 0.0
-    if chosen.paper_compat or single >= chosen.cut_below or _is_short(grid, whole, chosen):
-        return [_placement(grid, instance, whole, matches, chosen)]
-    runs = cut_into_runs(whole, chosen.max_runs, chosen.min_run_cells)
-    parts = [_match(grid, instance, (run + whole.corner).astype(np.int32), chosen) for run in runs]
-    cuts = sum(evidence.own >= chosen.min_run_cells for evidence, _ in parts) - 1
-    if cuts > 0 and _together(parts) >= single + chosen.cut_gain * cuts:
-        return [_placement(grid, instance, *part, chosen) for part in parts]
-    return [_placement(grid, instance, whole, matches, chosen)]
-
-
-def _is_short(grid: OccupancyGrid, evidence: Evidence, chosen: FurnishParameters) -> bool:
-    sides = [evidence.high[axis] - evidence.low[axis] for axis in (0, 1)]
-    return max(sides) * grid.voxel_m < chosen.cut_from_m
+    turns = int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
+    whole = _match(grid, instance, instance.cells, turns, chosen)
+    if not _may_be_cut(whole, grid.voxel_m, chosen):
+        return [_placement(grid, instance, whole, chosen)]
+    parts = []
+    for run in cut_into_runs(whole.evidence, chosen.max_runs, chosen.min_run_cells):
+        cells = (run + whole.evidence.corner).astype(np.int32)
+        front = facing(cells, instance.class_id, around).quarter_turns
+        parts.append(_match(grid, instance, cells, front, chosen))
+    least = max(chosen.min_run_cells, chosen.min_run_share * whole.evidence.own)
+    parts = [part if part.evidence.own >= least else part.unmatched() for part in parts]
+    if _is_better_cut(parts, whole.iou, chosen):
+        return [_placement(grid, instance, part, chosen) for part in parts]
+    return [_placement(grid, instance, whole, chosen)]
 
 
 def _match(
-    grid: OccupancyGrid, instance: ObjectInstance, cells: np.ndarray, chosen: FurnishParameters
-) -> tuple[Evidence, list[Scored]]:
+    grid: OccupancyGrid,
+    instance: ObjectInstance,
+    cells: np.ndarray,
+    quarter_turns: int,
+    chosen: FurnishParameters,
+) -> Matched:
     templates = templates_of(instance.class_id)
     reach = reach_of(templates, grid.voxel_m)
     evidence = evidence_of(grid, cells, reach, chosen.paper_compat)
     weights = (0.0, 0.0) if chosen.paper_compat else (chosen.tie_weight, chosen.beyond_weight)
-    bias = Bias(_turns_of(instance), grid.voxel_m, *weights)
-    return evidence, best_matches(templates, evidence, bias, chosen)
+    bias = Bias(quarter_turns, grid.voxel_m, *weights)
+    matches = best_matches(templates, evidence, bias, chosen)
+    return Matched(evidence, quarter_turns, tuple(matches))
 
 
-def _turns_of(instance: ObjectInstance) -> int:
-    return int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
+def _may_be_cut(whole: Matched, voxel_m: float, chosen: FurnishParameters) -> bool:
+    if chosen.paper_compat or whole.iou >= chosen.cut_below:
+        return False
+    low, high = whole.evidence.low, whole.evidence.high
+    return max(high[0] - low[0], high[1] - low[1]) * voxel_m >= chosen.cut_from_m
 
 
-def _together(parts: list[tuple[Evidence, list[Scored]]]) -> float:
-    """Return the IoU of all runs, each weighed by its cells."""
-    own = sum(evidence.own for evidence, _ in parts)
-    return sum(e.own * (m[0].iou if m else 0.0) for e, m in parts) / own
+def _is_better_cut(parts: list[Matched], single: float, chosen: FurnishParameters) -> bool:
+    """Whether the runs that are large enough to be furniture match better than the whole."""
+    every = sum(part.evidence.own for part in parts)
+    large = [part for part in parts if part.matches]
+    together = sum(part.evidence.own * part.iou for part in large) / every
+    if single < chosen.min_iou:
+        return together >= chosen.min_iou
+    return len(large) > 1 and together >= single + chosen.cut_gain * (len(large) - 1)
 
 
 def _placement(
-    grid: OccupancyGrid,
-    instance: ObjectInstance,
-    evidence: Evidence,
-    matches: list[Scored],
-    chosen: FurnishParameters,
+    grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: FurnishParameters
 ) -> Placement:
-    explained = bool(matches) and (chosen.paper_compat or matches[0].iou >= chosen.min_iou)
-    others = matches[1:] if explained else matches
-    low, counts, turns = _own_box(evidence, instance)
+    least = 0.0 if chosen.paper_compat else chosen.min_iou
+    explained = bool(found.matches) and found.iou >= least
+    low, counts, turns = _own_box(found)
     if explained:
-        trial = matches[0].trial
-        low, counts, turns = np.array(trial.corner), trial.counts, trial.quarter_turns
+        trial = found.matches[0].trial
+        low, counts, turns = trial.corner, trial.counts, trial.quarter_turns
     turned = np.array(counts)[[1, 0, 2]] if turns % 2 else np.array(counts)
-    middle = (evidence.corner + low + turned / 2) * grid.voxel_m + grid.origin_m
+    middle = (found.evidence.corner + low + turned / 2) * grid.voxel_m + grid.origin_m
+    others = found.matches[1 if explained else 0 :][: chosen.alternatives]
     return Placement(
         object_id=instance.id,
         class_id=instance.class_id,
-        template=matches[0].trial.template.name if explained else OWN_CELLS,
+        template=found.matches[0].trial.template.name if explained else OWN_CELLS,
         center_m=np.round(middle, 4),
         size_m=np.round(np.array(counts) * grid.voxel_m, 4),
         quarter_turns=turns,
-        iou=round(matches[0].iou, 4) if matches else 0.0,
-        parameters=dict(matches[0].trial.values) if explained else {},
+        iou=round(found.iou, 4),
+        parameters=dict(found.matches[0].trial.values) if explained else {},
         alternatives=tuple(
             Alternative(one.trial.template.name, one.trial.quarter_turns, round(one.iou, 4))
-            for one in others[: chosen.alternatives]
+            for one in others
         ),
     )
 
 
-def _own_box(
-    evidence: Evidence, instance: ObjectInstance
-) -> tuple[np.ndarray, tuple[int, ...], int]:
-    turns = _turns_of(instance)
-    low = np.array(evidence.low)
-    size = np.array(evidence.high) - low
-    own_axes = size[[1, 0, 2]] if turns % 2 else size
-    return low, tuple(int(side) for side in own_axes), turns
+def _own_box(found: Matched) -> tuple[Cells, Cells, int]:
+    """Return the first cell, the size along its own axes and the turn of an object's own box."""
+    low, high = found.evidence.low, found.evidence.high
+    x, y, z = (high[axis] - low[axis] for axis in range(3))
+    return low, (y, x, z) if found.quarter_turns % 2 else (x, y, z), found.quarter_turns
