@@ -62,7 +62,7 @@ def test_nothing_is_imported_before_its_name_is_asked_for(monkeypatch, tmp_path)
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("geometrc", "no labeller is named 'geometrc'; did you mean 'geometric'?"),
+        ("geometri", "no labeller is named 'geometri'; did you mean 'geometric'?"),
         ("xyz", "no labeller is named 'xyz'; known: geometric, json"),
     ],
 )
