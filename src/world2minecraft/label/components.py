@@ -6,9 +6,12 @@ from typing import cast
 import numpy as np
 from scipy import ndimage
 
+from world2minecraft.label.parameters import GeometricParameters
+from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
 
 FULL = np.ones((3, 3, 3), bool)
+PLANE_GATE_M = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,8 +21,9 @@ class Piece:
     at: tuple[np.ndarray, np.ndarray, np.ndarray]  # Cell indices, each int [N].
     low_m: np.ndarray  # float64 [3], of the surface points.
     high_m: np.ndarray
-    lightness: float
+    oklab: np.ndarray  # float64 [3], the median colour.
     near_wall: bool
+    flat_share: float  # The share of its cells on its largest upright plane.
 
     @property
     def size_m(self) -> np.ndarray:
@@ -37,26 +41,37 @@ class Piece:
         return float(self.size_m[:2].min())
 
 
-def find_pieces(surface: Surface, rest: np.ndarray, wall: np.ndarray) -> list[Piece]:
-    """Return the pieces of ``rest``, bool [X, Y, Z], joined by faces, edges and corners."""
+def find_pieces(
+    surface: Surface, rest: np.ndarray, wall: np.ndarray, parameters: GeometricParameters
+) -> list[Piece]:
+    """Return the pieces of ``rest``, bool [X, Y, Z], joined by faces, edges and corners.
+
+    A piece is near a wall where one of its cells is within ``near_wall_m`` of a wall's column.
+    """
     parts, count = cast(tuple[np.ndarray, int], ndimage.label(rest, FULL))
-    near_wall = ndimage.binary_dilation(wall, FULL, iterations=2)
+    columns = wall.sum(axis=2) >= 2
+    apart = cast(np.ndarray, ndimage.distance_transform_edt(~columns)) if columns.any() else None
+    near = np.zeros_like(columns)
+    if apart is not None:
+        near = apart * surface.voxel_m <= parameters.near_wall_m
     pieces = []
     for part, box in enumerate(ndimage.find_objects(parts, count), 1):
         start = np.array([side.start for side in box])
         cells = np.argwhere(parts[box] == part) + start
-        pieces.append(piece_of(surface, cells, near_wall))
+        pieces.append(_piece(surface, cells, near))
     return pieces
 
 
-def piece_of(surface: Surface, cells: np.ndarray, near_wall: np.ndarray) -> Piece:
+def _piece(surface: Surface, cells: np.ndarray, near_wall: np.ndarray) -> Piece:
     """Return the piece that cells, int [N, 3], form."""
     at = tuple(cells.T)
     points = surface.points_m[at].astype(np.float64)
+    planes = [highest_peak(points[:, axis], PLANE_GATE_M)[1] for axis in (0, 1)]
     return Piece(
         at=at,  # type: ignore[arg-type]
         low_m=np.quantile(points, 0.02, axis=0),
         high_m=np.quantile(points, 0.98, axis=0),
-        lightness=float(np.median(surface.oklab[at][:, 0])),
-        near_wall=bool(near_wall[at].any()),
+        oklab=np.median(surface.oklab[at].astype(np.float64), axis=0),
+        near_wall=bool(near_wall[at[:2]].any()),
+        flat_share=max(planes) / len(cells),
     )

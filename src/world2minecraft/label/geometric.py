@@ -11,6 +11,7 @@ import numpy as np
 from world2minecraft.classes import SemanticClass
 from world2minecraft.label.furniture import label_furniture
 from world2minecraft.label.horizontal import find_ceiling, find_floor
+from world2minecraft.label.openings import label_openings
 from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.surface import surface_of
 from world2minecraft.label.walls import find_walls
@@ -37,11 +38,11 @@ class GeometricLabeller:
         labels = np.array(grid.labels)
         labels[surface.occupied] = SemanticClass.OBJS
         ceiling, ceiling_m = find_ceiling(surface, self.parameters)
-        above_floor = max(surface.floor_layer + 1, 0)
-        wall, _ = find_walls(surface, above_floor, ceiling_m, self.parameters)
+        wall, runs = find_walls(surface, ceiling, ceiling_m, self.parameters)
         rest = surface.occupied & ~(floor.cells | floor.spill | ceiling | wall)
         label_furniture(surface, rest, wall, labels, self.parameters)
         labels[wall] = SemanticClass.WALL
+        label_openings(surface, wall, runs, labels, self.parameters)
         labels[ceiling] = SemanticClass.CEILING
         labels[floor.spill] = SemanticClass.EMPTY
         labels[floor.cells] = SemanticClass.FLOOR

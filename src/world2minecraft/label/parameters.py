@@ -22,14 +22,25 @@ class GeometricParameters:
     wall_top_m: a wall reaches higher than tables, counters and chair backs.
     wall_gap_m: one run of a wall goes on behind a thing this wide: a door, a window.
     behind_m: noise thickens a wall by up to two cells outward.
+    before_m: a cell this far before a wall's plane is still of it; a picture is 4 cm thick.
     hidden_m: nothing free lies this far behind a wall, unless it reaches the ceiling.
+    passed_cells: so many free cells in a column mean that rays passed there; fewer are noise.
     recess_m: a plane this far in front of a wider one, not up to the ceiling, is furniture.
-    recess_width_m: the widest of such furniture.
+    recess_width_m: the widest of such furniture, where no ceiling was seen.
+    ceiling_gap_m: a wall ends no lower under the ceiling than this.
+    full_share: a wall with free space behind it, between two rooms, is seen over this share.
+    opening_depth_m: how far windows and door leaves lie behind the face of their wall: a guess
+        from the sensor's noise up to the depth that a wall's cells may have.
+    opening_area_m2: a small window.
+    window_sill_m, window_size_m, door_width_m, door_height_m: catalogue; a window begins above
+        its sill, a door below.
     plate_height_m: seats, beds, tables, counters: catalogue, 0.35 to 1.0.
     plate_area_m2: the seat of a small chair is 0.12 m2, a third of it hidden.
     plate_gate_m: half a default cell: two plates this near in height are one.
     box_share: of the seen cells under the rim of a closed box this share is surface; a table's
         rim has legs alone. Measured on generated rooms.
+    near_wall_m: cupboards that hang on a wall are 0.35 m deep, and only their fronts are seen.
+    flat_share: a closed piece shows a third of its cells on one upright plane, a plant a tenth.
     screen_lightness: Oklab lightness of a dark screen; a guess.
     """
 
@@ -41,11 +52,23 @@ class GeometricParameters:
     wall_top_m: float = 1.3
     wall_gap_m: float = 1.3
     behind_m: float = 0.16
+    before_m: float = 0.03
     hidden_m: float = 0.4
+    passed_cells: int = 3
     recess_m: Range = (0.15, 0.9)
     recess_width_m: float = 3.0
+    ceiling_gap_m: float = 0.25
+    full_share: float = 0.4
+    opening_depth_m: Range = (0.035, 0.16)
+    opening_area_m2: float = 0.25
+    window_sill_m: float = 0.3
+    window_size_m: Range = (0.35, 4.0)
+    door_width_m: Range = (0.55, 1.9)
+    door_height_m: float = 1.5
     plate_height_m: Range = (0.25, 1.3)
     plate_area_m2: float = 0.07
     plate_gate_m: float = 0.04
     box_share: float = 0.5
+    near_wall_m: float = 0.45
+    flat_share: float = 0.22
     screen_lightness: float = 0.45

@@ -12,6 +12,8 @@ from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.plates import EIGHT, Plate
 from world2minecraft.label.surface import Surface
 
+SAME_CLOTH = 0.12  # Oklab: shades of one cloth; a screen on a board differs by 0.3. A guess.
+
 
 def class_of_plate(
     surface: Surface, plate: Plate, left: np.ndarray, parameters: GeometricParameters
@@ -26,21 +28,34 @@ def class_of_plate(
     """
     height, length, width = plate.height_m, plate.length_m, plate.width_m
     closed = plate.rim_share >= parameters.box_share
-    back = _back_share(surface, plate, left)
-    if 0.3 <= height <= 0.6 and back >= 0.5:
-        if length >= 1.1 and 0.35 <= width <= 1.2:
-            return SemanticClass.SOFA
-        if length <= 0.8 and plate.area_m2 >= 0.07:
-            return SemanticClass.CHAIR
+    seat = _seat_of(surface, plate, left, closed)
+    if seat is not None:
+        return seat
     if 0.3 <= height <= 0.65 and length >= 1.6 and width >= 0.75 and plate.area_m2 >= 1.2:
         return SemanticClass.BED
     if 0.55 <= height <= 0.85 and plate.area_m2 >= 0.35 and width >= 0.4 and not closed:
         return SemanticClass.TABLE
     if 0.3 <= height <= 0.55 and plate.area_m2 >= 0.25 and not closed:
         return SemanticClass.TABLE
-    if plate.area_m2 >= 0.15 and (closed or height >= 0.8) and width >= 0.2:
+    if plate.area_m2 >= 0.15 and (closed or height >= 0.8) and width >= 0.2 and height >= 0.42:
         return SemanticClass.FURN
     return None
+
+
+def _seat_of(
+    surface: Surface, plate: Plate, left: np.ndarray, closed: bool
+) -> SemanticClass | None:
+    """Return whose seat a plate is: a chair's or a sofa's, by its size and its back."""
+    if not 0.32 <= plate.height_m <= 0.56:
+        return None
+    back, contrast = _back_of(surface, plate, left)
+    upholstered = not closed or contrast <= SAME_CLOTH
+    if back < 0.6 or not upholstered or _goes_on_up(surface, plate):
+        return None
+    if plate.length_m >= 1.1 and 0.35 <= plate.width_m <= 1.2:
+        return SemanticClass.SOFA
+    compact = plate.length_m <= 0.85 and plate.width_m >= 0.2
+    return SemanticClass.CHAIR if compact else None
 
 
 def class_of_piece(
@@ -51,51 +66,64 @@ def class_of_piece(
     height = top - bottom
     if _is_leg(piece, tables):
         return SemanticClass.TABLE
-    hung = bottom >= 0.45 and piece.thin_m <= 0.2 and piece.long_m >= 0.45
-    if (
-        hung
-        and 0.25 <= height <= 1.1
-        and 1.1 <= piece.long_m / height <= 2.6
-        and _dark(piece, parameters)
-    ):
+    if _is_screen(piece, parameters):
         return SemanticClass.TVS
-    seat_high = bottom <= 0.6 and 0.65 <= top <= 1.2 and height >= 0.25
+    seat_high = bottom <= 0.6 and 0.65 <= top <= 1.15 and height >= 0.25
     if seat_high and 0.25 <= piece.long_m <= 0.85 and not piece.near_wall:
         return SemanticClass.CHAIR
-    if piece.near_wall and piece.long_m >= 0.4 and height >= 0.3 and len(piece.at[0]) >= 20:
+    boxy = piece.flat_share >= parameters.flat_share and piece.long_m >= 0.4 and height >= 0.45
+    if boxy and piece.near_wall and len(piece.at[0]) >= 20:
         return SemanticClass.FURN
     return SemanticClass.OBJS
 
 
-def _dark(piece: Piece, parameters: GeometricParameters) -> bool:
-    return piece.lightness <= parameters.screen_lightness
+def _is_screen(piece: Piece, parameters: GeometricParameters) -> bool:
+    """Return whether a piece is a dark, thin, upright plate off the floor, wider than high."""
+    height = piece.high_m[2] - piece.low_m[2]
+    if not (piece.low_m[2] >= 0.4 and piece.thin_m <= 0.22 and 0.4 <= piece.long_m <= 1.8):
+        return False
+    shaped = 0.25 <= height <= 1.1 and 1.0 <= piece.long_m / height <= 2.6
+    return shaped and piece.oklab[0] <= parameters.screen_lightness
 
 
 def _is_leg(piece: Piece, tables: list[Plate]) -> bool:
-    """Return whether a thin upright piece stands under a table and no higher."""
-    if piece.long_m > 0.3 and piece.thin_m > 0.15:
-        return False
+    """Return whether a piece stands or hangs under a table, up to its top: a leg, an apron."""
     for table in tables:
         under = ndimage.binary_dilation(table.footprint, EIGHT)[piece.at[0], piece.at[1]]
-        if under.mean() >= 0.8 and piece.high_m[2] <= table.height_m + 0.04:
+        reach = piece.high_m[2] - table.height_m
+        if under.mean() >= 0.8 and -0.16 <= reach <= 0.04:
             return True
     return False
 
 
-def _back_share(surface: Surface, plate: Plate, left: np.ndarray) -> float:
-    """Return the greatest share of one side of a plate over which something rises 0.2 to 0.5 m."""
+def _goes_on_up(surface: Surface, plate: Plate) -> bool:
+    """Return whether much stands over a plate higher than any chair: then it is a shelf's board."""
+    first, last = surface.layers_below(1.25), surface.layers_below(1.9)
+    over = surface.occupied[:, :, first:last].any(axis=2)
+    return bool(over[plate.footprint].mean() >= 0.3)
+
+
+def _back_of(surface: Surface, plate: Plate, left: np.ndarray) -> tuple[float, float]:
+    """Return the back of a seat: how much of one side it takes, and how its colour differs.
+
+    A back rises 0.2 to 0.5 m over the plate, within 0.2 m of its rim. The colour difference is
+    that of the medians in Oklab.
+    """
     first = surface.layers_below(plate.height_m + 0.2)
     last = surface.layers_below(plate.height_m + 0.5)
-    risen = left[:, :, first:last].any(axis=2)
     rows, columns = np.nonzero(plate.footprint)
-    low, high = (rows.min(), columns.min()), (rows.max(), columns.max())
-    x = slice(max(low[0] - 1, 0), high[0] + 2)
-    y = slice(max(low[1] - 1, 0), high[1] + 2)
-    around = risen[x, y]
-    reach = 3
-    sides = (
-        around[:reach].any(axis=0), around[-reach:].any(axis=0),
-        around[:, :reach].any(axis=1), around[:, -reach:].any(axis=1),
-    )  # fmt: skip
+    reach = 2
+    x = slice(max(int(rows.min()) - reach, 0), int(rows.max()) + 1 + reach)
+    y = slice(max(int(columns.min()) - reach, 0), int(columns.max()) + 1 + reach)
+    risen = left[x, y, first:last]
+    around = risen.any(axis=2)
+    depth = 2 * reach
+    sides = [around[:depth].any(axis=0), around[-depth:].any(axis=0)]
+    sides += [around[:, :depth].any(axis=1), around[:, -depth:].any(axis=1)]
     longest = max(len(side) for side in sides)
-    return float(max(side[1:-1].mean() for side in sides if len(side) >= 0.8 * longest))
+    shares = [float(side[reach:-reach].mean()) for side in sides if len(side) >= 0.7 * longest]
+    if not risen.any():
+        return 0.0, 1.0
+    cloth = np.median(surface.oklab[x, y, first:last][risen], axis=0)
+    seat = np.median(surface.oklab[plate.mask], axis=0)
+    return max(shares), float(np.linalg.norm(cloth - seat))

@@ -32,21 +32,25 @@ class WallRun:
 
 
 def find_walls(
-    surface: Surface, above_floor: int, ceiling_m: float | None, parameters: GeometricParameters
+    surface: Surface,
+    ceiling: np.ndarray,
+    ceiling_m: float | None,
+    parameters: GeometricParameters,
 ) -> tuple[np.ndarray, list[WallRun]]:
     """Return the walls' cells, bool [X, Y, Z], and their runs.
 
     Args:
         surface: the room.
-        above_floor: the first layer above the floor.
+        ceiling: bool [X, Y, Z], its cells.
         ceiling_m: the ceiling's height, None where it was not seen.
         parameters: the thresholds.
     """
     cells = np.zeros(surface.occupied.shape, bool)
     found: list[WallRun] = []
     for axis, sign in DIRECTIONS:
-        view = _Turned(surface, axis, sign, above_floor)
+        view = _Turned(surface, ceiling, axis, sign)
         runs = list(_runs(view, ceiling_m, parameters))
+        runs = [run for run in runs if not _is_shadow(run, runs, view.voxel_m)]
         runs = [run for run in runs if not _is_furniture(run, runs, ceiling_m, view, parameters)]
         for run in runs:
             _mark(view, run, parameters, cells)
@@ -57,17 +61,21 @@ def find_walls(
 class _Turned:
     """A room's arrays turned so that axis 0 leads outward, axis 1 along the wall, axis 2 up."""
 
-    def __init__(self, surface: Surface, axis: int, sign: int, above_floor: int):
+    def __init__(self, surface: Surface, ceiling: np.ndarray, axis: int, sign: int):
         self.axis, self.sign, self.voxel_m = axis, sign, surface.voxel_m
-        self.above_floor = above_floor
-        self.occupied = self.turn(surface.occupied)
+        self.above_floor = max(surface.floor_layer + 1, 0)
+        self.occupied = self.turn(surface.occupied & ~ceiling)
         self.free = self.turn(surface.free)
         self.outward_m = sign * self.turn(surface.points_m[..., axis])
         self.height_m = self.turn(surface.points_m[..., 2])
 
     def turn(self, values: np.ndarray) -> np.ndarray:
-        turned = np.swapaxes(values, 0, 1) if self.axis else values
-        return turned[:: self.sign]
+        return turned(values, self.axis, self.sign)
+
+
+def turned(values: np.ndarray, axis: int, sign: int) -> np.ndarray:
+    """Return a view of [X, Y, Z] turned: axis 0 leads out of the room, axis 1 along the wall."""
+    return (np.swapaxes(values, 0, 1) if axis else values)[::sign]
 
 
 def _runs(
@@ -79,8 +87,11 @@ def _runs(
     hidden = fronts & ~_passed_behind(view, parameters)
     yield from _peeled(view, hidden, parameters, parameters.wall_top_m)
     if ceiling_m is not None:
-        full = ceiling_m - 2 * view.voxel_m
-        yield from _peeled(view, fronts & ~hidden, parameters, full)
+        full = ceiling_m - parameters.ceiling_gap_m
+        for run in _peeled(view, fronts & ~hidden, parameters, full):
+            width = (run.span[1] - run.span[0] + 1) * view.voxel_m
+            if run.area_m2 >= parameters.full_share * width * ceiling_m:
+                yield run
 
 
 def _free_before(free: np.ndarray) -> np.ndarray:
@@ -93,10 +104,9 @@ def _free_before(free: np.ndarray) -> np.ndarray:
 
 def _passed_behind(view: _Turned, parameters: GeometricParameters) -> np.ndarray:
     """Return bool [A, B, 1]: in the columns behind, rays passed at some height."""
-    free = view.free[:, :, view.above_floor :].sum(axis=2) >= 2  # One may be noise.
+    free = view.free[:, :, view.above_floor :].sum(axis=2) >= parameters.passed_cells
     behind = np.zeros_like(free)
-    first = 1 + round(parameters.behind_m / 2 / view.voxel_m)
-    for step in range(first, first + round(parameters.hidden_m / view.voxel_m)):
+    for step in range(1, 1 + round(parameters.hidden_m / view.voxel_m)):
         behind[:-step] |= free[step:]
     return behind[:, :, None]
 
@@ -134,6 +144,21 @@ def _spans(along: np.ndarray, gap_cells: int) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in zip(firsts, lasts, strict=True)]
 
 
+def _is_shadow(run: WallRun, runs: list[WallRun], voxel_m: float) -> bool:
+    """Return whether a run only follows a larger one within little more than a cell.
+
+    Noise, windows, door leaves and curtains make such runs; a pillar stands where the wall does
+    not.
+    """
+    for wall in runs:
+        near = abs(wall.outward_m - run.outward_m) <= 1.6 * voxel_m
+        shared = min(wall.span[1], run.span[1]) - max(wall.span[0], run.span[0]) + 1
+        inside = shared >= 0.7 * (run.span[1] - run.span[0] + 1)
+        if near and inside and wall.area_m2 > 1.5 * run.area_m2:
+            return True
+    return False
+
+
 def _is_furniture(
     run: WallRun,
     runs: list[WallRun],
@@ -143,23 +168,29 @@ def _is_furniture(
 ) -> bool:
     """Return whether a run is the front of a tall piece of furniture before a wider wall."""
     width = (run.span[1] - run.span[0] + 1) * view.voxel_m
-    low, high = parameters.recess_m
-    if width > parameters.recess_width_m:
-        return False
+    low, high = parameters.recess_m if ceiling_m is None else (0.05, parameters.recess_m[1])
     for wall in runs:
         before = low <= wall.outward_m - run.outward_m <= high
         reach = round(high / view.voxel_m)
         beside = wall.span[0] - reach <= run.span[0] and run.span[1] <= wall.span[1] + reach
-        full = ceiling_m if ceiling_m is not None else wall.top_m
-        if before and beside and wall.area_m2 > run.area_m2 and run.top_m < full - 0.12:
+        narrow = ceiling_m is not None or width <= parameters.recess_width_m
+        full = wall.top_m if ceiling_m is None else ceiling_m
+        short = run.top_m < full - parameters.ceiling_gap_m
+        if before and beside and narrow and short and wall.area_m2 > run.area_m2:
             return True
     return False
 
 
 def _mark(view: _Turned, run: WallRun, parameters: GeometricParameters, cells: np.ndarray) -> None:
-    """Set the cells of a run: those on its plane, and those that noise put behind it."""
+    """Set the cells of a run: those on its plane, and those that noise put before or behind it.
+
+    A cell before the plane is noise where the cell behind it was seen too; a picture, a curtain
+    or a screen hides what is behind.
+    """
     gap = view.outward_m - run.outward_m
-    on = view.occupied & (gap >= -parameters.plane_gate_m) & (gap <= parameters.behind_m)
+    on = view.occupied & (gap >= -parameters.before_m) & (gap <= parameters.behind_m)
+    before = view.occupied & ~on & (gap >= -view.voxel_m) & (gap < 0)
+    on[:-1] |= before[:-1] & on[1:]
     on[:, : max(run.span[0] - 1, 0)] = False
     on[:, run.span[1] + 2 :] = False
     on[:, :, : view.above_floor] = False
