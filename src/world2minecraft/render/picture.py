@@ -7,7 +7,7 @@ from multiprocessing.pool import ThreadPool
 import numpy as np
 
 from world2minecraft.render.scene import RayScene, prepare_scene
-from world2minecraft.render.shade import draw_rows
+from world2minecraft.render.shade import TILE, draw_rows
 from world2minecraft.types import BlockVolume, Camera
 
 OUTPUTS = ("colour", "depth", "semantic", "instance")
@@ -115,7 +115,8 @@ def run_bands(band, rows: int, threads: int) -> None:
     if threads <= 1:
         band((0, rows))
         return
-    edges = np.linspace(0, rows, 4 * threads + 1).astype(int).tolist()
+    tiles = -(-rows // TILE)  # Bands begin with a tile, so that bundles do not depend on them.
+    edges = [min(rows, TILE * (tiles * n // threads)) for n in range(threads)] + [rows]
     with ThreadPool(threads) as pool:
         pool.map(band, zip(edges[:-1], edges[1:], strict=True))
 

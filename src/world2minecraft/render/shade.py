@@ -9,16 +9,18 @@ covers few pixels.
 import numpy as np
 
 from world2minecraft.jit import njit
-from world2minecraft.render.trace import FULL, NO_FACE, trace
+from world2minecraft.render.trace import FULL, NO_FACE, safe_start, trace
 
 # In the order of the faces -x +x -y +y -z +z of block axes (y is up): the game's shades, softened.
 FACE_SHADE = np.array([0.80, 0.80, 0.64, 1.0, 0.90, 0.90], np.float32)
+TILE = 8  # Pixels a side of the bundles that share an empty way.
 HASH_SHARE = 0.03
 EDGE_BLOCKS, EDGE_SHADE = 0.035, 0.10
 EDGE_FADE_PX = 6.0  # Edges are drawn in full where a block covers four times as many pixels.
 CORNER_SHADE = 0.15  # What each solid neighbour of a corner takes; the game takes 0.2.
 HEADLIGHT = 0.14  # What a face loses that the camera sees edge-on.
 EXPOSURE = 1.06
+GLOW = 1.12
 
 
 @njit
@@ -44,88 +46,121 @@ def draw_rows(
     height, width = depth.shape
     ny, nz = cells.shape[1], cells.shape[2]
     cell_m = 1.0 / np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)
-    for v in range(first, last):
-        for u in range(width):
-            x, y = (u + 0.5 - rays[2]) / rays[0], (v + 0.5 - rays[3]) / rays[1]
-            sx, sy = x * (1 - spread), y * (1 - spread)
-            x, y = x * spread, y * spread
-            ox = pose[0, 0] * sx + pose[0, 1] * sy + pose[0, 3]
-            oy = pose[1, 0] * sx + pose[1, 1] * sy + pose[1, 3]
-            oz = pose[2, 0] * sx + pose[2, 1] * sy + pose[2, 3]
-            dx = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]
-            dy = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]
-            dz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]
-            t, i, j, k, side = trace(
-                cells, states, box_start, boxes, ox, oy, oz, dx, dy, dz, np.inf
-            )
-            face[v, u] = side
-            if side == NO_FACE:
-                depth[v, u], distance[v, u], index[v, u] = 0.0, 0.0, -1
-                if with_colour:
-                    share = v / max(height - 1, 1)
+    per_x, per_y = 1.0 / rays[0], 1.0 / rays[1]
+    corners = np.empty(4)  # The light at the corners of the face that was met last.
+    last_index, last_side, last_step, tone = -1, -1, 0, 1.0
+    for v_tile in range(first, last, TILE):
+        for u_tile in range(0, width, TILE):
+            start = bundle_start(cells, pose, rays, spread, u_tile, v_tile)
+            for v in range(v_tile, min(v_tile + TILE, last)):
+                for u in range(u_tile, min(u_tile + TILE, width)):
+                    x, y = (u + 0.5 - rays[2]) * per_x, (v + 0.5 - rays[3]) * per_y
+                    sx, sy = x * (1 - spread), y * (1 - spread)
+                    x, y = x * spread, y * spread
+                    ox = pose[0, 0] * sx + pose[0, 1] * sy + pose[0, 3]
+                    oy = pose[1, 0] * sx + pose[1, 1] * sy + pose[1, 3]
+                    oz = pose[2, 0] * sx + pose[2, 1] * sy + pose[2, 3]
+                    dx = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]
+                    dy = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]
+                    dz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]
+                    t, i, j, k, side = trace(
+                        cells, states, box_start, boxes, ox, oy, oz, dx, dy, dz, start
+                    )
+                    face[v, u] = side
+                    if side == NO_FACE:
+                        depth[v, u], distance[v, u], index[v, u] = 0.0, 0.0, -1
+                        if with_colour:
+                            share = v / max(height - 1, 1)
+                            for n in range(3):
+                                sky = background[0, n] * (1 - share) + background[1, n] * share
+                                colour[v, u, n] = np.uint8(sky)
+                        continue
+                    length = np.sqrt(x * x + y * y + 1.0)
+                    depth[v, u], distance[v, u] = t, t * length
+                    here = (i * ny + j) * nz + k
+                    index[v, u] = here
+                    if not with_colour:
+                        continue
+                    state = states[i, j, k]
+                    if colours[state, 3] > 0:
+                        light = GLOW
+                    else:
+                        fx, fy, fz = ox + t * dx - i, oy + t * dy - j, oz + t * dz - k
+                        axis = side // 2
+                        toward, along = dx, fx
+                        p, q = fy, fz
+                        if axis == 1:
+                            toward, along = dy, fy
+                            p = fx
+                        elif axis == 2:
+                            toward, along = dz, fz
+                            p, q = fx, fy
+                        step = 0  # A face inside its cell is shaded by the cell's own layer.
+                        if side % 2 == 1 and along > 0.999:
+                            step = 1
+                        elif side % 2 == 0 and along < 0.001:
+                            step = -1
+                        if here != last_index or side != last_side or step != last_step:
+                            last_index, last_side, last_step = here, side, step
+                            corner_light(cells, i, j, k, axis, step, corners)
+                            tone = 1 + HASH_SHARE * (2 * _hash(i, j, k) - 1)
+                        cosine = abs(toward) * cell_m / length
+                        light = EXPOSURE * FACE_SHADE[side] * (1 - HEADLIGHT * (1 - cosine)) * tone
+                        light *= (1 - p) * ((1 - q) * corners[0] + q * corners[1]) + p * (
+                            (1 - q) * corners[2] + q * corners[3]
+                        )
+                        block_px = cell_m * rays[0] / (t * spread + 1 - spread) * max(cosine, 0.2)
+                        light *= _edge(p, q, block_px)
                     for n in range(3):
-                        tone = background[0, n] * (1 - share) + background[1, n] * share
-                        colour[v, u, n] = np.uint8(tone)
-                continue
-            length = np.sqrt(x * x + y * y + 1.0)
-            depth[v, u], distance[v, u] = t, t * length
-            index[v, u] = (i * ny + j) * nz + k
-            if not with_colour:
-                continue
-            row = colours[states[i, j, k]]
-            if row[3] > 0:
-                light = 1.12
-            else:
-                axis = side // 2
-                toward = dx if axis == 0 else (dy if axis == 1 else dz)
-                cosine = abs(toward) * cell_m / length
-                light = EXPOSURE * FACE_SHADE[side] * (1 - HEADLIGHT * (1 - cosine))
-                block_px = cell_m * rays[0] / (t * spread + 1 - spread)
-                light *= _surface(
-                    cells, i, j, k, side, ox + t * dx - i, oy + t * dy - j, oz + t * dz - k,
-                    block_px * max(cosine, 0.2),
-                )  # fmt: skip
-            for n in range(3):
-                colour[v, u, n] = np.uint8(min(255.0, row[n] * light + 0.5))
+                        colour[v, u, n] = np.uint8(min(255.0, colours[state, n] * light + 0.5))
 
 
 @njit
-def _surface(cells, i, j, k, face, fx, fy, fz, block_px):
-    """Return occlusion times variation at a point (fx, fy, fz) within cell (i, j, k)."""
-    axis = face // 2
-    along = fx if axis == 0 else (fy if axis == 1 else fz)
-    p = fy if axis == 0 else fx
-    q = fy if axis == 2 else fz
-    step = 0
-    if face % 2 == 1 and along > 0.999:
-        step = 1
-    elif face % 2 == 0 and along < 0.001:
-        step = -1
-    light = _occlusion(cells, i, j, k, axis, step, p, q)
+def bundle_start(cells, pose, rays, spread, u, v):
+    """Return ``safe_start`` for the pixels of the tile whose first pixel is (u, v)."""
+    x, y = (u + TILE / 2 - rays[2]) / rays[0], (v + TILE / 2 - rays[3]) / rays[1]
+    half_x, half_y = TILE / 2 / rays[0], TILE / 2 / rays[1]
+    off = 0.0
+    for axis in range(3):
+        off = max(off, abs(pose[axis, 0]) * half_x + abs(pose[axis, 1]) * half_y)
+    sx, sy = x * (1 - spread), y * (1 - spread)
+    x, y = x * spread, y * spread
+    return safe_start(
+        cells,
+        pose[0, 0] * sx + pose[0, 1] * sy + pose[0, 3],
+        pose[1, 0] * sx + pose[1, 1] * sy + pose[1, 3],
+        pose[2, 0] * sx + pose[2, 1] * sy + pose[2, 3],
+        pose[0, 0] * x + pose[0, 1] * y + pose[0, 2],
+        pose[1, 0] * x + pose[1, 1] * y + pose[1, 2],
+        pose[2, 0] * x + pose[2, 1] * y + pose[2, 2],
+        off * (1 - spread),
+        off * spread,
+    )
+
+
+@njit
+def _edge(p, q, block_px):
+    """Return the darkness of a block's edges at (p, q) of its face."""
     strength = min(1.0, max(0.0, (block_px - EDGE_FADE_PX) / (3 * EDGE_FADE_PX)))
-    inside = min(p, 1 - p, q, 1 - q)
+    inside = max(min(p, 1 - p, q, 1 - q), 0.0)
     width = max(EDGE_BLOCKS, 0.7 / max(block_px, 1e-6))
-    if inside < width:
-        light *= 1 - EDGE_SHADE * strength * (1 - max(inside, 0.0) / width)
-    return light * (1 + HASH_SHARE * (2 * _hash(i, j, k) - 1))
+    if inside >= width:
+        return 1.0
+    return 1 - EDGE_SHADE * strength * (1 - inside / width)
 
 
 @njit
-def _occlusion(cells, i, j, k, axis, step, p, q):
-    """Blend the darkness of the face's four corners at (p, q), each from three neighbours."""
-    light = 0.0
+def corner_light(cells, i, j, k, axis, step, corners):
+    """Fill ``corners`` with the light at a face's four corners, each dimmed by three neighbours."""
     for a in range(2):
         for b in range(2):
             side_a = _solid(cells, i, j, k, axis, step, 2 * a - 1, 0)
             side_b = _solid(cells, i, j, k, axis, step, 0, 2 * b - 1)
-            both = side_a + side_b
-            if both < 2:
-                both += _solid(cells, i, j, k, axis, step, 2 * a - 1, 2 * b - 1)
-            else:
-                both = 3
-            share = (p if a else 1 - p) * (q if b else 1 - q)
-            light += share * (1 - CORNER_SHADE * both)
-    return light
+            count = 3
+            if side_a + side_b < 2:
+                diagonal = _solid(cells, i, j, k, axis, step, 2 * a - 1, 2 * b - 1)
+                count = side_a + side_b + diagonal
+            corners[2 * a + b] = 1 - CORNER_SHADE * count
 
 
 @njit

@@ -55,10 +55,31 @@ def _nearer(cells, i, j, k, side):
 
 
 @njit
-def trace(cells, states, box_start, boxes, ox, oy, oz, dx, dy, dz, t_max):
+def safe_start(cells, ox, oy, oz, dx, dy, dz, wide, widening):
+    """Return a ``t`` before which no ray of a bundle meets anything.
+
+    The bundle is all rays that are at ``t`` within ``wide + t * widening`` cells of the middle
+    ray, along each axis. Neighbouring pixels share the empty way that this finds.
+    """
+    nx, ny, nz = cells.shape
+    pace = max(abs(dx), abs(dy), abs(dz)) + widening
+    t = 0.0
+    while True:
+        x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
+        if not (0 <= x < nx and 0 <= y < ny and 0 <= z < nz):
+            return t
+        clear = cells[int(x), int(y), int(z)] - NEAR_AIR - wide - t * widening
+        if clear < 0.5:
+            return t
+        t += clear / pace
+
+
+@njit
+def trace(cells, states, box_start, boxes, ox, oy, oz, dx, dy, dz, t):
     """Return ``(t, i, j, k, face)`` of the first surface ahead; face is ``NO_FACE`` for none.
 
-    A box or cube that holds the origin is ignored: there is no near plane.
+    A box or cube that holds the origin is ignored: there is no near plane. The given ``t`` is 0
+    or comes from ``safe_start``.
     """
     nx, ny, nz = cells.shape
     if abs(dx) < _TINY:
@@ -68,25 +89,15 @@ def trace(cells, states, box_start, boxes, ox, oy, oz, dx, dy, dz, t_max):
     if abs(dz) < _TINY:
         dz = _TINY
     rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
-    t, end, face = 0.0, t_max, NO_FACE
-    low, high = min(-ox * rx, (nx - ox) * rx), max(-ox * rx, (nx - ox) * rx)
-    if low > t:
-        t, face = low, 0 if dx > 0 else 1
-    end = min(end, high)
-    low, high = min(-oy * ry, (ny - oy) * ry), max(-oy * ry, (ny - oy) * ry)
-    if low > t:
-        t, face = low, 2 if dy > 0 else 3
-    end = min(end, high)
-    low, high = min(-oz * rz, (nz - oz) * rz), max(-oz * rz, (nz - oz) * rz)
-    if low > t:
-        t, face = low, 4 if dz > 0 else 5
-    end = min(end, high)
-    if t >= end:
-        return 0.0, 0, 0, 0, NO_FACE
-    i = min(max(int(ox + t * dx), 0), nx - 1)
-    j = min(max(int(oy + t * dy), 0), ny - 1)
-    k = min(max(int(oz + t * dz), 0), nz - 1)
-    while t < end:
+    face = NO_FACE
+    if not (0 <= ox < nx and 0 <= oy < ny and 0 <= oz < nz):
+        t, face = _entry(nx, ny, nz, ox, oy, oz, rx, ry, rz)
+        if face == NO_FACE:
+            return 0.0, 0, 0, 0, NO_FACE
+    i, j, k = int(ox + t * dx), int(oy + t * dy), int(oz + t * dz)
+    if face != NO_FACE:  # On the grid's hull rounding may point outside.
+        i, j, k = min(max(i, 0), nx - 1), min(max(j, 0), ny - 1), min(max(k, 0), nz - 1)
+    while 0 <= i < nx and 0 <= j < ny and 0 <= k < nz:
         cell = cells[i, j, k]
         if cell == FULL:
             if face != NO_FACE and t > 0:
@@ -97,7 +108,7 @@ def trace(cells, states, box_start, boxes, ox, oy, oz, dx, dy, dz, t_max):
                 boxes, box_start[state], box_start[state + 1],
                 ox - i, oy - j, oz - k, rx, ry, rz,
             )  # fmt: skip
-            if side != NO_FACE and near < end:
+            if side != NO_FACE:
                 return near, i, j, k, side
         reach = cell - NEAR_AIR if cell > NEAR_AIR else 0
         tx = ((i + 1 + reach if dx > 0 else i - reach) - ox) * rx
@@ -121,9 +132,23 @@ def trace(cells, states, box_start, boxes, ox, oy, oz, dx, dy, dz, t_max):
             if face < 4:
                 c = min(max(int(np.floor(oz + t * dz)), k - reach), k + reach)
         i, j, k = a, b, c
-        if i < 0 or j < 0 or k < 0 or i >= nx or j >= ny or k >= nz:
-            break
     return 0.0, 0, 0, 0, NO_FACE
+
+
+@njit
+def _entry(nx, ny, nz, ox, oy, oz, rx, ry, rz):
+    """Return ``(t, face)`` where a ray from outside enters the grid; ``NO_FACE`` if it does not."""
+    ax, bx = min(-ox * rx, (nx - ox) * rx), max(-ox * rx, (nx - ox) * rx)
+    ay, by = min(-oy * ry, (ny - oy) * ry), max(-oy * ry, (ny - oy) * ry)
+    az, bz = min(-oz * rz, (nz - oz) * rz), max(-oz * rz, (nz - oz) * rz)
+    t = max(ax, ay, az)
+    if t <= 0 or t >= min(bx, by, bz):
+        return 0.0, NO_FACE
+    if t == ax:
+        return t, 0 if rx > 0 else 1
+    if t == ay:
+        return t, 2 if ry > 0 else 3
+    return t, 4 if rz > 0 else 5
 
 
 @njit

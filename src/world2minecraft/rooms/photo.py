@@ -13,6 +13,7 @@ from scipy import ndimage
 
 from world2minecraft.jit import njit
 from world2minecraft.render import RayScene, prepare_voxels
+from world2minecraft.render.shade import TILE, bundle_start
 from world2minecraft.render.trace import NO_FACE, trace
 from world2minecraft.rooms.room import Room
 from world2minecraft.types import Camera
@@ -83,29 +84,31 @@ def _expose(
     height, width = depth.shape
     ny, nz = cells.shape[1], cells.shape[2]
     scale = np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)
-    ox, oy, oz = pose[0, 3], pose[1, 3], pose[2, 3]
-    for v in range(height):
-        y = (v + 0.5 - rays[3]) / rays[1]
-        for u in range(width):
-            x = (u + 0.5 - rays[2]) / rays[0]
-            dx = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]
-            dy = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]
-            dz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]
-            t, i, j, k, face = trace(
-                cells, states, box_start, boxes, ox, oy, oz, dx, dy, dz, np.inf
-            )
-            if face == NO_FACE:
-                index[v, u] = -1
-                continue
-            depth[v, u] = t
-            index[v, u] = (i * ny + j) * nz + k
-            along = dx if face < 2 else (dy if face < 4 else dz)
-            cosine[v, u] = abs(along) / (scale * np.sqrt(x * x + y * y + 1))
-            px, py, pz = ox + t * dx, oy + t * dy, oz + t * dz
-            light = _light(solid, lamp, px, py, pz, face) * _grain(px, py, pz)
-            light *= 1.0 - 0.10 * ((u / width - 0.5) ** 2 + (v / height - 0.5) ** 2)
-            for n in range(3):
-                image[v, u, n] = np.uint8(min(255.0, colours[i, j, k, n] * light))
+    for v_tile in range(0, height, TILE):
+        for u_tile in range(0, width, TILE):
+            start = bundle_start(cells, pose, rays, 1.0, u_tile, v_tile)
+            for v in range(v_tile, min(v_tile + TILE, height)):
+                for u in range(u_tile, min(u_tile + TILE, width)):
+                    x, y = (u + 0.5 - rays[2]) / rays[0], (v + 0.5 - rays[3]) / rays[1]
+                    dx = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]
+                    dy = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]
+                    dz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]
+                    t, i, j, k, face = trace(
+                        cells, states, box_start, boxes,
+                        pose[0, 3], pose[1, 3], pose[2, 3], dx, dy, dz, start,
+                    )  # fmt: skip
+                    if face == NO_FACE:
+                        index[v, u] = -1
+                        continue
+                    depth[v, u] = t
+                    index[v, u] = (i * ny + j) * nz + k
+                    along = dx if face < 2 else (dy if face < 4 else dz)
+                    cosine[v, u] = abs(along) / (scale * np.sqrt(x * x + y * y + 1))
+                    px, py, pz = pose[0, 3] + t * dx, pose[1, 3] + t * dy, pose[2, 3] + t * dz
+                    light = _light(solid, lamp, px, py, pz, face) * _grain(px, py, pz)
+                    light *= 1.0 - 0.10 * ((u / width - 0.5) ** 2 + (v / height - 0.5) ** 2)
+                    for n in range(3):
+                        image[v, u, n] = np.uint8(min(255.0, colours[i, j, k, n] * light))
 
 
 @njit
