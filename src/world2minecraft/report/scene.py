@@ -1,15 +1,17 @@
 """All files of one finished run, read back: what the report and its figures are made from."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.errors import DamagedFileError
 from world2minecraft.exchange.evidence import read_evidence
 from world2minecraft.exchange.objects import read_objects, read_placements
 from world2minecraft.exchange.room import read_room
 from world2minecraft.exchange.scan import read_room_size
-from world2minecraft.exchange.scene import read_scene_volume
+from world2minecraft.exchange.scene import read_scene
+from world2minecraft.minecraft.schem import read_schem
 from world2minecraft.types import (
     BlockVolume,
     FusedEvidence,
@@ -45,6 +47,25 @@ def read_finished(folder: Path) -> FinishedScene:
         evidence=read_evidence(folder / "evidence.npz"),
         instances=read_objects(folder / "objects.json", grid),
         placements=read_placements(folder / "placements.json"),
-        volume=read_scene_volume(folder / "build"),
+        volume=read_built(folder / "build"),
         room_size_m=read_room_size(folder / "scan.json"),
+    )
+
+
+def read_built(folder: Path) -> BlockVolume:
+    """Read a build back from its schematic and its scene files.
+
+    Raises:
+        InputError: a file is missing or damaged.
+    """
+    scene = read_scene(folder)
+    volume = read_schem(folder / "room.schem")
+    if volume.states.shape != scene.semantic.shape:
+        raise DamagedFileError(folder / "scene.npz", "is not of the room.schem beside it")
+    return replace(
+        volume,
+        semantic=scene.semantic,
+        instance=scene.instance,
+        corner=scene.corner,
+        block_to_room=scene.block_to_room,
     )
