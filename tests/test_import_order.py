@@ -25,7 +25,7 @@ ROWS: tuple[tuple[str, ...], ...] = (
     ("scan", "occupy", "fuse", "label", "find", "furnish", "build"),
     ("parameters", "run_folder"),
     ("steps",),
-    ("pipeline",),
+    ("pipeline", "rebuild"),
     ("rooms",),
     ("report",),
     ("dataset",),
