@@ -6,7 +6,7 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.classes import SemanticClass
-from world2minecraft.label.components import FULL, find_pieces
+from world2minecraft.label.components import FULL, Piece, find_pieces
 from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.plates import EIGHT, Plate, find_plates
 from world2minecraft.label.rules import class_of_piece, class_of_plate
@@ -24,9 +24,20 @@ REACH = {
 
 # What has a say before what: the arms of an easy chair are plates too, and would pass for a box.
 ROUNDS = (
+    (SemanticClass.TABLE,),
     (SemanticClass.BED, SemanticClass.SOFA, SemanticClass.CHAIR),
-    (SemanticClass.TABLE, SemanticClass.FURN),
+    (SemanticClass.FURN,),
 )
+
+# Sides and feet of what a plate has claimed; on top of it lie other things.
+JOINING_CLASSES = (
+    SemanticClass.FURN,
+    SemanticClass.SOFA,
+    SemanticClass.BED,
+    SemanticClass.CHAIR,
+)
+JOINING_BOTTOM_M = 0.5
+JOINING_SHARE = 0.3
 
 
 def label_furniture(
@@ -52,12 +63,27 @@ def label_furniture(
             if kind not in wanted:
                 continue
             claimed = _claimed(surface, plate, left, kind)
+            if kind == SemanticClass.CHAIR and not _stands_free(claimed, left):
+                continue
             labels[claimed] = kind
             left &= ~claimed
             if kind == SemanticClass.TABLE:
                 tables.append(plate)
+    contact = {
+        kind: ndimage.binary_dilation((labels == kind) & rest, FULL) for kind in JOINING_CLASSES
+    }
     for piece in find_pieces(surface, left, wall, parameters):
-        labels[piece.at] = class_of_piece(surface, piece, tables, parameters)
+        joined = _joined_class(piece, contact)
+        labels[piece.at] = joined or class_of_piece(surface, piece, tables, parameters)
+
+
+def _joined_class(piece: Piece, contact: dict[SemanticClass, np.ndarray]) -> SemanticClass | None:
+    """Return the class of the thing whose side a piece is: low, and touching it over a third."""
+    if piece.low_m[2] > JOINING_BOTTOM_M:
+        return None
+    shares = {kind: float(touched[piece.at].mean()) for kind, touched in contact.items()}
+    best = max(shares, key=lambda kind: shares[kind])
+    return best if shares[best] >= JOINING_SHARE else None
 
 
 def _claimed(surface: Surface, plate: Plate, left: np.ndarray, kind: SemanticClass) -> np.ndarray:
@@ -71,3 +97,9 @@ def _claimed(surface: Surface, plate: Plate, left: np.ndarray, kind: SemanticCla
     parts = cast(tuple[np.ndarray, int], ndimage.label(reach, FULL))[0]
     own = np.unique(parts[plate.mask & left])
     return reach & np.isin(parts, own[own > 0])
+
+
+def _stands_free(claimed: np.ndarray, left: np.ndarray) -> bool:
+    """Return whether a chair's cells do not go on into something larger."""
+    beyond = ndimage.binary_dilation(claimed, FULL, iterations=2) & left & ~claimed
+    return bool(beyond.sum() <= 0.25 * claimed.sum())

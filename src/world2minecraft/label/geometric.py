@@ -13,6 +13,7 @@ from world2minecraft.label.furniture import label_furniture
 from world2minecraft.label.horizontal import find_ceiling, find_floor
 from world2minecraft.label.openings import label_openings
 from world2minecraft.label.parameters import GeometricParameters
+from world2minecraft.label.screens import label_screens
 from world2minecraft.label.surface import surface_of
 from world2minecraft.label.walls import find_walls
 from world2minecraft.types import COMPLETED, UNSEEN, FusedEvidence, OccupancyGrid
@@ -40,6 +41,7 @@ class GeometricLabeller:
         ceiling, ceiling_m = find_ceiling(surface, self.parameters)
         wall, runs = find_walls(surface, ceiling, ceiling_m, self.parameters)
         rest = surface.occupied & ~(floor.cells | floor.spill | ceiling | wall)
+        rest &= ~label_screens(surface, rest, runs, labels, self.parameters)
         label_furniture(surface, rest, wall, labels, self.parameters)
         labels[wall] = SemanticClass.WALL
         label_openings(surface, wall, runs, labels, self.parameters)

@@ -39,7 +39,10 @@ def label_openings(
         parts = cast(tuple[np.ndarray, int], ndimage.label(face, EIGHT))[0]
         for part, box in enumerate(ndimage.find_objects(parts), 1):
             kind = _kind(parts[box] == part, box, surface, parameters)
-            if kind is not None:
+            if (
+                kind is not None
+                and _framed(parts == part, near.any(axis=0)) >= parameters.frame_share
+            ):
                 chosen = ndimage.binary_dilation(parts == part, EIGHT) & back.any(axis=0)
                 turned(labels, run.axis, run.sign)[back & chosen[None]] = kind
 
@@ -62,3 +65,10 @@ def _kind(
     if low <= width <= high and height >= parameters.door_height_m:
         return SemanticClass.OBJS
     return None
+
+
+def _framed(part: np.ndarray, plane: np.ndarray) -> float:
+    """Return the share of the ring around a part that lies on the wall's plane."""
+    inner = ndimage.binary_dilation(part, EIGHT)
+    ring = ndimage.binary_dilation(part, EIGHT, iterations=3) & ~inner
+    return float(plane[ring].mean()) if ring.any() else 0.0

@@ -34,6 +34,7 @@ class GeometricParameters:
     opening_area_m2: a small window.
     window_sill_m, window_size_m, door_width_m, door_height_m: catalogue; a window begins above
         its sill, a door below.
+    frame_share: of the ring around an opening, this share is wall; curtains hide the rest.
     plate_height_m: seats, beds, tables, counters: catalogue, 0.35 to 1.0.
     plate_area_m2: the seat of a small chair is 0.12 m2, a third of it hidden.
     plate_gate_m: half a default cell: two plates this near in height are one.
@@ -41,6 +42,10 @@ class GeometricParameters:
         rim has legs alone. Measured on generated rooms.
     near_wall_m: cupboards that hang on a wall are 0.35 m deep, and only their fronts are seen.
     flat_share: a closed piece shows a third of its cells on one upright plane, a plant a tenth.
+    screen_before_m: a screen on a bracket hangs 5 to 15 cm before its wall, on a board up to 0.3.
+    screen_bottom_m: a screen on a low board begins here.
+    screen_width_m: from a small monitor to a large television.
+    leaf: Oklab a at most, b at least, of leaves; a guess.
     screen_lightness: Oklab lightness of a dark screen; a guess.
     """
 
@@ -65,10 +70,15 @@ class GeometricParameters:
     window_size_m: Range = (0.35, 4.0)
     door_width_m: Range = (0.55, 1.9)
     door_height_m: float = 1.5
+    frame_share: float = 0.35
     plate_height_m: Range = (0.25, 1.3)
     plate_area_m2: float = 0.07
     plate_gate_m: float = 0.04
     box_share: float = 0.5
     near_wall_m: float = 0.45
     flat_share: float = 0.22
+    screen_before_m: Range = (0.045, 0.32)
+    screen_bottom_m: float = 0.45
+    screen_width_m: Range = (0.4, 1.9)
+    leaf: Range = (-0.035, 0.02)
     screen_lightness: float = 0.45

@@ -68,9 +68,14 @@ def class_of_piece(
         return SemanticClass.TABLE
     if _is_screen(piece, parameters):
         return SemanticClass.TVS
+    if _is_back_at_table(piece, tables):
+        return SemanticClass.CHAIR
     seat_high = bottom <= 0.6 and 0.65 <= top <= 1.15 and height >= 0.25
     if seat_high and 0.25 <= piece.long_m <= 0.85 and not piece.near_wall:
         return SemanticClass.CHAIR
+    leafy = piece.oklab[1] <= parameters.leaf[0] and piece.oklab[2] >= parameters.leaf[1]
+    if leafy and piece.flat_share < 0.5:
+        return SemanticClass.OBJS
     boxy = piece.flat_share >= parameters.flat_share and piece.long_m >= 0.4 and height >= 0.45
     if boxy and piece.near_wall and len(piece.at[0]) >= 20:
         return SemanticClass.FURN
@@ -92,6 +97,21 @@ def _is_leg(piece: Piece, tables: list[Plate]) -> bool:
         under = ndimage.binary_dilation(table.footprint, EIGHT)[piece.at[0], piece.at[1]]
         reach = piece.high_m[2] - table.height_m
         if under.mean() >= 0.8 and -0.16 <= reach <= 0.04:
+            return True
+    return False
+
+
+def _is_back_at_table(piece: Piece, tables: list[Plate]) -> bool:
+    """Return whether a piece is the back of a chair that its table hides: at the rim, upright."""
+    low, high = piece.low_m[2], piece.high_m[2]
+    if not (high - low >= 0.1 and 0.25 <= piece.long_m <= 0.65 and piece.thin_m <= 0.4):
+        return False
+    for table in tables:
+        over = low >= table.height_m - 0.3 and table.height_m + 0.08 <= high <= 1.15
+        inner = ndimage.binary_erosion(table.footprint, EIGHT, iterations=1)
+        near = ndimage.binary_dilation(table.footprint, EIGHT, iterations=6)
+        beside = inner[piece.at[:2]].mean() <= 0.1 and near[piece.at[:2]].mean() >= 0.9
+        if table.height_m >= 0.6 and over and beside:
             return True
     return False
 

@@ -1,0 +1,87 @@
+"""Screens on walls: dark or bluish plates that hang or stand a hand's breadth before a wall.
+
+A picture lies closer to its wall, a cupboard reaches further into the room. Of a lit or glossy
+screen depth cameras often see the frame alone, so a part of its box is enough.
+"""
+
+from typing import cast
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.classes import SemanticClass
+from world2minecraft.label.parameters import GeometricParameters
+from world2minecraft.label.peaks import highest_peak
+from world2minecraft.label.surface import Surface
+from world2minecraft.label.walls import WallRun, turned
+
+EIGHT = np.ones((3, 3), bool)
+MAX_DEPTHS = 6  # How many depths before one wall are looked at.
+
+
+def label_screens(
+    surface: Surface,
+    rest: np.ndarray,
+    runs: list[WallRun],
+    labels: np.ndarray,
+    parameters: GeometricParameters,
+) -> np.ndarray:
+    """Write tvs to ``labels`` where a screen is; return its cells, all [X, Y, Z].
+
+    Args:
+        surface: the room.
+        rest: bool [X, Y, Z], the cells that are no structure.
+        runs: the walls.
+        labels: uint8 [X, Y, Z], written to.
+        parameters: the thresholds.
+    """
+    found = np.zeros(rest.shape, bool)
+    for run in runs:
+        outward = run.sign * turned(surface.points_m[..., run.axis], run.axis, run.sign)
+        before = run.outward_m - outward
+        low, high = parameters.screen_before_m
+        cells = turned(rest, run.axis, run.sign) & (before >= low) & (before <= high)
+        cells[:, : run.span[0]] = False
+        cells[:, run.span[1] + 1 :] = False
+        cells[:, :, : surface.layers_below(parameters.screen_bottom_m)] = False
+        target = turned(found, run.axis, run.sign)
+        colour = turned(surface.oklab, run.axis, run.sign)
+        for _ in range(MAX_DEPTHS):
+            if cells.sum() * surface.voxel_m**2 < 0.05:
+                break
+            depth, _ = highest_peak(before[cells], parameters.plane_gate_m / 2)
+            near = cells & (np.abs(before - depth) <= parameters.plane_gate_m)
+            cells = cells & ~near
+            for plate in _plates(near):
+                if _is_screen(plate, colour, surface.voxel_m, parameters):
+                    target |= plate
+    labels[found] = SemanticClass.TVS
+    return found
+
+
+def _plates(near: np.ndarray) -> list[np.ndarray]:
+    """Return the parts of cells at one depth that hang together, seen face on."""
+    parts, count = cast(tuple[np.ndarray, int], ndimage.label(near.any(axis=0), EIGHT))
+    return [near & (parts == part)[None] for part in range(1, count + 1)]
+
+
+def _is_screen(
+    plate: np.ndarray, oklab: np.ndarray, voxel_m: float, parameters: GeometricParameters
+) -> bool:
+    """Return whether a plate has a screen's size, shape and colours."""
+    face = plate.any(axis=0)
+    along, up = np.nonzero(face)
+    width, height = (np.ptp(along) + 1) * voxel_m, (np.ptp(up) + 1) * voxel_m
+    low, high = parameters.screen_width_m
+    if not (low <= width <= high and 0.24 <= height <= 1.2 and 1.0 <= width / height <= 3.0):
+        return False
+    filled = face.sum() * voxel_m**2 / (width * height)
+    colours = oklab[plate]
+    return filled >= 0.35 and is_screen_colour(colours, parameters) >= 0.5
+
+
+def is_screen_colour(oklab: np.ndarray, parameters: GeometricParameters) -> float:
+    """Return the share of Oklab colours [N, 3] that are dark or blue to cyan."""
+    dark = oklab[:, 0] <= parameters.screen_lightness
+    blue = (oklab[:, 1] < 0.02) & (oklab[:, 2] < -0.01) & (np.hypot(*oklab[:, 1:].T) >= 0.04)
+    return float((dark | blue).mean())
