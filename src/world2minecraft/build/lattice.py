@@ -124,6 +124,12 @@ def carry(values: np.ndarray, weights: tuple[np.ndarray, np.ndarray, np.ndarray]
     return result
 
 
+def volume_shares(mask: np.ndarray, grid: OccupancyGrid, lattice: Lattice) -> np.ndarray:
+    """Return the share of each block's volume, float32, that cells of a mask [X, Y, Z] fill."""
+    weights = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in range(3)]
+    return carry(mask, (weights[0], weights[1], weights[2]))
+
+
 def face_shares(mask: np.ndarray, edges: list[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
     """Return the share of a block's face that the cells in it cover, seen along its best axis.
 

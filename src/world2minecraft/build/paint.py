@@ -10,10 +10,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from world2minecraft.build.hues import group_medians
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colours_of
 
-NOTICED = 0.09  # Oklab distance from which a part of a surface deserves a block of its own.
 LEAST_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
 LEAST_BLOCKS = 3.0
 ROUNDS = 4
@@ -37,13 +37,13 @@ def costs_of(
     return (apart + handicaps.astype(np.float32)) ** 2
 
 
-def choose_few(costs: np.ndarray, most: int) -> np.ndarray:
+def choose_few(costs: np.ndarray, most: int, noticed: float) -> np.ndarray:
     """Return the columns of ``costs`` [N, M] that serve all rows best, ``most`` at the most.
 
     Greedy: the column that serves all best, then each next one that saves more than it costs;
-    one must be worth it for as many blocks as make a part, at a distance that is noticed.
+    one must be worth it for as many blocks as make a part, at the Oklab distance ``noticed``.
     """
-    price = NOTICED**2 * max(LEAST_BLOCKS, LEAST_PART * len(costs))
+    price = noticed**2 * max(LEAST_BLOCKS, LEAST_PART * len(costs))
     chosen = [int(costs.sum(0).argmin())]
     served = costs[:, chosen[0]].copy()
     while len(chosen) < most:
@@ -98,6 +98,8 @@ def paint(
     most: int,
     lightness_weight: float,
     calm_step: float,
+    noticed: float,
+    match_weight: float | None = None,
     handicaps: np.ndarray | None = None,
 ) -> np.ndarray:
     """Return which candidate each block of a surface becomes.
@@ -109,6 +111,10 @@ def paint(
         most: at most so many different blocks.
         lightness_weight: how much lightness counts against hue and chroma.
         calm_step: the Oklab distance given up for each neighbour that agrees.
+        noticed: the Oklab distance from which a part deserves a block of its own.
+        match_weight: the lightness weight with which each part's median is matched at last; None
+            takes ``lightness_weight``. A low weight finds the parts of an unevenly lit floor,
+            a higher one finds the block that is as light as it.
         handicaps: float [M], Oklab distances added to those of each candidate; None adds none.
 
     Returns:
@@ -119,7 +125,10 @@ def paint(
     stride = -(-len(colours) * len(candidates) // MAX_DISTANCES)
     extra = np.zeros(len(candidates)) if handicaps is None else handicaps
     sample = costs_of(colours[::stride], candidates, lightness_weight, extra)
-    few = choose_few(sample, most)
+    few = choose_few(sample, most, noticed)
     offered = [candidates[index] for index in few]
-    costs = costs_of(colours, offered, lightness_weight, extra[few])
-    return few[calm(costs, positions, calm_step)]
+    parts = calm(costs_of(colours, offered, lightness_weight, extra[few]), positions, calm_step)
+    medians, sizes = group_medians(parts, colours, len(few))
+    weight = lightness_weight if match_weight is None else match_weight
+    matched = costs_of(medians, candidates, weight, extra).argmin(1)
+    return np.where(sizes > 0, matched, few)[parts]

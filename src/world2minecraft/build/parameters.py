@@ -9,6 +9,8 @@ _DISTANCES = (
     "saturation",
     "preference",
     "structure_lightness_weight",
+    "structure_noticed",
+    "object_noticed",
     "lightness_weight",
     "calm",
     "gap_m",
@@ -34,8 +36,12 @@ class BuildParameters:
         neighbouring things in a cell wash colours out; the kitchen's reds came out purple.
     preference: the Oklab distance by which a block of the palette's preferred groups may lie
         farther off. 0.02: one barely visible step, so that a table is of wood.
-    structure_lightness_weight: ``lightness_weight`` of the shell. 0.15: light falls unevenly on
-        walls and floors, far more than on things.
+    structure_lightness_weight: how much lightness counts in telling the parts of a wall or floor
+        apart. 0.05: light falls unevenly on them; the kitchen's one carpet came out grey and
+        black at 0.15, while black and white tiles stay two.
+    structure_noticed, object_noticed: the Oklab distance from which a part of a surface deserves
+        a block of its own. 0.12 and 0.09: the former keeps the shade under the kitchen's table
+        off its carpet, the latter keeps a dark counter from its red front.
     lightness_weight: how much lightness counts against hue and chroma (1 = Oklab as it is).
         0.4: a red cupboard in the shade stays red; at 1 it came out brown.
     calm: the Oklab distance that a block gives up for each neighbour it agrees with. 0.04: about
@@ -43,6 +49,9 @@ class BuildParameters:
     face_share: the share of a block's face that structure must cover. 0.3: a wall seen in part.
     object_share: the same for objects. 0.3: a chair leg, one cell wide, fills a third of a face
         at 4 blocks a metre.
+    most_contradicted: the share of a template's blocks that may stand in space seen free. Above
+        it the object is built from its own cells. 0.2: a guess, over what snapping alone does.
+    close_tops: close the unseen holes in the tops of objects (glossy counters give no depth).
     plane_reach_blocks: surfaces nearer than this to a wall's plane belong to it. 0.75: noise of
         two cells at 4 blocks a metre, under the depth of a chimney breast.
     plane_area_m2: the least area of a plane that draws others to itself. A guess.
@@ -60,11 +69,15 @@ class BuildParameters:
     object_colours: int = 6
     saturation: float = 1.3
     preference: float = 0.02
-    structure_lightness_weight: float = 0.15
+    structure_lightness_weight: float = 0.05
+    structure_noticed: float = 0.12
+    object_noticed: float = 0.09
     lightness_weight: float = 0.4
     calm: float = 0.04
     face_share: float = 0.3
     object_share: float = 0.3
+    most_contradicted: float = 0.2
+    close_tops: bool = True
     plane_reach_blocks: float = 0.75
     plane_area_m2: float = 0.3
     gap_m: float = 0.6
@@ -79,7 +92,7 @@ class BuildParameters:
         for name in _DISTANCES:
             if not 0 <= getattr(self, name) < 1e6:
                 raise UsageError(f"build.{name} must be 0 or more, not {getattr(self, name)}")
-        for name in ("face_share", "object_share", "plane_reach_blocks"):
+        for name in ("face_share", "object_share", "most_contradicted", "plane_reach_blocks"):
             if not 0 < getattr(self, name) <= 1:
                 raise UsageError(
                     f"build.{name} must be above 0, up to 1, not {getattr(self, name)}"

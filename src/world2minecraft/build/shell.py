@@ -47,6 +47,7 @@ def put_shell(
             )
             put_painted(canvas, patch, states, class_id)
     _put_windows(canvas, shell.windows, palette)
+    _name_foundations(canvas)
 
 
 def _patches(mask: np.ndarray, numbers: np.ndarray):
@@ -58,6 +59,14 @@ def _patches(mask: np.ndarray, numbers: np.ndarray):
         yield mask & small[numbers]
     for number in np.flatnonzero(~small):
         yield mask & (numbers == number)
+
+
+def _name_foundations(canvas: Canvas) -> None:
+    """Count the floor's blocks under walls as wall: so the floor's class is what one sees."""
+    ground = canvas.lattice.ground
+    above = np.isin(canvas.semantic[:, :, ground:], (WALL, WINDOW)).any(2)
+    below = canvas.semantic[:, :, ground - 1]
+    below[above & (below == FLOOR)] = WALL
 
 
 def _put_windows(canvas: Canvas, windows: np.ndarray, palette: Palette) -> None:

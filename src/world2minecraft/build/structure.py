@@ -10,7 +10,7 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.build.faces import blocks_behind, find_faces, straighten, vote
-from world2minecraft.build.lattice import Lattice, carry, face_shares, overlaps
+from world2minecraft.build.lattice import Lattice, face_shares, overlaps, volume_shares
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.classes import SemanticClass
 from world2minecraft.types import UNSEEN, OccupancyGrid
@@ -45,7 +45,7 @@ class Shell:
 def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParameters) -> Shell:
     """Return the shell of a room; see docs/building.md for its rules."""
     free = (grid.labels == 0) & (grid.source != UNSEEN)
-    open_share = _shares(free, grid, lattice)
+    open_share = volume_shares(free, grid, lattice)
     coloured: list[tuple[np.ndarray, np.ndarray]] = []
     patches = np.zeros(lattice.shape, np.int32)
     walls = _walls(grid, free, open_share, lattice, parameters, patches, coloured)
@@ -66,12 +66,6 @@ def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParamete
         cells=np.concatenate([cells for cells, _ in coloured]),
         blocks=np.concatenate([blocks for _, blocks in coloured]),
     )
-
-
-def _shares(mask: np.ndarray, grid: OccupancyGrid, lattice: Lattice) -> np.ndarray:
-    """Return the share of each block's volume that cells of the mask fill."""
-    weights = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in range(3)]
-    return carry(mask, (weights[0], weights[1], weights[2]))
 
 
 def _walls(grid, free, open_share, lattice, parameters, patches, coloured) -> np.ndarray:
@@ -183,11 +177,11 @@ def _footprint(grid, open_share, walls, lattice) -> np.ndarray:
 
 
 def _floor(grid, footprint, walls, lattice, coloured) -> np.ndarray:
-    """Return the floor: one flat layer under the footprint, the walls and one block beyond."""
+    """Return the floor: one flat layer under the footprint, its walls and its open rim."""
     ground = lattice.ground
-    plan = footprint | walls[:, :, ground:].any(2)
+    plan = ndimage.binary_dilation(footprint, np.ones((3, 3), bool))
     floor = np.zeros(lattice.shape, bool)
-    floor[:, :, ground - 1] = ndimage.binary_dilation(plan, np.ones((3, 3), bool))
+    floor[:, :, ground - 1] = plan | walls[:, :, ground:].any(2)
     cells = np.argwhere(grid.labels == FLOOR)
     blocks = np.empty_like(cells)
     for axis in (0, 1):

@@ -54,15 +54,16 @@ def painted(
     if not (known & mask).any():
         return np.full(int(mask.sum()), default, object)
     choices = palette.blocks[class_id]
-    preferred = palette.preferred[class_id]
+    preferred = palette.preferred[class_id] or choices
+    shell, weight = class_id in STRUCTURE_CLASSES, parameters.lightness_weight
     index = paint(
         spread(colours, known & mask, mask, default_colour(default)),
         np.argwhere(mask),
         choices,
         most=most,
-        lightness_weight=parameters.structure_lightness_weight
-        if class_id in STRUCTURE_CLASSES
-        else parameters.lightness_weight,
+        lightness_weight=parameters.structure_lightness_weight if shell else weight,
+        noticed=parameters.structure_noticed if shell else parameters.object_noticed,
+        match_weight=weight,
         calm_step=parameters.calm,
         handicaps=np.array([parameters.preference * (block not in preferred) for block in choices]),
     )

@@ -1,0 +1,59 @@
+"""Tops of objects that gave no depth: glossy counters and glass tables, closed where space shows.
+
+A ray that crosses the space above a counter and meets nothing measurable in it leaves free cells
+above unseen ones. Such a step, level with the rim of an object and joined to it, is its top.
+"""
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.types import UNSEEN, OccupancyGrid
+
+RIM_LAYERS = 1  # A top lies within a cell of the rim that it joins.
+REACH_M = 0.7  # How far from the rim: the depth of a worktop.
+LEAST_RIM_M = 0.3  # Lower things are no furniture with a top.
+
+
+def top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return unseen cells that close the top of an object, and cells that look like them.
+
+    Args:
+        grid: the room; its free cells show where the top must be.
+        cells: int [M, 3], the object's own.
+
+    Returns:
+        int [N, 3], the unseen cells; int [N, 3], for each the nearest cell of the object that
+        was seen from above.
+    """
+    reach = max(1, round(REACH_M / grid.voxel_m))
+    low = np.maximum(cells.min(0) - [reach, reach, 1], 0)
+    high = np.minimum(cells.max(0) + np.array([reach + 1, reach + 1, 3]), grid.shape)
+    box = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
+    steps, free = _steps(grid, box)
+    body = np.zeros(steps.shape, bool)
+    tall = grid.origin_m[2] + (cells[:, 2] + 1) * grid.voxel_m >= LEAST_RIM_M
+    body[tuple((cells[tall] - low).T)] = True
+    rim = ndimage.binary_dilation(body, np.ones((1, 1, 2 * RIM_LAYERS + 1), bool))
+    joined = _joined(steps, rim, reach)
+    upper = body & np.concatenate([free[:, :, 1:], np.zeros_like(free[:, :, :1])], axis=2)
+    if not joined.any() or not upper.any():
+        return np.zeros((0, 3), int), np.zeros((0, 3), int)
+    nearest = ndimage.distance_transform_edt(~upper, return_distances=False, return_indices=True)
+    return np.argwhere(joined) + low, np.stack([axis[joined] for axis in nearest], 1) + low
+
+
+def _steps(grid: OccupancyGrid, box: tuple[slice, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the unseen cells, bool, that lie right under seen free space, and that space."""
+    unseen = grid.source[box] == UNSEEN
+    free = (grid.labels[box] == 0) & ~unseen
+    steps = np.zeros_like(unseen)
+    steps[:, :, :-1] = unseen[:, :, :-1] & free[:, :, 1:]
+    return steps, free
+
+
+def _joined(steps: np.ndarray, rim: np.ndarray, reach: int) -> np.ndarray:
+    """Return the steps that join the rim layer by layer, within ``reach`` cells of it."""
+    flat = np.zeros((3, 3, 3), bool)
+    flat[:, :, 1] = [[0, 1, 0], [1, 1, 1], [0, 1, 0]]
+    grown = ndimage.binary_dilation(rim, flat, iterations=reach, mask=steps | rim)
+    return grown & steps & ~rim
