@@ -1,0 +1,44 @@
+"""The table of benchmarks: verdicts, and a benchmark that breaks. What they measure is not here."""
+
+import io
+
+import pytest
+from benchmarks import __main__ as bench
+from benchmarks.rows import Row
+from rich.console import Console
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "budget", "verdict"),
+    [
+        (0.2, "s", 0.25, True),
+        (0.3, "s", 0.25, False),
+        (0.3, "s", None, None),
+        (21, "Mcell/s", 20, True),
+        (19, "Mcell/s", 20, False),
+    ],
+)
+def test_smaller_is_better_but_for_rates(value, unit, budget, verdict):
+    assert Row("x", value, unit, budget).is_within_budget is verdict
+
+
+def test_the_table_shows_verdict_rival_and_peak():
+    rows = [("a", Row("x", 9, "s", 1, "other", 2.5, 100.0)), ("b", Row("y", 1, "s", 2))]
+    console = Console(file=io.StringIO(), width=120)
+    console.print(bench.table(rows))
+    text = console.file.getvalue()
+    for word in ("MISSED", "2.5 x other", "100 MB", "ok"):
+        assert word in text
+
+
+def test_a_benchmark_that_breaks_fails_the_run(monkeypatch, capsys):
+    monkeypatch.setattr(bench, "measure", lambda name: None)
+    assert bench.main(["--only", "cli"]) == 1
+    assert "bench_cli.py broke" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("value", "code"), [(1.0, 0), (3.0, 1)])
+def test_a_missed_budget_fails_the_run(monkeypatch, tmp_path, value, code):
+    monkeypatch.setattr(bench, "measure", lambda name: [Row("x", value, "s", 2.0)])
+    assert bench.main(["--only", "cli", "--json", str(tmp_path / "rows.json")]) == code
+    assert '"value"' in (tmp_path / "rows.json").read_text()

@@ -1,0 +1,53 @@
+"""What is said twice is said alike: versions, pins, and what the set-up needs."""
+
+import re
+import tomllib
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+
+import world2minecraft
+
+ROOT = Path(__file__).resolve().parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+PINS = [
+    line
+    for line in (ROOT / "constraints.txt").read_text().splitlines()
+    if line[:1] not in ("#", "")
+]
+PINNED = dict(line.lower().replace("_", "-").split("==") for line in PINS)
+REQUIREMENTS = [*PROJECT["dependencies"], *PROJECT["optional-dependencies"]["dev"]]
+
+
+def numbers(version):
+    return tuple(int(part) for part in re.findall(r"\d+", version))
+
+
+def test_the_version_is_one():
+    assert PROJECT["version"] == world2minecraft.__version__ == metadata.version("world2minecraft")
+
+
+@pytest.mark.parametrize("requirement", REQUIREMENTS)
+def test_each_requirement_has_a_pin_above_its_bound(requirement):
+    name, bound = requirement.lower().replace("_", "-").split(">=")
+    assert numbers(PINNED[name]) >= numbers(bound)
+
+
+def test_pins_are_exact_sorted_and_name_no_host():
+    assert all(re.fullmatch(r"[A-Za-z0-9._-]+==[0-9][0-9a-z.]*", line) for line in PINS)
+    assert sorted(PINNED) == list(PINNED)
+
+
+@pytest.mark.parametrize("name", ["Makefile", "constraints.txt", ".ci/run", "pyproject.toml"])
+def test_the_set_up_names_no_registry(name):
+    assert not re.search(r"https?://|index-url|find-links", (ROOT / name).read_text())
+
+
+def test_every_pinned_package_that_is_installed_has_that_version():
+    """What the tests run with is what the pins say."""
+    for name, version in PINNED.items():
+        try:
+            assert numbers(metadata.version(name)) == numbers(version), name
+        except metadata.PackageNotFoundError:
+            continue  # Some are for building, or for other systems.
