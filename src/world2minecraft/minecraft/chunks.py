@@ -173,7 +173,7 @@ def _sections(root: dict[str, Any], place: tuple[int, int], path: Path) -> Itera
             palette = tuple(map(_text_of, blocks["palette"]))
             words = blocks.get("data", np.zeros(0, np.int64)).view(np.uint64)
             y = int(section["Y"])
-        except (KeyError, TypeError, AttributeError, ValueError) as error:
+        except (KeyError, TypeError, AttributeError, ValueError, UsageError) as error:
             raise DamagedFileError(path, f"chunk {place} has a broken section") from error
         if not 1 <= len(palette) <= SECTION or len(words) != _word_count(len(palette)):
             reason = f"{len(palette)} states in {len(words)} words"

@@ -59,6 +59,7 @@ def level_data(
     """
     x, y, z = (int(value // 1) for value in spawn)
     data_version = version.level_data_version
+    place = {"SpawnX": x, "SpawnY": y, "SpawnZ": z, "SpawnAngle": Float(spawn_yaw_deg)}
     data = {
         MAKER_TAG: MAKER,
         "version": 19133,
@@ -76,22 +77,26 @@ def level_data(
         "Difficulty": Byte(0),
         "DifficultyLocked": Byte(0),
         "initialized": Byte(1),
-        "SpawnX": x,
-        "SpawnY": y,
-        "SpawnZ": z,
-        "SpawnAngle": Float(spawn_yaw_deg),
+        "WasModded": Byte(0),
+        "LastPlayed": Long(0),
+        "GameRules": dict(GAME_RULES),
+        "DataPacks": {"Enabled": ["vanilla", *[f"file/{p}" for p in packs]], "Disabled": []},
+        "WorldGenSettings": _generation(),
+        "Player": _player(spawn, spawn_yaw_deg, data_version),
+    }
+    return {"Data": {**data, **place, **_calm()}}
+
+
+def _calm() -> dict[str, Any]:
+    """Noon, clear weather for years of play, no dragon, no trader."""
+    return {
         "Time": Long(0),
         "DayTime": Long(NOON),
-        "LastPlayed": Long(0),
         "clearWeatherTime": 1_000_000_000,
         "raining": Byte(0),
         "rainTime": 1_000_000_000,
         "thundering": Byte(0),
         "thunderTime": 1_000_000_000,
-        "WasModded": Byte(0),
-        "GameRules": dict(GAME_RULES),
-        "DataPacks": {"Enabled": ["vanilla", *[f"file/{p}" for p in packs]], "Disabled": []},
-        "WorldGenSettings": _generation(),
         "DragonFight": {
             "NeedsStateScanning": Byte(0),
             "DragonKilled": Byte(1),
@@ -102,9 +107,7 @@ def level_data(
         "ServerBrands": [],
         "WanderingTraderSpawnChance": 0,
         "WanderingTraderSpawnDelay": 1_000_000_000,
-        "Player": _player(spawn, spawn_yaw_deg, data_version),
     }
-    return {"Data": data}
 
 
 def _generation() -> dict[str, Any]:

@@ -43,7 +43,7 @@ class Float(float):
 class NbtLimits:
     """What a file may ask for. The defaults hold for every file that the program writes."""
 
-    depth: int = 256  # The game allows 512; real files stay below 20.
+    depth: int = 100  # The game allows 512; real files stay below 20.
     values: int = 1_000_000  # About 200 MB of Python objects.
     bytes: int = 256 << 20  # Unpacked.
 
@@ -148,6 +148,8 @@ class NbtReader:
             root = self.compound(1)
         except (struct.error, IndexError) as error:
             raise self.damaged("ends too early") from error
+        except RecursionError as error:  # The caller's own stack was deep already.
+            raise LimitError(self.path, "nests too deep to be read") from error
         if self.at != len(self.data):
             raise self.damaged(f"has {len(self.data) - self.at} bytes after its end")
         return name, root

@@ -110,7 +110,10 @@ def _tree_v2(
         {**entity.nbt, "Id": entity.id, "Pos": _relative(entity, volume)}
         for entity in volume.block_entities
     ]
+    # WorldEdit pastes version 2 by these and not by Offset: the corner goes to the player's feet.
+    paste = {"WEOffsetX": 0, "WEOffsetY": 0, "WEOffsetZ": 0}
     rest = {
+        "Metadata": paste,
         "PaletteMax": len(palette),
         "Palette": palette,
         "BlockData": data,
@@ -168,11 +171,10 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
         raise DamagedFileError(source, f"says {cell_count:,} blocks and holds fewer")
     palette, number_of = _palette(blocks["Palette"], source)
     states = _cells(data, number_of, cell_count, source)
-    corner = tuple(int(value) for value in tree.get("Offset", (0, 0, 0)))
+    x, y, z = _corner(tree)
     shape = (int(size[1]), int(size[2]), int(size[0]))
     states = np.ascontiguousarray(states.reshape(shape).transpose(2, 0, 1))
     held = blocks.get("BlockEntities", tree.get("TileEntities", []))
-    x, y, z = corner
     return BlockVolume(
         states=states,
         palette=palette,
@@ -183,6 +185,13 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
         block_entities=tuple(_block_entity(nbt, (x, y, z), version) for nbt in held),
         entities=tuple(_entity(nbt, (x, y, z), version) for nbt in tree.get("Entities", [])),
     )
+
+
+def _corner(tree: Mapping[str, Any]) -> tuple[int, int, int]:
+    """Offset; where a file of version 2 has none, some tools keep it in WorldEdit's own keys."""
+    kept = tree.get("Metadata", {})
+    x, y, z = tree.get("Offset", [kept.get(f"WEOffset{axis}", 0) for axis in "XYZ"])
+    return int(x), int(y), int(z)
 
 
 def _palette(stated: Mapping[str, int], source: Path) -> tuple[tuple[str, ...], dict[int, int]]:
