@@ -3,7 +3,7 @@
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.furnish.evidence import IGNORED, OWN, Evidence
+from world2minecraft.furnish.evidence import AGAINST, OWN, Evidence
 from world2minecraft.jit import njit
 
 THIN_LAYER = 0.35  # A layer with less of the plan than this parts what is under it from above.
@@ -12,23 +12,22 @@ COMMON_TOPS = 3  # How many of the commonest tops are tried for the next run.
 
 
 def cut_into_runs(evidence: Evidence, max_runs: int, min_run_cells: int) -> list[np.ndarray]:
-    """Return the cells, int64 [N, 3] in the window, of each run; and all own cells are in one.
+    """Return the cells, int64 [N, 3] in the window, of each run; all own cells are in one.
 
     The object is first parted by height where its plan nearly vanishes (cupboards over a
     counter). Then the largest rectangle of columns with about the same top is taken from the
-    plan, again and again. Columns that were never seen may lie inside a rectangle: of a tall
-    cupboard only the front is seen. What remains
-    joins the run it touches, or is a run by itself.
+    plan, again and again. Columns in which nothing was seen free under that top may lie inside:
+    of a tall cupboard only the front is seen, and a kettle hides the counter under it. What
+    remains joins the run it touches, or is a run by itself.
     """
     runs: list[np.ndarray] = []
     rest: list[np.ndarray] = []
     for bottom, top in _storeys(evidence.code == OWN):
-        storey = np.zeros(evidence.code.shape, np.bool_)
-        storey[:, :, bottom:top] = evidence.code[:, :, bottom:top] == OWN
-        unseen = (evidence.code[:, :, bottom:top] == IGNORED).all(axis=2)
-        found, left = _rectangles(storey, unseen, max_runs - len(runs), min_run_cells)
-        runs += found
-        rest.append(left)
+        storey = evidence.code[:, :, bottom:top]
+        found, left = _rectangles(storey, max_runs - len(runs), min_run_cells)
+        lift = np.array([0, 0, bottom])
+        runs += [run + lift for run in found]
+        rest.append(left + lift)
     return _with_rest(runs, np.concatenate(rest))
 
 
@@ -70,24 +69,34 @@ def _storeys(own: np.ndarray) -> list[tuple[int, int]]:
 
 
 def _rectangles(
-    storey: np.ndarray, unseen: np.ndarray, max_runs: int, min_run_cells: int
+    storey: np.ndarray, max_runs: int, min_run_cells: int
 ) -> tuple[list[np.ndarray], np.ndarray]:
-    heights = np.arange(1, storey.shape[2] + 1)
-    top = (storey * heights).max(axis=2)
+    own = storey == OWN
+    top = (own * np.arange(1, storey.shape[2] + 1)).max(axis=2)
+    free_from = _first_free_above(storey == AGAINST, top)
     left = top > 0
     runs = []
     while len(runs) < max_runs and left.any():
         area, x0, y0, x1, y1 = max(
-            _largest(left & (np.abs(top - height) <= SAME_TOP), unseen & (top == 0))
+            _largest(
+                left & (np.abs(top - height) <= SAME_TOP), (top < height) & (free_from >= height)
+            )
             for height in _common(top[left])
         )
         if area < min_run_cells:
             break
         window = np.zeros_like(left)
         window[x0:x1, y0:y1] = left[x0:x1, y0:y1]
-        runs.append(np.argwhere(storey & window[:, :, None]))
+        runs.append(np.argwhere(own & window[:, :, None]))
         left &= ~window
-    return runs, np.argwhere(storey & left[:, :, None])
+    return runs, np.argwhere(own & left[:, :, None])
+
+
+def _first_free_above(free: np.ndarray, top: np.ndarray) -> np.ndarray:
+    """Return, for each column, the first layer from its top on that was seen free."""
+    layers = np.arange(free.shape[2])
+    above = free & (layers >= top[:, :, None])
+    return np.where(above.any(axis=2), above.argmax(axis=2), free.shape[2])
 
 
 def _common(tops: np.ndarray) -> list[int]:
@@ -95,18 +104,18 @@ def _common(tops: np.ndarray) -> list[int]:
     return [int(values[index]) for index in np.argsort(-counts, kind="stable")[:COMMON_TOPS]]
 
 
-def _largest(mask: np.ndarray, unseen: np.ndarray) -> tuple[int, int, int, int, int]:
+def _largest(mask: np.ndarray, hidden: np.ndarray) -> tuple[int, int, int, int, int]:
     """Return the seen area and the bounds of the best rectangle of a plan, bool [X, Y]."""
-    area, x0, y0, x1, y1 = largest_rectangle(mask.astype(np.uint8), unseen.astype(np.uint8))
+    area, x0, y0, x1, y1 = largest_rectangle(mask.astype(np.uint8), hidden.astype(np.uint8))
     return int(area), int(x0), int(y0), int(x1), int(y1)
 
 
 @njit
-def largest_rectangle(mask, unseen):  # pragma: no cover - compiled
-    """Return (seen, x0, y0, x1, y1) of the rectangle of mask or unseen that has most mask cells.
+def largest_rectangle(mask, hidden):  # pragma: no cover - compiled
+    """Return (seen, x0, y0, x1, y1) of the rectangle of mask or hidden that has most mask cells.
 
     For each first row the rows below are joined one by one: a column stays usable while all its
-    cells are mask or unseen. Of equals the first.
+    cells are mask or hidden. Of equals the first.
     """
     nx, ny = mask.shape
     best = (0, 0, 0, 0, 0)
@@ -116,7 +125,7 @@ def largest_rectangle(mask, unseen):  # pragma: no cover - compiled
         for x1 in range(x0, nx):
             begin, total = 0, 0
             for y in range(ny):
-                usable[y] = usable[y] and (mask[x1, y] == 1 or unseen[x1, y] == 1)
+                usable[y] = usable[y] and (mask[x1, y] == 1 or hidden[x1, y] == 1)
                 seen[y] += mask[x1, y]
                 if not usable[y]:
                     begin, total = y + 1, 0

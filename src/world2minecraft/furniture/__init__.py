@@ -4,6 +4,8 @@ A template of your own is one file in ``templates/``, one line in ``library`` an
 entry point of the group ``world2minecraft.template``; see docs/furniture.md.
 """
 
+from world2minecraft.furniture.checking import check_template
+from world2minecraft.furniture.facing import Facing, facing, surroundings
 from world2minecraft.furniture.idiom import Idiom, IdiomBlock, idiom
 from world2minecraft.furniture.library import TEMPLATES, template, templates_of
 from world2minecraft.furniture.raster import cells_of, raster, size_in_cells, surface
@@ -11,16 +13,20 @@ from world2minecraft.furniture.template import Part, Span, Template
 
 __all__ = [
     "TEMPLATES",
+    "Facing",
     "Idiom",
     "IdiomBlock",
     "Part",
     "Span",
     "Template",
     "cells_of",
+    "check_template",
+    "facing",
     "idiom",
     "raster",
     "size_in_cells",
     "surface",
+    "surroundings",
     "template",
     "templates_of",
 ]

@@ -7,6 +7,8 @@ said with a stair, a table with a fence and a plate, as players do.
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
 from world2minecraft.furniture.library import template
 from world2minecraft.furniture.template import BlockSize, LocalBlock
 from world2minecraft.types import Placement
@@ -45,13 +47,14 @@ def idiom(placement: Placement, blocks_per_metre: float) -> Idiom | None:
     if blocks_per_metre >= PARTS_FROM or placement.template == "cells":
         return None
     found = template(placement.template)
-    size = _block_size(placement, blocks_per_metre)
+    size = block_size(placement.size_m, blocks_per_metre)
     local = found.design(size, found.complete(placement.parameters))
     return _turned(local, placement.quarter_turns)
 
 
-def _block_size(placement: Placement, blocks_per_metre: float) -> BlockSize:
-    depth, width, height = (float(side) * blocks_per_metre for side in placement.size_m)
+def block_size(size_m: np.ndarray, blocks_per_metre: float) -> BlockSize:
+    """Return a template's size in metres, float64 [3], in blocks: at least one each way."""
+    depth, width, height = (float(side) * blocks_per_metre for side in size_m)
     whole = (max(1, int(side + 0.5)) for side in (depth, width, height))
     return BlockSize(*whole, exact=(depth, width, height))
 

@@ -9,6 +9,7 @@ from world2minecraft.coordinates import turn_grid
 from world2minecraft.furniture.template import Parameters, Template
 
 MAX_CELLS = 64_000_000  # A box of 32 m at 0.08 m; more is a mistake in the size.
+CLOSE = 1e-6  # A millionth of a cell, for sums of metres that should be whole cells.
 
 
 def cells_of(
@@ -69,12 +70,19 @@ def raster(
 
 
 def _cell_ranges(boxes: np.ndarray, counts: np.ndarray) -> list[tuple[list[int], list[int]]]:
-    low = np.floor(boxes[:, :3] + 0.5 - 1e-9).astype(np.int64)
-    high = np.floor(boxes[:, 3:] + 0.5 - 1e-9).astype(np.int64)
+    """Return the first cell and the one past the last of boxes in cells, float64 [N, 6].
+
+    Bounds are closed at both ends, so that a symmetric shape gives symmetric cells: a thin post
+    on the border of two cells takes both.
+    """
+    low = np.ceil(boxes[:, :3] - 0.5 - CLOSE)
+    high = np.floor(boxes[:, 3:] + 0.5 + CLOSE)
     thin = high <= low
-    middle = np.floor((boxes[:, :3] + boxes[:, 3:]) / 2).astype(np.int64)
-    low = np.clip(np.where(thin, middle, low), 0, counts - 1)
-    high = np.clip(np.where(thin, middle + 1, high), low + 1, counts)
+    middle = (boxes[:, :3] + boxes[:, 3:]) / 2
+    low = np.where(thin, np.ceil(middle - 1 - CLOSE), low)
+    high = np.where(thin, np.floor(middle + 1 + CLOSE), high)
+    low = np.clip(low, 0, counts - 1).astype(np.int64)
+    high = np.clip(high, low + 1, counts).astype(np.int64)
     return list(zip(low.tolist(), high.tolist(), strict=True))
 
 

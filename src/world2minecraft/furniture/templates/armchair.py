@@ -32,5 +32,5 @@ TEMPLATE = Template(
     size_m=(Span(0.6, 0.8, 1.0), Span(0.58, 0.8, 1.05), Span(0.68, 0.9, 1.15)),
     build=_build,
     design=_design,
-    parameters={"arm_height": Span(0.5, 0.6, 0.72), "seat_height": Span(0.34, 0.42, 0.5)},
+    parameters={"arm_height": Span(0.54, 0.6, 0.72), "seat_height": Span(0.34, 0.42, 0.5)},
 )

@@ -6,7 +6,6 @@ from world2minecraft.furniture.shapes import arms, backrest, slab
 from world2minecraft.furniture.template import Parameters, Part, Span, Template
 
 BOARD_M = 0.03
-BOOKS_SHARE = 0.6  # Of the depth, from the back.
 
 
 def _build(depth: float, width: float, height: float, p: Parameters) -> list[Part]:
@@ -17,13 +16,12 @@ def _build(depth: float, width: float, height: float, p: Parameters) -> list[Par
         backrest(depth, width, 0.0, height, 0.02),
         *(side._replace(role="side") for side in sides),
         *(slab("shelf", depth, width, z, z + BOARD_M) for z in boards),
-        *(_books(depth, width, z + BOARD_M, height) for z in boards[:-1]),
+        *(_books(depth * p["filled"], depth, width, z + BOARD_M, height) for z in boards[:-1]),
     ]
 
 
-def _books(depth: float, width: float, bottom: float, height: float) -> Part:
-    deep = max(0.04, depth * BOOKS_SHARE)
-    row = backrest(depth, width, bottom, min(bottom + 0.22, height), deep)
+def _books(deep: float, depth: float, width: float, bottom: float, height: float) -> Part:
+    row = backrest(depth, width, bottom, min(bottom + 0.22, height), max(0.04, deep))
     return row._replace(role="books")
 
 
@@ -33,5 +31,5 @@ TEMPLATE = Template(
     size_m=(Span(0.2, 0.32, 0.5), Span(0.4, 0.9, 3.0), Span(0.9, 1.8, 2.5)),
     build=_build,
     design=filled("minecraft:bookshelf", "books"),
-    parameters={"shelves": Span(3.0, 5.0, 7.0)},
+    parameters={"filled": Span(0.3, 0.6, 1.0), "shelves": Span(3.0, 5.0, 7.0)},
 )

@@ -38,5 +38,5 @@ TEMPLATE = Template(
     size_m=(Span(0.5, 0.6, 0.75), Span(0.5, 0.62, 0.75), Span(0.8, 1.02, 1.35)),
     build=_build,
     design=_design,
-    parameters={"arm_height": Span(0.6, 0.67, 0.75), "seat_height": Span(0.4, 0.48, 0.58)},
+    parameters={"arm_height": Span(0.64, 0.68, 0.76), "seat_height": Span(0.4, 0.48, 0.56)},
 )

@@ -32,5 +32,5 @@ TEMPLATE = Template(
     size_m=(Span(0.7, 0.92, 1.15), Span(1.15, 2.0, 3.2), Span(0.6, 0.85, 1.1)),
     build=_build,
     design=_design,
-    parameters={"arm_height": Span(0.5, 0.62, 0.75), "seat_height": Span(0.34, 0.43, 0.52)},
+    parameters={"arm_height": Span(0.55, 0.62, 0.75), "seat_height": Span(0.34, 0.43, 0.52)},
 )

@@ -20,7 +20,7 @@ def _build(depth: float, width: float, height: float, p: Parameters) -> list[Par
 TEMPLATE = Template(
     name="wardrobe",
     class_id=SemanticClass.FURN,
-    size_m=(Span(0.4, 0.6, 0.8), Span(0.5, 1.2, 3.0), Span(1.5, 2.0, 2.6)),
+    size_m=(Span(0.45, 0.6, 0.8), Span(0.5, 1.2, 3.0), Span(1.5, 2.0, 2.6)),
     build=_build,
     design=filled(
         "minecraft:dark_oak_planks", "body", front="minecraft:stripped_dark_oak_log[axis=y]"

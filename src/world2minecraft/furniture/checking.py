@@ -1,0 +1,102 @@
+"""Is a template sound? For writers of templates, the library's own and those of others."""
+
+from collections.abc import Iterator
+from itertools import product
+
+import numpy as np
+
+from world2minecraft.coordinates import turn_grid
+from world2minecraft.furniture.raster import raster, size_in_cells
+from world2minecraft.furniture.template import Part, Template
+
+GAP_M = 1e-6  # Parts nearer than this touch.
+FINE_VOXEL_M = 0.02
+DESIGN_SCALES = (1.0, 2.0)
+
+
+def check_template(template: Template) -> tuple[str, ...]:
+    """Return what is wrong with a template, one sentence each; nothing where it is sound.
+
+    At its smallest, usual and largest size and with each parameter at either end of its span:
+    parts have a volume and lie in the box, they reach its bottom, top and sides, and none
+    floats: each hangs together with one on the floor (for a wall's, at the back). The turns it
+    states are those of its shape. Its block design stays in its box at 1 and 2 blocks per metre.
+    """
+    problems: dict[str, None] = {}
+    for size, parameters in _cases(template):
+        for problem in _check_parts(template, size, template.parts(size, parameters)):
+            problems[f"{template.name} at {_sizes(size)}: {problem}"] = None
+    for problem in (*_check_turns(template), *_check_design(template)):
+        problems[f"{template.name}: {problem}"] = None
+    return tuple(problems)
+
+
+def _cases(template: Template) -> Iterator[tuple[np.ndarray, dict[str, float]]]:
+    spans = np.array(template.size_m)
+    ends = [
+        [(name, span.minimum), (name, span.typical), (name, span.maximum)]
+        for name, span in template.parameters.items()
+    ]
+    for column in range(3):
+        for values in product(*ends):
+            yield spans[:, column], dict(values)
+
+
+def _check_parts(template: Template, size: np.ndarray, parts: tuple[Part, ...]) -> Iterator[str]:
+    boxes = np.array([part.box_m for part in parts])
+    low = np.array([-size[0] / 2, -size[1] / 2, 0.0])
+    high = low + size
+    for part in parts:
+        if (part.box_m[3:] - part.box_m[:3] <= GAP_M).any():
+            yield f"the {part.role} is flat: {_sizes(part.box_m)}"
+        if (part.box_m[:3] < low - GAP_M).any() or (part.box_m[3:] > high + GAP_M).any():
+            yield f"the {part.role} leaves the box: {_sizes(part.box_m)}"
+    reached = np.concatenate([boxes[:, :3].min(axis=0), boxes[:, 3:].max(axis=0)])
+    if np.abs(reached - np.concatenate([low, high])).max() > FINE_VOXEL_M:
+        yield f"the parts reach {_sizes(reached)}, not the whole box"
+    for index in _floating(boxes, low, template.mount == "wall"):
+        yield f"the {parts[index].role} floats"
+
+
+def _floating(boxes: np.ndarray, low: np.ndarray, hangs: bool) -> list[int]:
+    """Return the parts that no chain of touching parts joins to the floor or the back."""
+    begin = np.maximum(boxes[:, None, :3], boxes[None, :, :3])
+    end = np.minimum(boxes[:, None, 3:], boxes[None, :, 3:])
+    touch = np.all(begin <= end + GAP_M, axis=2)
+    axis = 0 if hangs else 2
+    held = boxes[:, axis] <= low[axis] + GAP_M
+    for _ in boxes:
+        held |= touch[held].any(axis=0)
+    return np.flatnonzero(~held).tolist()
+
+
+def _check_turns(template: Template) -> Iterator[str]:
+    depth, width, height = size_in_cells(template.typical_m, FINE_VOXEL_M)
+    side = max(depth, width) if template.turns == 1 else depth
+    values = tuple(template.complete().items())
+    across = side if template.turns == 1 else width
+    solid = raster(template, (side, across, height), values, FINE_VOXEL_M)
+    half = np.array_equal(solid, turn_grid(solid, 2))
+    if template.turns in (1, 2) and not half:
+        yield f"turns is {template.turns}, but half a turn changes its shape"
+    if template.turns == 1 and not np.array_equal(solid, turn_grid(solid, 1)):
+        yield "turns is 1, but a quarter turn of a square one changes its shape"
+
+
+def _check_design(template: Template) -> Iterator[str]:
+    from world2minecraft.furniture.idiom import block_size  # noqa: PLC0415 - idiom loads blocks.
+
+    for scale in DESIGN_SCALES:
+        size = block_size(np.array(template.typical_m), scale)
+        blocks = template.design(size, template.complete())
+        cells = [block.cell for block in blocks]
+        if not cells:
+            yield f"its design at {scale:g} blocks per metre has no block"
+        elif len(set(cells)) < len(cells):
+            yield f"its design at {scale:g} blocks per metre fills a cell twice"
+        elif min(map(min, cells)) < 0:
+            yield f"its design at {scale:g} blocks per metre leaves its box"
+
+
+def _sizes(values: np.ndarray) -> str:
+    return " x ".join(f"{value:.2f}" for value in values)
