@@ -41,11 +41,13 @@ def normals_of_depth(
         reach_px: distance of the neighbours; wider is calmer and rounds corners more.
         max_m: depth beyond is left out, since its noise grows with the square of the distance.
     """
-    z = _smoothed(depth_m, max(1, reach_px // 2) * 2 + 1)
+    half_px = max(1, reach_px // 2)
+    z = _smoothed(depth_m, 2 * half_px + 1)
     rays = pixel_rays(camera)
     height, width = z.shape
-    rows = np.arange(reach_px, height - reach_px, step_px)[:, None]
-    columns = np.arange(reach_px, width - reach_px, step_px)[None, :]
+    margin = reach_px + half_px  # Windows that hang over the image's edge are lopsided.
+    rows = np.arange(margin, height - margin, step_px)[:, None]
+    columns = np.arange(margin, width - margin, step_px)[None, :]
 
     def at(down: int, across: int) -> tuple[np.ndarray, np.ndarray]:
         depth = z[rows + down, columns + across].astype(np.float64)
