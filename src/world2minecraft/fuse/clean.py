@@ -21,11 +21,13 @@ class CleanParameters:
 
     floater_cells: a part joined to nothing with fewer cells is noise: 6 cells are 24 x 16 x 8 cm,
         less than a cup with its saucer gives.
-    hole_m: holes up to this width are closed; a wider one may be a door or an unseen corner.
+    hole_m: holes up to this width are closed; a wider one may be a door or an unseen corner. At
+        0.8 one completed cell in forty of the shared kitchen stood in free space, at 0.5 one in
+        a hundred.
     """
 
     floater_cells: int = 6
-    hole_m: float = 0.8
+    hole_m: float = 0.5
 
 
 def remove_floaters(grid: OccupancyGrid, parameters: CleanParameters) -> OccupancyGrid:
