@@ -53,13 +53,10 @@ def visible_boxes(state: str) -> np.ndarray:
 
 def _marker(name: str, state: str) -> np.ndarray:
     """Return the stand-in box of a state that has no collision box."""
-    for part, sixteenths in MARKER_BOXES:
-        if part in name:
-            break
-    else:
-        facing = state.partition("facing=")[2].partition(",")[0].rstrip("]")
-        on_wall = "wall_" in name or "face=wall" in state
-        sixteenths = _FACING_WALL_BOX.get(facing, _SMALL_BOX) if on_wall else _SMALL_BOX
+    facing = state.partition("facing=")[2].partition(",")[0].rstrip("]")
+    on_wall = "wall_" in name or "face=wall" in state
+    usual = _FACING_WALL_BOX.get(facing, _SMALL_BOX) if on_wall else _SMALL_BOX
+    sixteenths = next((box for part, box in MARKER_BOXES if part in name), usual)
     return np.array([sixteenths], np.float32) / 16
 
 

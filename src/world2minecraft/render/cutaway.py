@@ -12,7 +12,8 @@ from world2minecraft.classes import SemanticClass
 from world2minecraft.types import BlockVolume
 
 RIM_M = 0.25  # So much of a near wall stays, to show where it is.
-UNDER_CEILING_M = 0.05
+HUNG_M = 0.12  # What hangs on a near wall reaches this far into the room,
+HIGH_M = 1.0  # and hangs above this height; lower things stand on the floor.
 _WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))
 
 
@@ -41,17 +42,18 @@ def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVo
 
     Args:
         volume: the blocks.
-        near_x, near_z: which sides are near: +1 for the far end of the axis, -1 for its start.
+        near_x: which end of block x is near: +1 for its far end, -1 for its start.
+        near_z: the same for block z.
     """
     semantic = volume.semantic
     floor = floor_columns(semantic)
     outside = _beyond(floor, 0, near_x) | _beyond(floor, 1, near_z)
-    level = floor_level(semantic) + 1 + int(round(RIM_M * volume.blocks_per_metre))
+    level = floor_level(semantic) + 1 + round(RIM_M * volume.blocks_per_metre)
     drop = np.zeros(semantic.shape, bool)
     drop[:, level:, :] = outside[:, None, :]
-    flush = _dilate(outside, max(1, int(round(0.12 * volume.blocks_per_metre))))
+    flush = _dilate(outside, max(1, round(HUNG_M * volume.blocks_per_metre)))
     hangs = np.isin(semantic, (*_WALLS, int(SemanticClass.OBJS))) & flush[:, None, :]
-    high = floor_level(semantic) + 1 + int(round(1.0 * volume.blocks_per_metre))
+    high = floor_level(semantic) + 1 + round(HIGH_M * volume.blocks_per_metre)
     hangs[:, :high, :] &= np.isin(semantic[:, :high, :], _WALLS)
     hangs[:, :level, :] = False
     return _without(volume, drop | hangs)

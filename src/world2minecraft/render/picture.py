@@ -1,7 +1,8 @@
 """Pictures of block volumes, through a camera of the room."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from itertools import pairwise
 from multiprocessing.pool import ThreadPool
 
 import numpy as np
@@ -110,7 +111,7 @@ def _draw(volume, rays, spread, camera_to_room, size, outputs, threads, backgrou
     )
 
 
-def run_bands(band, rows: int, threads: int) -> None:
+def run_bands(band: Callable[[tuple[int, int]], None], rows: int, threads: int) -> None:
     """Call ``band((first, last))`` for bands that cover ``rows``, on ``threads`` threads."""
     if threads <= 1:
         band((0, rows))
@@ -118,7 +119,7 @@ def run_bands(band, rows: int, threads: int) -> None:
     tiles = -(-rows // TILE)  # Bands begin with a tile, so that bundles do not depend on them.
     edges = [min(rows, TILE * (tiles * n // threads)) for n in range(threads)] + [rows]
     with ThreadPool(threads) as pool:
-        pool.map(band, zip(edges[:-1], edges[1:], strict=True))
+        pool.map(band, pairwise(edges))
 
 
 def _look_up(values: np.ndarray, index: np.ndarray) -> np.ndarray:

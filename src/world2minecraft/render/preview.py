@@ -24,7 +24,8 @@ def preview(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> 
 
     Args:
         volume: a built room.
-        width_px, height_px: the size of the picture.
+        width_px: the width of the picture.
+        height_px: its height.
 
     Raises:
         ValueError: the picture would be too large.
@@ -56,7 +57,6 @@ def dollhouse_camera(
 ) -> tuple[Camera, np.ndarray]:
     """Return a camera and its ``camera_to_room`` that see all blocks from one upper corner."""
     points_m = _corner_points_m(volume)
-    azimuth = np.radians(TURN_DEG)
     low, high = points_m.min(axis=0), points_m.max(axis=0)
     along, across = np.cos(np.radians(TURN_DEG)), np.sin(np.radians(TURN_DEG))
     if high[0] - low[0] > high[1] - low[1]:  # The long side lies across the picture.

@@ -21,6 +21,7 @@ CORNER_SHADE = 0.15  # What each solid neighbour of a corner takes; the game tak
 HEADLIGHT = 0.14  # What a face loses that the camera sees edge-on.
 EXPOSURE = 1.06
 GLOW = 1.12
+MEMO = 10
 
 
 @njit
@@ -30,39 +31,27 @@ def draw_rows(
 ):  # fmt: skip
     """Fill the rows ``first`` to ``last`` (past the end) of the outputs.
 
-    Args:
-        cells, states, box_start, boxes, colours: see ``RayScene``.
-        pose: float64 [3, 4], camera (z forward, metres) to grid.
-        rays: float64 [4] ``fx, fy, cx, cy`` in pixels, or pixels a metre for parallel rays.
-        spread: 1 for a pinhole camera, 0 for parallel rays.
-        first, last: the band of rows.
-        with_colour: whether to shade.
-        background: float32 [2, 3], colours of the first and the last row.
-        depth, distance: float32 [H, W], metres, 0 where there is nothing.
-        index: int32 [H, W], the C-order index of the cell, -1 where there is none.
-        face: uint8 [H, W], ``NO_FACE`` where there is none.
-        colour: uint8 [H, W, 3].
+    In: the first five are those of ``RayScene``. ``pose`` float64 [3, 4] carries the camera (z
+    forward, metres) to the grid; ``rays`` float64 [4] is fx, fy, cx, cy in pixels, or pixels a
+    metre for parallel rays; ``spread`` is 1 for a pinhole camera, 0 for parallel rays;
+    ``background`` float32 [2, 3] holds the colours of the first and the last row.
+
+    Out: ``depth`` and ``distance`` float32 [H, W] in metres, 0 where there is nothing; ``index``
+    int32 [H, W], the cell's C-order index or -1; ``face`` uint8 [H, W] or ``NO_FACE``; and, where
+    ``with_colour`` says so, ``colour`` uint8 [H, W, 3].
     """
-    height, width = depth.shape
+    width = depth.shape[1]
     ny, nz = cells.shape[1], cells.shape[2]
     cell_m = 1.0 / np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)
     per_x, per_y = 1.0 / rays[0], 1.0 / rays[1]
-    corners = np.empty(4)  # The light at the corners of the face that was met last.
-    last_index, last_side, last_step, tone = -1, -1, 0, 1.0
+    memo = np.full(MEMO, -1.0)
     for v_tile in range(first, last, TILE):
         for u_tile in range(0, width, TILE):
             start = bundle_start(cells, pose, rays, spread, u_tile, v_tile)
             for v in range(v_tile, min(v_tile + TILE, last)):
                 for u in range(u_tile, min(u_tile + TILE, width)):
                     x, y = (u + 0.5 - rays[2]) * per_x, (v + 0.5 - rays[3]) * per_y
-                    sx, sy = x * (1 - spread), y * (1 - spread)
-                    x, y = x * spread, y * spread
-                    ox = pose[0, 0] * sx + pose[0, 1] * sy + pose[0, 3]
-                    oy = pose[1, 0] * sx + pose[1, 1] * sy + pose[1, 3]
-                    oz = pose[2, 0] * sx + pose[2, 1] * sy + pose[2, 3]
-                    dx = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]
-                    dy = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]
-                    dz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]
+                    ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x, y, spread)
                     t, i, j, k, side = trace(
                         cells, states, box_start, boxes, ox, oy, oz, dx, dy, dz, start
                     )
@@ -70,49 +59,70 @@ def draw_rows(
                     if side == NO_FACE:
                         depth[v, u], distance[v, u], index[v, u] = 0.0, 0.0, -1
                         if with_colour:
-                            share = v / max(height - 1, 1)
-                            for n in range(3):
-                                sky = background[0, n] * (1 - share) + background[1, n] * share
-                                colour[v, u, n] = np.uint8(sky)
+                            _draw_sky(background, colour, v, u)
                         continue
-                    length = np.sqrt(x * x + y * y + 1.0)
+                    length = np.sqrt((x * x + y * y) * spread + 1.0)
                     depth[v, u], distance[v, u] = t, t * length
-                    here = (i * ny + j) * nz + k
-                    index[v, u] = here
-                    if not with_colour:
-                        continue
-                    state = states[i, j, k]
-                    if colours[state, 3] > 0:
+                    index[v, u] = (i * ny + j) * nz + k
+                    if with_colour:
+                        row = states[i, j, k]
                         light = GLOW
-                    else:
-                        fx, fy, fz = ox + t * dx - i, oy + t * dy - j, oz + t * dz - k
-                        axis = side // 2
-                        toward, along = dx, fx
-                        p, q = fy, fz
-                        if axis == 1:
-                            toward, along = dy, fy
-                            p = fx
-                        elif axis == 2:
-                            toward, along = dz, fz
-                            p, q = fx, fy
-                        step = 0  # A face inside its cell is shaded by the cell's own layer.
-                        if side % 2 == 1 and along > 0.999:
-                            step = 1
-                        elif side % 2 == 0 and along < 0.001:
-                            step = -1
-                        if here != last_index or side != last_side or step != last_step:
-                            last_index, last_side, last_step = here, side, step
-                            corner_light(cells, i, j, k, axis, step, corners)
-                            tone = 1 + HASH_SHARE * (2 * _hash(i, j, k) - 1)
-                        cosine = abs(toward) * cell_m / length
-                        light = EXPOSURE * FACE_SHADE[side] * (1 - HEADLIGHT * (1 - cosine)) * tone
-                        light *= (1 - p) * ((1 - q) * corners[0] + q * corners[1]) + p * (
-                            (1 - q) * corners[2] + q * corners[3]
-                        )
-                        block_px = cell_m * rays[0] / (t * spread + 1 - spread) * max(cosine, 0.2)
-                        light *= _edge(p, q, block_px)
-                    for n in range(3):
-                        colour[v, u, n] = np.uint8(min(255.0, colours[state, n] * light + 0.5))
+                        if colours[row, 3] == 0:
+                            along = dx if side < 2 else (dy if side < 4 else dz)
+                            cosine = abs(along) * cell_m / length
+                            cell_px = cell_m * rays[0] / (t * spread + 1 - spread)
+                            light = _light(
+                                cells, memo, i, j, k, side,
+                                ox + t * dx - i, oy + t * dy - j, oz + t * dz - k, cosine, cell_px,
+                            )  # fmt: skip
+                        for n in range(3):
+                            colour[v, u, n] = np.uint8(min(255.0, colours[row, n] * light + 0.5))
+
+
+@njit
+def ray_of_pixel(pose, x, y, spread):
+    """Return origin and direction, in the grid, of the ray through (x, y) at z = 1."""
+    sx, sy = x * (1 - spread), y * (1 - spread)
+    x, y = x * spread, y * spread
+    return (
+        pose[0, 0] * sx + pose[0, 1] * sy + pose[0, 3],
+        pose[1, 0] * sx + pose[1, 1] * sy + pose[1, 3],
+        pose[2, 0] * sx + pose[2, 1] * sy + pose[2, 3],
+        pose[0, 0] * x + pose[0, 1] * y + pose[0, 2],
+        pose[1, 0] * x + pose[1, 1] * y + pose[1, 2],
+        pose[2, 0] * x + pose[2, 1] * y + pose[2, 2],
+    )
+
+
+@njit
+def _draw_sky(background, colour, v, u):
+    share = v / max(colour.shape[0] - 1, 1)
+    for n in range(3):
+        colour[v, u, n] = np.uint8(background[0, n] * (1 - share) + background[1, n] * share)
+
+
+@njit
+def _light(cells, memo, i, j, k, side, fx, fy, fz, cosine, cell_px):
+    """Return the light at the point (fx, fy, fz) of a cell's face.
+
+    ``memo`` holds what belongs to the whole face that was lit last (cell, side, layer, tone, the
+    light of its four corners), because neighbouring pixels mostly meet the same face.
+    """
+    axis = side // 2
+    along = fx if axis == 0 else (fy if axis == 1 else fz)
+    p, q = (fy if axis == 0 else fx), (fy if axis == 2 else fz)
+    step = 0  # A face inside its cell is shaded by the cell's own layer.
+    if side % 2 == 1 and along > 0.999:
+        step = 1
+    elif side % 2 == 0 and along < 0.001:
+        step = -1
+    if memo[0] != i or memo[1] != j or memo[2] != k or memo[3] != side or memo[4] != step:
+        memo[0], memo[1], memo[2], memo[3], memo[4] = i, j, k, side, step
+        memo[5] = 1 + HASH_SHARE * (2 * _hash(i, j, k) - 1)
+        _corner_light(cells, i, j, k, axis, step, memo[6:])
+    light = EXPOSURE * FACE_SHADE[side] * (1 - HEADLIGHT * (1 - cosine)) * memo[5]
+    light *= (1 - p) * ((1 - q) * memo[6] + q * memo[7]) + p * ((1 - q) * memo[8] + q * memo[9])
+    return light * _edge(p, q, cell_px * max(cosine, 0.2))
 
 
 @njit
@@ -123,19 +133,8 @@ def bundle_start(cells, pose, rays, spread, u, v):
     off = 0.0
     for axis in range(3):
         off = max(off, abs(pose[axis, 0]) * half_x + abs(pose[axis, 1]) * half_y)
-    sx, sy = x * (1 - spread), y * (1 - spread)
-    x, y = x * spread, y * spread
-    return safe_start(
-        cells,
-        pose[0, 0] * sx + pose[0, 1] * sy + pose[0, 3],
-        pose[1, 0] * sx + pose[1, 1] * sy + pose[1, 3],
-        pose[2, 0] * sx + pose[2, 1] * sy + pose[2, 3],
-        pose[0, 0] * x + pose[0, 1] * y + pose[0, 2],
-        pose[1, 0] * x + pose[1, 1] * y + pose[1, 2],
-        pose[2, 0] * x + pose[2, 1] * y + pose[2, 2],
-        off * (1 - spread),
-        off * spread,
-    )
+    ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x, y, spread)
+    return safe_start(cells, ox, oy, oz, dx, dy, dz, off * (1 - spread), off * spread)
 
 
 @njit
@@ -150,7 +149,7 @@ def _edge(p, q, block_px):
 
 
 @njit
-def corner_light(cells, i, j, k, axis, step, corners):
+def _corner_light(cells, i, j, k, axis, step, corners):
     """Fill ``corners`` with the light at a face's four corners, each dimmed by three neighbours."""
     for a in range(2):
         for b in range(2):

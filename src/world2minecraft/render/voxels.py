@@ -65,6 +65,10 @@ def cast_voxels(
         origin_m: the minimum corner of cell (0, 0, 0) in the room.
         threads: bands of rows cast at a time; the result is the same for any number.
     """
-    scene = labels if isinstance(labels, RayScene) else prepare_voxels(labels, voxel_m, origin_m)
+    scene = (
+        labels
+        if isinstance(labels, RayScene)
+        else prepare_voxels(labels, voxel_m, np.array(origin_m))
+    )
     picture = render_volume(scene, camera, camera_to_room, outputs=(), threads=threads)
     return VoxelHits(picture.depth_m, picture.block_index, picture.face)

@@ -54,7 +54,8 @@ def scan_room(
         seed: of the tour, the world frame and the noise; the same seed gives the same bytes.
         with_labels: whether to write label images.
         label_error: the share of the label images, in patches, that says another class.
-        width, height: the size of the pictures in pixels.
+        width: of the pictures, in pixels.
+        height: of the pictures, in pixels.
         progress: called after each frame, stage ``capture``.
 
     Raises:
@@ -89,7 +90,8 @@ def room_views(
     model = _sensor(sensor)
     if frames < 1 or not 0 <= label_error <= 1:
         raise ValueError(f"frames must be 1 or more and label_error a share, not {frames}")
-    camera = Camera(width, height, *(FOCAL_SHARE * width,) * 2, width / 2, height / 2)
+    focal_px = FOCAL_SHARE * width
+    camera = Camera(width, height, focal_px, focal_px, width / 2, height / 2)
     scene = prepare_photos(room)
     to_scan = room_to_scan(seed)
     poses = plan_tour(room, scene.scene, camera, frames, np.random.default_rng([seed, 1]))
@@ -178,7 +180,7 @@ def write_truth(room: Room, folder: str | Path, truth_room_to_scan: np.ndarray) 
         {
             "labels": room.labels,
             "instance": room.instance,
-            "voxel_m": np.float64(room.voxel_m),
+            "voxel_m": np.array(room.voxel_m),
             "origin_m": room.origin_m,
             "truth_room_to_scan": truth_room_to_scan,
         },

@@ -54,7 +54,9 @@ def furnish_living(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     _beside_low_table(plan, low, easy)
     plan.add_in_corner(decor.floor_lamp((250, 232, 190)), near=couch)
     plan.add_at_walls(
-        storage.bookshelf(rng.uniform(0.8, 1.1), 1.9, style.wood, rng), clear_m=0.4, along=(0.1, 0.9)
+        storage.bookshelf(rng.uniform(0.8, 1.1), 1.9, style.wood, rng),
+        clear_m=0.4,
+        along=(0.1, 0.9),
     )
     plan.add_in_corner(decor.plant(rng.uniform(1.1, 1.5), rng))
     _pictures_over(plan, couch, 1.3)
@@ -88,9 +90,7 @@ def furnish_bed(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
         if placed:
             plan.add_upon(decor.table_lamp(style.dark_wood), placed, -0.04, 0.0)
     plan.reserve_beside(bed, 0.5)
-    closet = storage.cabinet(
-        "wardrobe", (0.6, rng.uniform(1.2, 1.8), 2.06), 3, 1, WHITE, WHITE
-    )
+    closet = storage.cabinet("wardrobe", (0.6, rng.uniform(1.2, 1.8), 2.06), 3, 1, WHITE, WHITE)
     others = tuple(int(w) for w in rng.permutation(4) if w != round(bed.yaw_deg / 90) % 4)
     plan.add_at_walls(closet, others, along=(0.0, 1.0), clear_m=0.5)
     dresser = storage.cabinet("dresser", (0.48, 1.1, 0.84), 2, 3, style.wood, style.wood)
@@ -230,7 +230,9 @@ def _chairs_around(plan: Plan, board: Item, chair, *, ends: bool) -> None:
     """Put chairs at the long sides of a table, and at its ends, all facing it."""
     depth, width, _ = board.model.size_m
     count = max(1, int(width / 0.62))
-    spots = [(s, (n + 0.5) * width / count - width / 2, True) for s in (1, -1) for n in range(count)]
+    spots = [
+        (s, (n + 0.5) * width / count - width / 2, True) for s in (1, -1) for n in range(count)
+    ]
     if ends:
         spots += [(1, 0.0, False), (-1, 0.0, False)]
     gap = 0.06

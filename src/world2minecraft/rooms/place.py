@@ -8,6 +8,7 @@ turns of a front that looks away from them: 0 at x = 0, 1 at y = 0, 2 at x = max
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import ndimage
 
 from world2minecraft.coordinates import apply, rotation_about_z
 from world2minecraft.rooms.model import STEP_M, Model
@@ -47,9 +48,7 @@ class Item:
 
 def overlap(a: Box, b: Box) -> bool:
     """Tell whether two boxes share more than a face."""
-    return all(
-        a[n] < b[n + 3] - TOUCH_M and b[n] < a[n + 3] - TOUCH_M for n in range(3)
-    )
+    return all(a[n] < b[n + 3] - TOUCH_M and b[n] < a[n + 3] - TOUCH_M for n in range(3))
 
 
 class Plan:
@@ -135,9 +134,7 @@ class Plan:
         """Put a small model in a free corner, or beside ``near``."""
         width, depth, _ = self.size_m
         inset_x, inset_y = model.size_m[0] / 2 + 0.06, model.size_m[1] / 2 + 0.06
-        spots = [
-            (x, y) for x in (inset_x, width - inset_x) for y in (inset_y, depth - inset_y)
-        ]
+        spots = [(x, y) for x in (inset_x, width - inset_x) for y in (inset_y, depth - inset_y)]
         if near is not None:
             aside = (near.model.size_m[1] + model.size_m[1]) / 2 + 0.06
             back = -near.model.size_m[0] / 2 + model.size_m[0] / 2
@@ -201,8 +198,6 @@ def ways_are_clear(plan: Plan, door_m: tuple[float, float], body_m: float = 0.24
 
     The floor is looked at in squares of 10 cm, furniture grown by ``body_m``, half a person.
     """
-    from scipy import ndimage
-
     step = 0.1
     nx, ny = (int(side / step) for side in plan.size_m[:2])
     x, y = np.meshgrid((np.arange(nx) + 0.5) * step, (np.arange(ny) + 0.5) * step, indexing="ij")
@@ -211,13 +206,18 @@ def ways_are_clear(plan: Plan, door_m: tuple[float, float], body_m: float = 0.24
     for item in plan.items:
         x0, y0, z0, x1, y1, z1 = item.box_m
         if z0 < 1.9 and z1 > 0.05:
-            free &= ~(
-                (x > x0 - body_m) & (x < x1 + body_m) & (y > y0 - body_m) & (y < y1 + body_m)
-            )
-    parts, count = ndimage.label(free)
-    if not count:
+            free &= ~((x > x0 - body_m) & (x < x1 + body_m) & (y > y0 - body_m) & (y < y1 + body_m))
+    parts = connected_parts(free)
+    if not parts.any():
         return False
     distance = np.where(free, np.hypot(x - door_m[0], y - door_m[1]), np.inf)
     start = parts.reshape(-1)[int(distance.argmin())]
     reached = int((parts == start).sum())
     return bool(distance.min() < 1.0 and reached >= 0.75 * free.sum() and reached * step**2 > 1.2)
+
+
+def connected_parts(free: np.ndarray) -> np.ndarray:
+    """Return int32 [X, Y]: 0 where not free, else the number of the connected part, from 1."""
+    parts = np.zeros(free.shape, np.int32)
+    ndimage.label(free, output=parts)
+    return parts

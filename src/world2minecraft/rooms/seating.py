@@ -1,5 +1,7 @@
 """Chairs, sofas, tables and beds, in real sizes."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
@@ -71,10 +73,10 @@ def _upholstery(d: float, w: float, h: float, seats: int, fabric: Colour, wood: 
         Part((-d / 2, w / 2 - 0.18, 0.30, d / 2, w / 2, 0.62), dark, "fabric"),
     ]
     edges = np.linspace(-w / 2 + 0.18, w / 2 - 0.18, seats + 1)
-    for first, last in zip(edges[:-1], edges[1:], strict=True):
+    for first, last in pairwise(edges.tolist()):
         gap = 0.01 if seats > 1 else 0.0
         box = (-d / 2 + 0.22, first + gap, 0.30, d / 2 - 0.02, last - gap, 0.46)
-        parts.append(Part(tuple(float(value) for value in box), shade(fabric, 1.06), "fabric"))
+        parts.append(Part(box, shade(fabric, 1.06), "fabric"))
     return parts
 
 

@@ -1,5 +1,7 @@
 """Cupboards, shelves and kitchen runs: class furn."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
@@ -58,8 +60,8 @@ def cabinet(
     ]
     ys = np.linspace(-w / 2, w / 2, columns + 1)
     zs = np.linspace(0.08, h - 0.06, rows + 1)
-    for a, b in zip(ys[:-1], ys[1:], strict=True):
-        for low, high in zip(zs[:-1], zs[1:], strict=True):
+    for a, b in pairwise(ys):
+        for low, high in pairwise(zs):
             parts += _front(d / 2 - 0.02, float(a), float(b), float(low), float(high), body)
     return Model(name, FURN, (d, w, h), tuple(parts))
 
@@ -87,7 +89,7 @@ def counter(width: float, front: Colour, worktop: Colour, *, sink: bool = False)
     ]
     doors = max(1, round(w / 0.5))
     edges = np.linspace(-w / 2, w / 2, doors + 1)
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in pairwise(edges):
         parts += _front(d / 2 - 0.04, float(a), float(b), 0.12, 0.64, front)
         parts += _front(d / 2 - 0.04, float(a), float(b), 0.64, 0.86, front)
     if not sink:
@@ -127,7 +129,7 @@ def wall_cabinet(width: float, front: Colour) -> Model:
     parts = [Part((-d / 2, -w / 2, 0, d / 2 - 0.04, w / 2, h), shade(front, 0.9))]
     doors = max(1, round(w / 0.5))
     edges = np.linspace(-w / 2, w / 2, doors + 1)
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in pairwise(edges):
         parts += _front(d / 2 - 0.02, float(a), float(b), 0.0, h, front)
     return Model("wall_cabinet", FURN, (d, w, h), tuple(parts))
 

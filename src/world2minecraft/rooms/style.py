@@ -16,7 +16,8 @@ CLOTHS: tuple[Colour, ...] = (
     (142, 82, 92), (92, 86, 116),
 )  # fmt: skip
 FRONTS: tuple[Colour, ...] = (
-    (168, 44, 40), (232, 230, 224), (92, 116, 102), (78, 100, 132), (198, 160, 108), (214, 186, 120),
+    (168, 44, 40), (232, 230, 224), (92, 116, 102), (78, 100, 132),
+    (198, 160, 108), (214, 186, 120),
 )  # fmt: skip
 WORKTOPS: tuple[Colour, ...] = ((66, 66, 68), (150, 108, 70), (196, 194, 188))
 WHITE: Colour = (238, 237, 232)
@@ -59,7 +60,5 @@ def choose_style(rng: np.random.Generator) -> Style:
 
 
 def _mixed(a: Colour, b: Colour, share_b: float) -> Colour:
-    red, green, blue = (
-        round(x * (1 - share_b) + y * share_b) for x, y in zip(a, b, strict=True)
-    )
+    red, green, blue = (round(x * (1 - share_b) + y * share_b) for x, y in zip(a, b, strict=True))
     return red, green, blue

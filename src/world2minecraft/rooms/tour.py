@@ -11,6 +11,7 @@ from scipy import ndimage
 from world2minecraft.coordinates import look_at
 from world2minecraft.render import cast_voxels
 from world2minecraft.render.scene import RayScene
+from world2minecraft.rooms.place import connected_parts
 from world2minecraft.rooms.room import Room
 from world2minecraft.types import Camera
 
@@ -33,11 +34,13 @@ def free_floor(room: Room) -> np.ndarray:
     high = round((1.9 - room.origin_m[2]) / room.voxel_m)
     taken = (room.labels[:, :, low:high] != 0).any(axis=2)
     body = round(BODY_M / room.voxel_m)
-    distance = ndimage.distance_transform_edt(~taken)
-    inner = distance[: distance.shape[0] // step * step, : distance.shape[1] // step * step]
+    distance = np.zeros(taken.shape)
+    ndimage.distance_transform_edt(~taken, distances=distance)
+    nx, ny = (side // step * step for side in taken.shape)
+    inner = distance[:nx, :ny]
     free = inner[step // 2 :: step, step // 2 :: step] > body
-    parts, count = ndimage.label(free)
-    if not count:
+    parts = connected_parts(free)
+    if not free.any():
         return free
     return parts == 1 + np.argmax(np.bincount(parts.reshape(-1))[1:])
 

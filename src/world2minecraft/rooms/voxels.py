@@ -1,5 +1,7 @@
 """A furnished plan becomes voxels: labels, instances and colours at 2 cm."""
 
+from typing import Any
+
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
@@ -38,7 +40,7 @@ class Canvas:
         a, b, c = (slice(x, max(x + 1, y)) for x, y in zip(low, high, strict=True))
         return a, b, c
 
-    def fill(self, cells: tuple[slice, slice, slice], label: int, instance: int, colour) -> None:
+    def fill(self, cells: tuple[slice, ...], label: int, instance: int, colour: Any) -> None:
         """Paint a box of voxels; ``colour`` is one colour or broadcasts to the box."""
         self.labels[cells] = label
         self.instance[cells] = instance
@@ -54,15 +56,19 @@ def paint_shell(canvas: Canvas, style: Style, floor: str, rng: np.random.Generat
     side[accent % 2] = slice(0, SHELL) if accent < 2 else slice(-SHELL, None)
     canvas.colour[tuple(side)] = style.accent_wall
     canvas.colour[:, :, SHELL : SHELL + 4] = shade(WHITE, 0.96)
-    canvas.fill((*everywhere[:2], slice(-SHELL, None)), int(SemanticClass.CEILING), 0, (244, 243, 239))
+    canvas.fill(
+        (*everywhere[:2], slice(-SHELL, None)), int(SemanticClass.CEILING), 0, (244, 243, 239)
+    )
     pattern = _planks if floor == "planks" else _tiles
     colours = pattern(canvas.labels.shape[:2], style.floor_wood, rng)
-    canvas.fill((*everywhere[:2], slice(0, SHELL)), int(SemanticClass.FLOOR), 0, colours[:, :, None])
+    canvas.fill(
+        (*everywhere[:2], slice(0, SHELL)), int(SemanticClass.FLOOR), 0, colours[:, :, None]
+    )
     air = tuple(slice(SHELL, -SHELL) for _ in range(3))
     canvas.fill(air, 0, 0, 0)
 
 
-def _planks(shape: tuple[int, int], wood: Colour, rng: np.random.Generator) -> np.ndarray:
+def _planks(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> np.ndarray:
     """Return uint8 [X, Y, 3]: boards 14 cm wide and 1.4 m long, each with its own tone."""
     x, y = np.meshgrid(np.arange(shape[0]), np.arange(shape[1]), indexing="ij")
     row = y // 7
@@ -74,7 +80,7 @@ def _planks(shape: tuple[int, int], wood: Colour, rng: np.random.Generator) -> n
     return _toned(wood, tones * streaks * seam)
 
 
-def _tiles(shape: tuple[int, int], wood: Colour, rng: np.random.Generator) -> np.ndarray:
+def _tiles(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> np.ndarray:
     """Return uint8 [X, Y, 3]: tiles of 40 cm with light joints."""
     x, y = np.meshgrid(np.arange(shape[0]), np.arange(shape[1]), indexing="ij")
     checker = np.where((x // 20 + y // 20) % 2 == 0, 1.0, 0.84)
@@ -115,12 +121,18 @@ def _turned_box(item: Item, part: Part) -> tuple[float, ...]:
 
 def _grain(part: Part, shape: tuple[int, ...], rng: np.random.Generator) -> np.ndarray:
     """Return the tone of each voxel of a part: streaks along wood, specks in cloth."""
-    if part.grain == "wood":
+    if part.grain == "wood" and _is_bare_wood(part.colour):
         along = int(np.argmax(shape))
         cross = tuple(1 if axis == along else side for axis, side in enumerate(shape))
         return np.broadcast_to(rng.uniform(0.93, 1.05, cross), shape)
     spread = 0.035 if part.grain == "fabric" else 0.008
     return rng.uniform(1 - spread, 1 + spread, shape)
+
+
+def _is_bare_wood(colour: Colour) -> bool:
+    """Tell a brown from a paint: painted wood shows no streaks."""
+    red, green, blue = colour
+    return red - blue > 30 and 0.5 < green / max(red, 1) < 0.88
 
 
 def _toned(colour: Colour, tone: np.ndarray) -> np.ndarray:
@@ -149,7 +161,11 @@ def _frame(canvas: Canvas, hole: Hole, deep: int):
     along = [x, y]
     run = along[1 - _axis(hole)]
     middle = (run.start + run.stop) // 2
-    for low, high in ((run.start, run.start + 3), (run.stop - 3, run.stop), (middle - 1, middle + 2)):
+    for low, high in (
+        (run.start, run.start + 3),
+        (run.stop - 3, run.stop),
+        (middle - 1, middle + 2),
+    ):
         bar = [x, y]
         bar[1 - _axis(hole)] = slice(low, high)
         yield bar[0], bar[1], z
