@@ -1,16 +1,22 @@
 """Vanilla designs of furniture, for scales at which parts would crumble, in the real colours.
 
-A design names blocks of one wood and one dye; the room's own colour chooses which.
+A design names blocks of one wood and one dye; the room's own colours choose which. A full block
+whose colour is far from the object's becomes a plain block of the right colour: so red cupboards
+come out red, and a wooden bookcase keeps its books.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
+from world2minecraft.build.lattice import Lattice
 from world2minecraft.build.palettes import Palette
 from world2minecraft.coordinates import cells_to_block_axes
 from world2minecraft.furniture import Idiom
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colours_of, nearest_oklab
+from world2minecraft.minecraft.colours import colour_of, colours_of, nearest_oklab
+from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.types import Placement
 
 WOODS = ("oak", "spruce", "birch", "jungle", "acacia", "dark_oak", "mangrove")
@@ -32,43 +38,71 @@ DYES = (
     "magenta",
     "pink",
 )
-# The design's own white is meant (a pillow, a sheet) and stays.
-_KEPT_DYES = ("white",)
+_KEPT_DYES = ("white",)  # A design's own white is meant: a pillow, a sheet.
+OWN_COLOUR = 0.1  # Oklab distance up to which a design's full block keeps its own look. A guess.
+
+
+class Thing(NamedTuple):
+    """Whose blocks are set, and how many different ones a surface of it may have."""
+
+    class_id: int
+    instance: int
+    most_colours: int
+
+
+def idiom_box(
+    design: Idiom, placement: Placement, lattice: Lattice
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first block and the size, int [3] each in room axes, of a design in its place."""
+    along, up, across = design.size
+    size = np.array([along, across, up])
+    middle = lattice.coordinates_of(placement.center_m)
+    bottom = middle[2] - placement.size_m[2] * lattice.blocks_per_metre / 2
+    low = np.floor(np.array([*(middle[:2] - size[:2] / 2), bottom]) + 0.5).astype(int)
+    most = np.maximum(np.array(lattice.shape) - size, 0)
+    return np.clip(low, [0, 0, lattice.ground], np.maximum(most, [0, 0, lattice.ground])), size
 
 
 def put_idiom(
     canvas: Canvas,
     design: Idiom,
-    placement: Placement,
-    colour: np.ndarray | None,
+    low: np.ndarray,
+    thing: Thing,
+    colours: tuple[np.ndarray, np.ndarray],
     palette: Palette,
 ) -> None:
-    """Set a design in its place, as far as nothing stands there, in the object's colour.
+    """Set a design, as far as nothing stands there, in the object's colours.
 
     Args:
         canvas: where to set it.
         design: blocks with offsets in block axes.
-        placement: where it stands.
-        colour: float32 [3], the object's median colour in Oklab, or None for the design's own.
-        palette: not every palette has vanilla woods; those that do are recoloured.
+        low: int [3], its first block on the canvas, in room axes.
+        thing: the object's class and instance.
+        colours: float32 [X, Y, Z, 3], Oklab, of its box of blocks; bool [X, Y, Z], where known.
+        palette: the blocks that may replace the design's own full ones.
     """
-    lattice = canvas.lattice
-    along, up, across = design.size
-    middle = lattice.coordinates_of(placement.center_m)
-    bottom = middle[2] - placement.size_m[2] * lattice.blocks_per_metre / 2
-    size = np.array([along, across, up])
-    low = np.floor(np.array([*(middle[:2] - size[:2] / 2), bottom]) + 0.5).astype(int)
-    low = np.clip(low, [0, 0, lattice.ground], np.maximum(np.array(lattice.shape) - size, 0))
+    tinted, known = colours
+    median = np.median(tinted[known], axis=0) if known.any() else None
     offsets = np.array([block.offset for block in design.blocks]).reshape(-1, 3)
-    cells = cells_to_block_axes(offsets[:, [0, 2, 1]], across)[:, [0, 2, 1]] + low
-    for cell, block in zip(cells.tolist(), design.blocks, strict=True):
-        at = tuple(cell)
-        if (
-            all(0 <= i < n for i, n in zip(at, lattice.shape, strict=True))
-            and not canvas.states[at]
-        ):
-            state = block.state if colour is None else recoloured(block.state, colour)
-            canvas.put(at, canvas.id_of(state), placement.class_id, placement.object_id)
+    # Offsets are in block axes already: their inverse map is the map itself.
+    local = cells_to_block_axes(offsets[:, [0, 2, 1]], design.size[2])[:, [0, 2, 1]]
+    inside = (local + low < np.array(canvas.states.shape)).all(1)
+    for cell, block, fits in zip(local.tolist(), design.blocks, inside, strict=True):
+        at = tuple((low + cell).tolist())
+        if not fits or canvas.states[at]:
+            continue
+        colour = tinted[tuple(cell)] if known[tuple(cell)] else median
+        state = block.state if colour is None else _in_colour(block.state, colour, thing, palette)
+        canvas.put(at, np.uint16(canvas.id_of(state)), thing.class_id, thing.instance)
+
+
+def _in_colour(state: str, colour: np.ndarray, thing: Thing, palette: Palette) -> str:
+    own = recoloured(state, colour)
+    apart = np.linalg.norm(oklab_of_srgb(np.array(colour_of(own), np.uint8)) - colour)
+    if apart <= OWN_COLOUR or not is_full_cube(own):
+        return own
+    choices = palette.blocks[thing.class_id]
+    return choices[int(nearest_oklab(colour[None], oklab_of_srgb(colours_of(choices)))[0])]
 
 
 def recoloured(state: str, colour: np.ndarray) -> str:
@@ -77,7 +111,7 @@ def recoloured(state: str, colour: np.ndarray) -> str:
     name, bracket, properties = rest.partition("[")
     for kinds, sample in ((WOODS, "_planks"), (DYES, "_wool")):
         kind = _kind_of(name, kinds)
-        if kind is None or kind in _KEPT_DYES or name.startswith("stripped_"):
+        if kind is None or kind in _KEPT_DYES:
             continue
         offered = oklab_of_srgb(colours_of([each + sample for each in kinds]))
         best = kinds[int(nearest_oklab(colour[None], offered)[0])]

@@ -1,25 +1,27 @@
 """Objects as blocks: templates by their parts or idioms, all else from its own cells."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.cells import shape_of_cells, without_crumbs
-from world2minecraft.build.halves import slab_states
-from world2minecraft.build.idioms import put_idiom
+from world2minecraft.build.halves import FULL, slab_states
+from world2minecraft.build.idioms import Thing, idiom_box, put_idiom
 from world2minecraft.build.lattice import volume_shares
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.parts import Design, design_of
 from world2minecraft.build.surfaces import block_colours, painted
 from world2minecraft.build.tops import top_cells
-from world2minecraft.classes import OBJECT_CLASSES
+from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.furniture import idiom, template
 from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
 
 CELLS = "cells"
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
+PART_COLOURS = 2  # Of one part of a template: a top with something on it.
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 
 
@@ -77,21 +79,20 @@ class ObjectBuilder:
         return cells[(np.abs(centres - placement.center_m) <= reach).all(1)]
 
     def put_cells(self, cells: np.ndarray, class_id: int, number: int) -> None:
-        """Set an object from its own cells."""
+        """Set an object from its own cells; one that hangs flush on a wall takes wall blocks."""
         if not len(cells):
             return
-        hues = cells
-        if self.parameters.close_tops:
-            added, alike = top_cells(self.grid, cells)
-            cells, hues = np.concatenate([cells, added]), np.concatenate([hues, alike])
+        cells, hues = self._with_tops(cells)
         share = self.parameters.object_share
         shape = shape_of_cells(cells, self.grid, self.lattice, share, shift=number > 0)
-        free, box = self._window(shape.low, shape.halves.shape)
-        halves = shape.halves[box] * free
-        halves = without_crumbs(halves, ~free)
-        self._put_halves(
-            shape.low + [part.start for part in box], halves, cells, shape.blocks, class_id, number
-        )
+        window = self._window(shape.low, shape.halves.shape)
+        halves = shape.halves[window.box]
+        if _is_flush(halves > 0, window):
+            halves = np.where((halves > 0) & window.wall, FULL, halves * window.free)
+        else:
+            halves = without_crumbs(halves * window.free, ~window.free)
+        thing = Thing(class_id, number, self.parameters.object_colours)
+        self._put_halves(window.low, halves, Hues(hues, shape.blocks), thing)
 
     def put_template(self, placement: Placement, cells: np.ndarray) -> bool:
         """Set a template by its vanilla design at small scales, else by its parts.
@@ -99,102 +100,140 @@ class ObjectBuilder:
         Returns:
             False where its parts would stand in space that was seen free: nothing is set then.
         """
+        thing = Thing(placement.class_id, placement.object_id, PART_COLOURS)
         found = idiom(placement, self.lattice.blocks_per_metre)
         if found is not None:
-            put_idiom(self.canvas, found, placement, self._median(cells), self.palette)
+            low, size = idiom_box(found, placement, self.lattice)
+            hues = self._stretched(cells, placement, low, size)
+            colours = block_colours(tuple(size), hues.blocks - low, *self._coloured(hues))
+            put_idiom(self.canvas, found, low, thing, colours, self.palette)
             return True
         parts = template(placement.template).parts(placement.size_m, placement.parameters)
         design = design_of(placement, parts, self.lattice)
-        if self._contradicted(design) > self.parameters.most_contradicted:
+        window = self._window(design.low, design.halves.shape)
+        if self._contradicted(design, window) > self.parameters.most_contradicted:
             return False
-        self._put_design(design, placement, cells)
+        hues = self._stretched(cells, placement, design.low, design.halves.shape)
+        halves = design.halves[window.box] * window.free
+        self._put_halves(
+            window.low, halves, hues, thing, design.part[window.box], design.posts[window.box]
+        )
         return True
 
-    def _contradicted(self, design: Design) -> float:
+    def _contradicted(self, design: Design, window: "Window") -> float:
         """Return the share of a design's blocks that were seen free and nearly nothing else."""
-        _, box = self._window(design.low, design.halves.shape)
-        filled = np.argwhere(design.halves[box] > 0) + design.low + [part.start for part in box]
+        filled = np.argwhere(design.halves[window.box] > 0) + window.low
         return float((self.open_share[tuple(filled.T)] > OPEN).mean()) if len(filled) else 0.0
 
-    def _put_design(self, design: Design, placement: Placement, cells: np.ndarray) -> None:
-        blocks = self._blocks_of(cells)
-        free, box = self._window(design.low, design.halves.shape)
-        low = design.low + [part.start for part in box]
-        halves = design.halves[box] * free
-        part = design.part[box]
-        self._put_halves(
-            low,
-            halves,
-            cells,
-            blocks,
-            placement.class_id,
-            placement.object_id,
-            part,
-            design.posts[box],
-        )
+    def _with_tops(self, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return an object's cells with its top closed, and the cells that colour them."""
+        if not (self.parameters.close_tops and len(cells)):
+            return cells, cells
+        added, alike = top_cells(self.grid, cells)
+        return np.concatenate([cells, added]), np.concatenate([cells, alike])
 
-    def _median(self, cells: np.ndarray) -> np.ndarray | None:
-        chosen = cells[self.coloured[tuple(cells.T)]]
-        return np.median(self.colours[tuple(chosen.T)], axis=0) if len(chosen) else None
+    def _stretched(
+        self, cells: np.ndarray, placement: Placement, low: np.ndarray, shape: Sequence[int]
+    ) -> "Hues":
+        """Return what colours a design when the placement's box is stretched over it.
+
+        The snapped design stands up to half a block off the object; its front must take the
+        colours of the object's front all the same.
+        """
+        cells, hues = self._with_tops(cells)
+        size = placement.size_m[[1, 0, 2]] if placement.quarter_turns % 2 else placement.size_m
+        centres = self.grid.origin_m + (cells + 0.5) * self.grid.voxel_m
+        share = (centres - placement.center_m) / size + 0.5
+        near = (np.abs(share - 0.5) <= 0.5 + self.grid.voxel_m / size).all(1)
+        blocks = np.floor(share[near] * np.array(shape)).astype(int)
+        return Hues(hues[near], np.clip(blocks, 0, np.array(shape) - 1) + low)
 
     def _blocks_of(self, cells: np.ndarray) -> np.ndarray:
+        """Return the block, int [N, 3], in which each cell's centre lies, above the floor."""
         centres = self.grid.origin_m + (cells + 0.5) * self.grid.voxel_m
         blocks = np.floor(self.lattice.coordinates_of(centres)).astype(int)
         blocks[:, 2] = np.maximum(blocks[:, 2], self.lattice.ground)
         return blocks
 
-    def _window(self, low: np.ndarray, shape: tuple[int, ...]):
-        """Return where the canvas may take a design, bool, and the slices of it that fit."""
+    def _window(self, low: np.ndarray, shape: tuple[int, ...]) -> "Window":
         high = np.minimum(low + shape, self.lattice.shape)
         start = np.maximum(low, [0, 0, self.lattice.ground])
         stop = np.maximum(high, start)
         box = tuple(slice(int(a), int(b)) for a, b in zip(start - low, stop - low, strict=True))
         inside = tuple(slice(int(a), int(b)) for a, b in zip(start, stop, strict=True))
-        return self.canvas.states[inside] == 0, box
+        free = self.canvas.states[inside] == 0
+        return Window(box, start, free, self.canvas.semantic[inside] == SemanticClass.WALL)
 
-    def _put_halves(self, low, halves, cells, blocks, class_id, number, part=None, posts=None):
-        """Paint half blocks [X, Y, Z] at ``low`` with the colours of cells in blocks; set them."""
+    def _coloured(self, hues: "Hues") -> tuple[np.ndarray, np.ndarray]:
+        """Return the colours, float32 [N, 3], of cells and which of them are one, bool [N]."""
+        at = tuple(hues.cells.T)
+        return self.colours[at], self.coloured[at]
+
+    def _put_halves(
+        self,
+        low: np.ndarray,
+        halves: np.ndarray,
+        hues: "Hues",
+        thing: "Thing",
+        part: np.ndarray | None = None,
+        posts: np.ndarray | None = None,
+    ) -> None:
+        """Paint half blocks [X, Y, Z] at ``low``, each part of a thing by itself, and set them."""
         filled = halves > 0
         if not filled.any():
             return
-        chosen = self.coloured[tuple(cells.T)]
-        colours = self.colours[tuple(cells[chosen].T)]
-        local = blocks[chosen] - low
+        tinted, known = block_colours(halves.shape, hues.blocks - low, *self._coloured(hues))
         states = np.empty(halves.shape, object)
-        for group in np.unique(part[filled]) if part is not None else [0]:
-            mask = filled if part is None else filled & (part == group)
-            tinted, known = block_colours(halves.shape, local, colours)
+        groups = filled.astype(np.int16) if part is None else np.where(filled, part, 0)
+        for group in np.unique(groups[filled]):
+            mask = groups == group
             usable = known & (mask if (known & mask).any() else filled)
+            lent = _borrowed(tinted, usable, mask)
             states[mask] = painted(
-                mask,
-                *_borrowed(tinted, usable, mask),
-                class_id,
-                self.palette,
-                self.parameters,
-                self.parameters.object_colours if part is None else 2,
+                mask, *lent, thing.class_id, self.palette, self.parameters, thing.most_colours
             )
         margin = self.parameters.slab_margin
         states[filled] = slab_states(states[filled], halves[filled], self.palette.slabs, margin)
         if posts is not None:
-            self._make_posts(states, filled & posts)
+            for block, fence in self.palette.fences.items():
+                states[filled & posts & (states == block)] = fence
         at = tuple(np.argwhere(filled).T[axis] + low[axis] for axis in range(3))
         names, index = np.unique(states[filled].astype(str), return_inverse=True)
-        self.canvas.put(at, self.canvas.ids_of(names.tolist())[index], class_id, number)
+        ids = self.canvas.ids_of(names.tolist())[index]
+        self.canvas.put(at, ids, thing.class_id, thing.instance)
 
-    def _make_posts(self, states: np.ndarray, posts: np.ndarray) -> None:
-        for block, fence in self.palette.fences.items():
-            states[posts & (states == block)] = fence
+
+class Window(NamedTuple):
+    """The part of a design that lies on the canvas, and what stands there."""
+
+    box: tuple[slice, ...]  # of the design
+    low: np.ndarray  # int [3], its first block on the canvas
+    free: np.ndarray  # bool [X, Y, Z], nothing stands there
+    wall: np.ndarray  # bool [X, Y, Z]
+
+
+class Hues(NamedTuple):
+    """The cells that colour a thing, and the block that each of them colours."""
+
+    cells: np.ndarray  # int [N, 3]
+    blocks: np.ndarray  # int [N, 3], of the lattice
+
+
+def _is_flush(filled: np.ndarray, window: Window) -> bool:
+    """Whether most of a thing's blocks lie in a wall: a picture, a screen, a socket."""
+    return bool((filled & window.wall).sum() > 0.5 * filled.sum())
 
 
 def _order(placement: Placement) -> tuple:
     return placement.object_id, placement.center_m.tolist(), placement.template
 
 
-def _borrowed(colours, usable, mask):
+def _borrowed(
+    colours: np.ndarray, usable: np.ndarray, mask: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Return colours and where they hold, so that a part without its own takes its object's."""
     if (usable & mask).any() or not usable.any():
         return colours, usable
-    median = np.median(colours[usable], axis=0)
     lent = colours.copy()
-    lent[mask] = median
+    lent[mask] = np.median(colours[usable], axis=0)
     return lent, mask

@@ -30,10 +30,8 @@ def put_shell(
         palette: what may be used.
         parameters: how many colours, how calm.
     """
-    seen = coloured[tuple(shell.cells.T)]
-    tinted, known = block_colours(
-        canvas.states.shape, shell.blocks[seen], colours[tuple(shell.cells[seen].T)]
-    )
+    at = tuple(shell.cells.T)
+    tinted, known = block_colours(canvas.states.shape, shell.blocks, colours[at], coloured[at])
     for mask, class_id in ((shell.ceiling, CEILING), (shell.walls, WALL), (shell.floor, FLOOR)):
         for patch in _patches(mask, shell.patches):
             states = painted(

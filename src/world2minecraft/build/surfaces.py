@@ -11,7 +11,7 @@ from world2minecraft.classes import STRUCTURE_CLASSES
 
 
 def block_colours(
-    shape: tuple[int, ...], blocks: np.ndarray, colours: np.ndarray
+    shape: tuple[int, ...], blocks: np.ndarray, colours: np.ndarray, usable: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the median colour of each block, float32 [X, Y, Z, 3], and where there is one, bool.
 
@@ -19,8 +19,9 @@ def block_colours(
         shape: the lattice's.
         blocks: int [N, 3], the block of each colour; those outside are left out.
         colours: float32 [N, 3], Oklab.
+        usable: bool [N], which of them are colours.
     """
-    inside = ((blocks >= 0) & (blocks < np.array(shape))).all(1)
+    inside = usable & ((blocks >= 0) & (blocks < np.array(shape))).all(1)
     flat = np.ravel_multi_index(tuple(blocks[inside].T), shape)
     used, groups = np.unique(flat, return_inverse=True)
     medians, _ = group_medians(groups, colours[inside], len(used))
