@@ -12,8 +12,8 @@ STAGES = ("scan", "fuse", "build")
 
 def run_until(folder, manifest, last=None, start=None):
     """Run stages up to ``last``; return those that were really run."""
-    run = RunFolder(folder, STAGES)
-    run.begin(manifest, start)
+    run = RunFolder(folder, STAGES, start)
+    run.begin(manifest)
     done = []
     for stage in STAGES:
         if run.needs(stage):

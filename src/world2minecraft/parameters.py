@@ -11,6 +11,9 @@ from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.find import FindParameters
 from world2minecraft.furnish import FurnishParameters
 from world2minecraft.fuse import CleanParameters, FuseParameters
+from world2minecraft.label import LABELLERS
+from world2minecraft.minecraft.versions import game_version
+from world2minecraft.occupy import PREDICTORS
 
 
 @dataclass(frozen=True)
@@ -43,12 +46,21 @@ class Parameters:
                 f"blocks_per_metre must be 0.25 to 100, not {self.blocks_per_metre}; "
                 "try 1, 2, 4 or 12.5"
             )
+        check_name("predictor", self.predictor, PREDICTORS.names())
+        check_name("labeller", self.labeller, ("auto", *LABELLERS.names()))
+        game_version(self.mc_version)
         if self.fuse.voxel_m != self.voxel_m:
             object.__setattr__(self, "fuse", replace(self.fuse, voxel_m=self.voxel_m))
 
     def as_json(self) -> dict[str, Any]:
         """Return the parameters as plain values."""
         return asdict(self)
+
+
+def check_name(kind: str, name: str, known: tuple[str, ...]) -> None:
+    """Raise UnknownNameError where ``name`` is none of ``known``."""
+    if name not in known:
+        raise UnknownNameError(kind, name, known)
 
 
 def with_settings(parameters: Parameters, settings: list[str]) -> Parameters:

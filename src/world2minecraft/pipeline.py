@@ -54,10 +54,10 @@ def reconstruct(
         CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.
     """
     chosen = parameters or Parameters()
-    run = RunFolder(out, STAGES)
+    run = RunFolder(out, STAGES, start)
     options = {"voxel_m": chosen.voxel_m, "labels": labels, "options": chosen.capture}
     scan = open_scan(capture, progress=progress, **options)
-    run.begin(manifest(capture, labels, chosen), start)
+    run.begin(manifest(capture, labels, chosen))
     if run.needs("scan"):
         with run.stage("scan"):
             write_scan(run.path("scan.json"), scan)

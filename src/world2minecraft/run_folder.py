@@ -30,37 +30,46 @@ FREE_BYTES = 64 << 20  # A reconstruction of one room writes 1 to 20 MB.
 class RunFolder:
     """The state of a run: its folder, its manifest and its clock."""
 
-    def __init__(self, folder: Path, stages: Sequence[str]):
-        if folder.exists() and not folder.is_dir():
-            raise OutputError(folder, "is a file; --out needs a folder")
-        self.folder = folder
-        self.stages = tuple(stages)
-        self._manifest: dict[str, Any] = {}
-        self._seconds: dict[str, float] = {}
-        self.finished: list[str] = []
-
-    def begin(self, manifest: Mapping[str, Any], start: str | None = None) -> None:
-        """Make the folder and decide where to begin.
+    def __init__(self, folder: Path, stages: Sequence[str], start: str | None = None):
+        """Look at the folder; nothing is written before ``begin``.
 
         Args:
-            manifest: what decides the result.
+            folder: where the files of the run go.
+            stages: all stages, in order.
             start: the stage to begin at, or None for "after the last finished one of a run that
                 was cut off, else from the first".
 
         Raises:
-            OutputError: the folder is a file, is full or may not be written.
-            UnknownNameError: no stage is named ``start``.
-            InputError: ``start`` needs the files of a stage that was never finished here.
+            OutputError: the folder is a file. UnknownNameError: no stage is named ``start``.
         """
-        if start is not None and start not in self.stages:
-            raise UnknownNameError("stage", start, self.stages)
+        if start is not None and start not in stages:
+            raise UnknownNameError("stage", start, stages)
+        if folder.exists() and not folder.is_dir():
+            raise OutputError(folder, "is a file; --out needs a folder")
+        self.folder = folder
+        self.stages = tuple(stages)
+        self.start = start
+        self._manifest: dict[str, Any] = {}
+        self._seconds: dict[str, float] = {}
+        self.finished: list[str] = []
+
+    def begin(self, manifest: Mapping[str, Any]) -> None:
+        """Make the folder and decide where to begin.
+
+        Args:
+            manifest: what decides the result.
+
+        Raises:
+            OutputError: the folder is a file, is full or may not be written.
+            InputError: the stage to begin at needs files of one that was never finished here.
+        """
         self._manifest = dict(manifest)
         check_writable(self.folder)
         done = self._finished_before()
-        if start is None:
+        if self.start is None:
             done = [] if len(done) == len(self.stages) else done
         else:
-            wanted = list(self.stages[: self.stages.index(start)])
+            wanted = list(self.stages[: self.stages.index(self.start)])
             missing = [stage for stage in wanted if stage not in self._recorded()]
             if missing:
                 raise InputError(

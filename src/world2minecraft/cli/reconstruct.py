@@ -1,9 +1,13 @@
 """``w2m reconstruct``: a capture becomes a Minecraft world, with a report."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+if TYPE_CHECKING:
+    from world2minecraft.parameters import Parameters
+    from world2minecraft.progress import Progress
 
 EXAMPLES = """\
 w2m reconstruct my_scan --out OUT                         the whole way
@@ -76,7 +80,14 @@ def run(
     say_where(out, facts)
 
 
-def make(capture: Path, out: Path, chosen, start: str | None, labels: Path | None, progress):
+def make(
+    capture: Path,
+    out: Path,
+    chosen: "Parameters",
+    start: str | None,
+    labels: Path | None,
+    progress: "Progress",
+) -> dict[str, Any]:
     """Run the pipeline and write its report; return what ``report.json`` holds."""
     from world2minecraft.pipeline import reconstruct
     from world2minecraft.report import write_report

@@ -9,7 +9,9 @@ from world2minecraft.types import GridEvidence
 EDGE = 0.02  # Probabilities are kept off 0 and 1, so that one sure view cannot veto all others.
 
 
-def grid_gains(evidence: GridEvidence, scan_to_room: np.ndarray, parameters: FuseParameters):
+def grid_gains(
+    evidence: GridEvidence, scan_to_room: np.ndarray, parameters: FuseParameters
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return what a network's grid adds to the map.
 
     Each seen cell gives the logarithm of its odds of being occupied to the room cell that holds

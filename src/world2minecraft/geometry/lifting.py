@@ -53,7 +53,9 @@ def project(points_m: np.ndarray, camera: Camera) -> np.ndarray:
     )
 
 
-def lift_depth(depth_m: np.ndarray, camera: Camera, camera_to_frame: np.ndarray):
+def lift_depth(
+    depth_m: np.ndarray, camera: Camera, camera_to_frame: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Lift the pixels that have depth.
 
     Args:
