@@ -124,14 +124,13 @@ def test_houses_made_by_others_read_as_nbtlib_reads_them(shared_data):
         root = nbtlib.load(path)
         tree = root.get("Schematic", root)
         name_of = {int(number): str(parse_state(t)) for t, number in tree["Palette"].items()}
-        raw, numbers = iter(np.array(tree["BlockData"]).astype(np.uint8).tolist()), []
-        for byte in raw:
-            value, shift = byte & 127, 7
-            while byte & 128:
-                byte = next(raw)
-                value |= (byte & 127) << shift
-                shift += 7
-            numbers.append(value)
+        numbers, value, shift = [], 0, 0
+        for byte in np.array(tree["BlockData"]).astype(np.uint8).tolist():
+            value |= (byte & 127) << shift
+            shift += 7
+            if byte < 128:
+                numbers.append(value)
+                value, shift = 0, 0
         texts = state_texts(found).transpose(1, 2, 0).ravel()
         assert texts.tolist() == [name_of[number] for number in numbers]
 

@@ -114,6 +114,9 @@ class _ChunkReader(NbtReader):
     Most sections of a world share their states: it makes reading three times as fast.
     """
 
+    # The game ignores bytes after a chunk, and servers that are not Mojang's leave some there.
+    must_end = False
+
     def __init__(self, data: bytes, path: Path, known: dict[bytes, str]):
         super().__init__(data, path, CHUNK_LIMITS)
         self._known = known

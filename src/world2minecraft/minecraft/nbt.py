@@ -132,6 +132,8 @@ def pack_gzip(data: bytes, level: int = 6) -> bytes:
 class NbtReader:
     """A place in the bytes, and how much the tree has asked for; ``read_nbt`` is its use."""
 
+    must_end = True  # Whether bytes after the tree are refused.
+
     def __init__(self, data: bytes, path: str | Path, limits: NbtLimits):
         self.data, self.path, self.limits = data, path, limits
         self.at = 0
@@ -150,7 +152,7 @@ class NbtReader:
             raise self.damaged("ends too early") from error
         except RecursionError as error:  # The caller's own stack was deep already.
             raise LimitError(self.path, "nests too deep to be read") from error
-        if self.at != len(self.data):
+        if self.must_end and self.at != len(self.data):
             raise self.damaged(f"has {len(self.data) - self.at} bytes after its end")
         return name, root
 

@@ -11,9 +11,9 @@ PLAYER_LAYERS = 2  # A player is 1.8 blocks high.
 def top_of_middle(volume: BlockVolume) -> tuple[float, float, float]:
     """Return where feet can stand nearest to the middle of the volume, in world blocks.
 
-    A place is a block whose boxes leave the player's two layers above it free. Low places are
-    taken before high ones in the same column, so that a room's floor wins over its roof. Where
-    nothing can be stood on, the place is the middle above the volume.
+    A place is a block whose boxes leave the player's two layers above it free. Places under a
+    roof are taken before others, then the nearest to the middle, then the lowest. Where nothing
+    can be stood on, the place is the middle above the volume.
     """
     size_x, size_y, size_z = volume.states.shape
     tops = np.array([_top(state) for state in volume.palette])
@@ -26,9 +26,16 @@ def top_of_middle(volume: BlockVolume) -> tuple[float, float, float]:
         return (x + size_x / 2, float(y + size_y), z + size_z / 2)
     cells = np.argwhere(stands)
     distance = np.square(cells[:, [0, 2]] - middle).sum(axis=1)
-    best = cells[np.lexsort((cells[:, 1], distance))[0]]
+    roof = np.where(volume.states.any(axis=1), size_y - 1 - _first(volume.states[:, ::-1]), -1)
+    is_outside = cells[:, 1] >= roof[cells[:, 0], cells[:, 2]]
+    best = cells[np.lexsort((cells[:, 1], distance, is_outside))[0]]
     floor = float(y + best[1] + heights[tuple(best)])
     return (float(x + best[0] + 0.5), floor, float(z + best[2] + 0.5))
+
+
+def _first(states: np.ndarray) -> np.ndarray:
+    """The first layer of each column that is not air."""
+    return (states > 0).argmax(axis=1)
 
 
 def _top(state: str) -> float:
