@@ -51,7 +51,8 @@ def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVo
     level = floor_level(semantic) + 1 + round(RIM_M * volume.blocks_per_metre)
     drop = np.zeros(semantic.shape, bool)
     drop[:, level:, :] = outside[:, None, :]
-    flush = _dilate(outside, max(1, round(HUNG_M * volume.blocks_per_metre)))
+    far = _beyond(floor, 0, -near_x) | _beyond(floor, 1, -near_z)
+    flush = ~far & _dilate(outside, max(1, round(HUNG_M * volume.blocks_per_metre)))
     hangs = np.isin(semantic, (*_WALLS, int(SemanticClass.OBJS))) & flush[:, None, :]
     high = floor_level(semantic) + 1 + round(HIGH_M * volume.blocks_per_metre)
     hangs[:, :high, :] &= np.isin(semantic[:, :high, :], _WALLS)

@@ -177,12 +177,12 @@ def microwave() -> Model:
 def kettle(colour: Colour) -> Model:
     """A kettle with a handle."""
     parts = (
-        Part((-0.08, -0.08, 0, 0.08, 0.08, 0.20), colour),
-        Part((-0.02, -0.14, 0.04, 0.02, -0.10, 0.20), BLACK),
-        Part((-0.02, -0.14, 0.16, 0.02, -0.06, 0.20), BLACK),
-        Part((-0.04, -0.04, 0.20, 0.04, 0.04, 0.24), BLACK),
+        Part((-0.08, -0.04, 0, 0.08, 0.12, 0.20), colour),
+        Part((-0.02, -0.12, 0.04, 0.02, -0.08, 0.20), BLACK),
+        Part((-0.02, -0.12, 0.16, 0.02, -0.04, 0.20), BLACK),
+        Part((-0.04, 0.0, 0.20, 0.04, 0.08, 0.24), BLACK),
     )
-    return Model("kettle", OBJS, (0.16, 0.22, 0.24), parts)
+    return Model("kettle", OBJS, (0.16, 0.24, 0.24), parts)
 
 
 def hood() -> Model:

@@ -56,8 +56,7 @@ def generate_room(seed: int, *, kind: str | None = None) -> Room:
     """
     if seed < 0:
         raise ValueError(f"seed must be 0 or more, not {seed}")
-    if kind is None:
-        kind = sorted(KINDS)[int(np.random.default_rng(seed).integers(len(KINDS)))]
+    kind = kind_of_seed(seed) if kind is None else kind
     if kind not in KINDS:
         raise UnknownNameError("room kind", kind, KINDS)
     for attempt in range(ATTEMPTS):
@@ -65,6 +64,11 @@ def generate_room(seed: int, *, kind: str | None = None) -> Room:
         if room is not None:
             return room
     raise World2MinecraftError(f"seed {seed} gives no {kind} room; try another seed")
+
+
+def kind_of_seed(seed: int) -> str:
+    """Return the kind of room that a seed draws where none is asked for."""
+    return sorted(KINDS)[int(np.random.default_rng(seed).integers(len(KINDS)))]
 
 
 def _try_room(seed: int, kind: str, rng: np.random.Generator) -> Room | None:

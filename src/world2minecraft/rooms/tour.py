@@ -98,9 +98,12 @@ def _walk(room: Room, frames: int, rng: np.random.Generator) -> np.ndarray:
         # Every other stop is nearer to the middle: low furniture is seen from above there.
         reach = 1.0 if n % 3 else 0.45
         stops.append(places[np.argmax(reach * radius - 1.6 * off * np.maximum(radius, 0.3))])
+    # Where the free floor is no ring, the walk begins behind its gap: nobody steps over a bed.
+    ahead = np.linalg.norm(np.roll(stops, -1, axis=0) - np.array(stops), axis=1)
+    stops = np.roll(stops, -1 - int(ahead.argmax()), axis=0)
     height = rng.uniform(*EYE_M) + 0.22 * np.sin(np.linspace(0, 4 * np.pi, frames))
     height = np.clip(height, *EYE_M)
-    smooth = ndimage.uniform_filter1d(np.array(stops), 3, axis=0, mode="wrap")
+    smooth = ndimage.uniform_filter1d(stops, 3, axis=0, mode="nearest")
     return np.column_stack([_nearest(smooth, places), height])
 
 
