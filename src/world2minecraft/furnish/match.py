@@ -39,35 +39,38 @@ def _keep(best: dict[tuple[str, int], Scored], scored: Scored) -> None:
 
 
 def _refine(seed: Scored, evidence: Evidence, bias: Bias, chosen: FurnishParameters) -> Scored:
-    """Climb from a seed by shifts, parameters and sizes in turn, each within its bounds."""
-    best = _shifted(seed, seed.trial, evidence, bias, chosen.shift_cells)
+    """Climb from a seed by shifts, parameters and sizes in turn, each within its bounds.
+
+    A parameter is tried at every shift: a seat one cell too low would else be met by a chair
+    one cell too high.
+    """
+    home = seed.trial.corner
+    shifts = shifts_within(chosen.shift_cells)
+    shifts = shifts[home[2] + shifts[:, 2] >= min(evidence.floor, home[2])]
+    best = _better(seed, iter([seed.trial]), evidence, bias, shifts)
     for _ in range(ROUNDS):
         before = best
         for name, _value in seed.trial.values:
-            best = _first_best(best, _with_parameter(best.trial, name), evidence, bias)
+            moves = (one._replace(corner=home) for one in _with_parameter(best.trial, name))
+            best = _better(best, moves, evidence, bias, shifts)
         for axis in range(3):
             moves = _with_size(best.trial, seed.trial, axis, bias.voxel_m, chosen)
-            best = _first_best(best, moves, evidence, bias)
-        best = _shifted(best, seed.trial, evidence, bias, chosen.shift_cells)
+            best = _better(best, moves, evidence, bias, NO_SHIFT)
+        again = iter([best.trial._replace(corner=home)])
+        best = _better(best, again, evidence, bias, shifts)
         if best is before:
             break
     return best
 
 
-def _first_best(best: Scored, trials: Iterator[Trial], evidence: Evidence, bias: Bias) -> Scored:
+def _better(
+    best: Scored, trials: Iterator[Trial], evidence: Evidence, bias: Bias, shifts: np.ndarray
+) -> Scored:
+    """Return the best of what is known and the trials; of equals what was known first."""
     for trial in trials:
-        scored = score_shifts(evidence, trial, NO_SHIFT, bias)
+        scored = score_shifts(evidence, trial, shifts, bias)
         best = scored if scored.score > best.score else best
     return best
-
-
-def _shifted(best: Scored, seed: Trial, evidence: Evidence, bias: Bias, shift_cells: int) -> Scored:
-    """Try every shift around the seed's place; the smallest first, so that equals stay."""
-    home = best.trial._replace(corner=seed.corner)
-    shifts = shifts_within(shift_cells)
-    shifts = shifts[seed.corner[2] + shifts[:, 2] >= min(evidence.floor, seed.corner[2])]
-    scored = score_shifts(evidence, home, shifts, bias)
-    return scored if scored.score > best.score else best
 
 
 def shifts_within(shift_cells: int) -> np.ndarray:
