@@ -1,5 +1,7 @@
 """The blocks of a room while they are being set: states, classes and instances in room axes."""
 
+from typing import Any
+
 import numpy as np
 
 from world2minecraft.build.lattice import Lattice
@@ -48,7 +50,11 @@ class Canvas:
         return self.mask_of(AIR, LIGHT)
 
     def put(
-        self, at: tuple[np.ndarray, ...] | np.ndarray, ids: np.ndarray, class_id: int, instance=0
+        self,
+        at: tuple[Any, ...] | np.ndarray,
+        ids: np.ndarray | int,
+        class_id: int,
+        instance: int = 0,
     ) -> None:
         """Set blocks at a mask or at index arrays, with their class and instance."""
         self.states[at] = ids

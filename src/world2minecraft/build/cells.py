@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy import ndimage
 
 from world2minecraft.build.halves import of_half_layers
 from world2minecraft.build.lattice import Lattice, face_shares
+from world2minecraft.build.morphology import beside, parts_of
 from world2minecraft.types import OccupancyGrid
 
 PHASES = 4  # Shifts of a quarter block along x and y; finer ones changed nothing in reference/fit.
@@ -96,11 +96,8 @@ def without_crumbs(halves: np.ndarray, held: np.ndarray) -> np.ndarray:
         halves: uint8 [X, Y, Z] of one object.
         held: bool [X, Y, Z], where something else stands that a block may hang on.
     """
-    parts, count = ndimage.label(halves > 0)
-    if not count:
-        return halves
-    sizes = np.bincount(parts.ravel(), minlength=count + 1)
-    touching = np.unique(parts[ndimage.binary_dilation(held) & (parts > 0)])
-    keep = (sizes > 1) | np.isin(np.arange(count + 1), touching)
+    parts, sizes = parts_of(halves > 0)
+    touching = np.unique(parts[beside(held) & (parts > 0)])
+    keep = (sizes > 1) | np.isin(np.arange(len(sizes)), touching)
     keep[0] = False
     return np.where(keep[parts], halves, 0).astype(np.uint8)

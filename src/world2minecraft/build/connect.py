@@ -12,8 +12,8 @@ from world2minecraft.minecraft.states import parse_state
 
 _STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # Room axes; the facing of 0 to 3 quarter turns.
 # Kinds that join among themselves; a nether brick fence and a wooden one do not.
-_KINDS = (("_pane", "iron_bars"), ("nether_brick_fence",), ("_fence",))
-_NOT = {("_fence",): ("minecraft:nether_brick",)}
+_KINDS: tuple[tuple[str, ...], ...] = (("_pane", "iron_bars"), ("nether_brick_fence",), ("_fence",))
+_NOT: dict[tuple[str, ...], tuple[str, ...]] = {("_fence",): ("minecraft:nether_brick",)}
 
 
 def connect(canvas: Canvas) -> None:

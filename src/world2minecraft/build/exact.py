@@ -1,10 +1,10 @@
 """One voxel, one block: every occupied cell becomes one full block, by integer maps."""
 
 import numpy as np
-from scipy import ndimage
 
 from world2minecraft.build.canvas import BARRIER, Canvas
 from world2minecraft.build.lattice import Lattice
+from world2minecraft.build.morphology import grown, without_holes
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.structure import STANDING_M, WALL, WINDOW
@@ -64,11 +64,11 @@ def _footprint(grid: OccupancyGrid) -> np.ndarray:
     labels, source = grid.labels[:, :, low:high], grid.source[:, :, low:high]
     stood = (((labels == 0) & (source != UNSEEN)) | ((labels > WINDOW) & (labels != 255))).any(2)
     walls = np.isin(labels, (WALL, WINDOW)).any(2)
-    return ndimage.binary_fill_holes(stood & ~walls)
+    return without_holes(stood & ~walls)
 
 
 def _close_floor(canvas: Canvas, footprint: np.ndarray) -> None:
     layer = canvas.lattice.ground - 1
-    plan = ndimage.binary_dilation(footprint, np.ones((3, 3), bool))
+    plan = grown(footprint, (1, 1))
     holes = plan & (canvas.states[:, :, layer] == 0)
     canvas.states[:, :, layer][holes] = canvas.id_of(BARRIER)

@@ -1,8 +1,8 @@
 """The colours of cells and of the blocks that cover them, in Oklab."""
 
 import numpy as np
-from scipy import ndimage
 
+from world2minecraft.build.morphology import nearest_of
 from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
 from world2minecraft.minecraft.colours import colour_of
 from world2minecraft.types import OccupancyGrid
@@ -108,7 +108,7 @@ def spread(colours: np.ndarray, known: np.ndarray, wanted: np.ndarray, default: 
         return np.broadcast_to(default, (int(wanted.sum()), 3)).astype(np.float32)
     if known[wanted].all():
         return colours[wanted]
-    away, nearest = ndimage.distance_transform_edt(~known, return_indices=True)
+    nearest, away = nearest_of(known)
     result = colours[tuple(axis[wanted] for axis in nearest)]
     result[away[wanted] > NEAR_BLOCKS] = np.median(colours[known], axis=0)
     return result

@@ -86,14 +86,14 @@ def put_idiom(
     offsets = np.array([block.offset for block in design.blocks]).reshape(-1, 3)
     # Offsets are in block axes already: their inverse map is the map itself.
     local = cells_to_block_axes(offsets[:, [0, 2, 1]], design.size[2])[:, [0, 2, 1]]
-    inside = (local + low < np.array(canvas.states.shape)).all(1)
-    for cell, block, fits in zip(local.tolist(), design.blocks, inside, strict=True):
+    shape = canvas.states.shape
+    for cell, block in zip(local.tolist(), design.blocks, strict=True):
         at = tuple((low + cell).tolist())
-        if not fits or canvas.states[at]:
+        if any(i >= side for i, side in zip(at, shape, strict=True)) or canvas.states[at]:
             continue
         colour = tinted[tuple(cell)] if known[tuple(cell)] else median
         state = block.state if colour is None else _in_colour(block.state, colour, thing, palette)
-        canvas.put(at, np.uint16(canvas.id_of(state)), thing.class_id, thing.instance)
+        canvas.put(at, canvas.id_of(state), thing.class_id, thing.instance)
 
 
 def _in_colour(state: str, colour: np.ndarray, thing: Thing, palette: Palette) -> str:

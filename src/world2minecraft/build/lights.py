@@ -47,8 +47,8 @@ def _light_the_dark(chosen, walkable, air, clear, ground) -> None:
         if not dark.any():
             return
         # The first dark cell and all that are out of its reach: so few rounds are needed.
-        taken: list[np.ndarray] = []
-        for x, y in np.argwhere(dark):
+        taken: list[tuple[int, int]] = []
+        for x, y in np.argwhere(dark).tolist():
             if all(abs(x - a) + abs(y - b) > LEVEL - LEAST for a, b in taken):
                 taken.append((x, y))
                 z = ground + 1 if air[x, y, ground + 1] else ground

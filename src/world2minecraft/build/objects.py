@@ -104,8 +104,8 @@ class ObjectBuilder:
         found = idiom(placement, self.lattice.blocks_per_metre)
         if found is not None:
             low, size = idiom_box(found, placement, self.lattice)
-            hues = self._stretched(cells, placement, low, size)
-            colours = block_colours(tuple(size), hues.blocks - low, *self._coloured(hues))
+            hues = self._stretched(cells, placement, low, size.tolist())
+            colours = block_colours(tuple(size.tolist()), hues.blocks - low, *self._coloured(hues))
             put_idiom(self.canvas, found, low, thing, colours, self.palette)
             return True
         parts = template(placement.template).parts(placement.size_m, placement.parameters)

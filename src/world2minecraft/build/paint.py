@@ -60,13 +60,14 @@ def neighbour_table(positions: np.ndarray) -> np.ndarray:
     """Return the six face neighbours, int64 [N, 6], of blocks int [N, 3]; N where there is none."""
     low = positions.min(0) - 1
     shape = positions.max(0) - low + 2
-    flat = np.ravel_multi_index(tuple((positions - low).T), tuple(shape))
+    flat = np.asarray(np.ravel_multi_index(tuple((positions - low).T), tuple(shape)))
     order = np.argsort(flat, kind="stable")
     strides = np.array([shape[1] * shape[2], shape[2], 1])
     steps = np.concatenate([strides, -strides])
     wanted = flat[:, None] + steps
-    found = np.minimum(np.searchsorted(flat[order], wanted), len(flat) - 1)
-    return np.where(flat[order][found] == wanted, order[found], len(flat))
+    ordered = flat[order]
+    found = np.minimum(np.searchsorted(ordered, wanted), len(positions) - 1)
+    return np.where(ordered[found] == wanted, order[found], len(positions))
 
 
 def calm(costs: np.ndarray, positions: np.ndarray, step: float) -> np.ndarray:
@@ -126,7 +127,7 @@ def paint(
     extra = np.zeros(len(candidates)) if handicaps is None else handicaps
     sample = costs_of(colours[::stride], candidates, lightness_weight, extra)
     few = choose_few(sample, most, noticed)
-    offered = [candidates[index] for index in few]
+    offered = [candidates[index] for index in few.tolist()]
     parts = calm(costs_of(colours, offered, lightness_weight, extra[few]), positions, calm_step)
     medians, sizes = group_medians(parts, colours, len(few))
     weight = lightness_weight if match_weight is None else match_weight

@@ -40,8 +40,9 @@ class BuildParameters:
         apart. 0.05: light falls unevenly on them; the kitchen's one carpet came out grey and
         black at 0.15, while black and white tiles stay two.
     structure_noticed, object_noticed: the Oklab distance from which a part of a surface deserves
-        a block of its own. 0.12 and 0.09: the former keeps the shade under the kitchen's table
-        off its carpet, the latter keeps a dark counter from its red front.
+        a block of its own. 0.12 and 0.11: the former keeps the shade under the kitchen's table
+        off its carpet, the latter keeps a dark counter from its red front and two
+        boards of one table alike.
     lightness_weight: how much lightness counts against hue and chroma (1 = Oklab as it is).
         0.4: a red cupboard in the shade stays red; at 1 it came out brown.
     calm: the Oklab distance that a block gives up for each neighbour it agrees with. 0.04: about
@@ -71,7 +72,7 @@ class BuildParameters:
     preference: float = 0.02
     structure_lightness_weight: float = 0.05
     structure_noticed: float = 0.12
-    object_noticed: float = 0.09
+    object_noticed: float = 0.11
     lightness_weight: float = 0.4
     calm: float = 0.04
     face_share: float = 0.3

@@ -1,9 +1,9 @@
 """Setting the shell on the canvas: painted floor, walls, ceiling, glass and the unseen edge."""
 
 import numpy as np
-from scipy import ndimage
 
 from world2minecraft.build.canvas import BARRIER, Canvas
+from world2minecraft.build.morphology import grown
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.structure import CEILING, FLOOR, WALL, WINDOW, Shell
@@ -75,8 +75,8 @@ def _put_windows(canvas: Canvas, windows: np.ndarray, palette: Palette) -> None:
     along_x = held[2:, 1:-1] & held[:-2, 1:-1]
     along_y = held[1:-1, 2:] & held[1:-1, :-2]
     panes = windows & (along_x ^ along_y)
-    canvas.put(panes, np.uint16(canvas.id_of(palette.pane)), WINDOW)
-    canvas.put(windows & ~panes, np.uint16(canvas.id_of(palette.glass)), WINDOW)
+    canvas.put(panes, canvas.id_of(palette.pane), WINDOW)
+    canvas.put(windows & ~panes, canvas.id_of(palette.glass), WINDOW)
 
 
 def put_edge(canvas: Canvas, footprint: np.ndarray) -> None:
@@ -87,7 +87,7 @@ def put_edge(canvas: Canvas, footprint: np.ndarray) -> None:
         footprint: bool [X, Y], the columns within the room.
     """
     ground = canvas.lattice.ground
-    ring = ndimage.binary_dilation(footprint, np.ones((3, 3), bool)) & ~footprint
+    ring = grown(footprint, (1, 1)) & ~footprint
     layers = np.flatnonzero((canvas.semantic > 0).any((0, 1)))
     top = max(int(layers.max()) if len(layers) else 0, ground + 1)
     open_cells = canvas.states[:, :, ground : top + 1] == 0

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy import ndimage
 
 from world2minecraft.build.canvas import AIR, LIGHT
+from world2minecraft.build.morphology import nearest_of, parts_of, shrunk
 from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.coordinates import PLAYER_EYE_BLOCKS, ROOM_CORNER_BLOCK
 from world2minecraft.types import BlockVolume
@@ -32,9 +32,9 @@ def find_spawn(volume: BlockVolume) -> Spawn:
     standing = standing_cells(volume)
     if not standing.any():
         return _on_top(volume)
-    parts, _ = ndimage.label(standing)
-    largest = parts == 1 + int(np.argmax(np.bincount(parts.ravel())[1:]))
-    room = np.minimum(ndimage.distance_transform_edt(np.pad(standing, 1))[1:-1, 1:-1], CLEARANCE)
+    parts, sizes = parts_of(standing)
+    largest = parts == int(np.argmax(sizes))
+    room = np.minimum(nearest_of(~np.pad(standing, 1))[1][1:-1, 1:-1], CLEARANCE)
     focus = _focus(volume, standing)
     cells = np.argwhere(largest)
     offsets = focus - (cells + 0.5)
@@ -60,7 +60,7 @@ def standing_cells(volume: BlockVolume) -> np.ndarray:
 
 def _within(volume: BlockVolume, ground: int) -> np.ndarray:
     """Return the columns whose four neighbours are floor too: not the rim beyond the walls."""
-    return ndimage.binary_erosion(volume.states[:, ground - 1] > 0)
+    return shrunk(volume.states[:, ground - 1] > 0)
 
 
 def _focus(volume: BlockVolume, standing: np.ndarray) -> np.ndarray:

@@ -7,10 +7,10 @@ a surface of its own with the cells that colour it.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage
 
 from world2minecraft.build.faces import blocks_behind, find_faces, straighten, vote
 from world2minecraft.build.lattice import Lattice, face_shares, overlaps, volume_shares
+from world2minecraft.build.morphology import beside, closed, grown, nearest_of, without_holes
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.classes import SemanticClass
 from world2minecraft.types import UNSEEN, OccupancyGrid
@@ -92,22 +92,16 @@ def _walls(grid, free, open_share, lattice, parameters, patches, coloured) -> np
 def _closed(sheet, axis, open_share, lattice, parameters) -> np.ndarray:
     """Close the small unseen holes of wall sheets square to an axis, leaving openings open."""
     gap = max(1, round(parameters.gap_m * lattice.blocks_per_metre / 2))
-    size = [2 * gap + 1] * 3
-    size[axis] = 1
-    padded = np.pad(sheet, gap)
-    closed = ndimage.minimum_filter(
-        ndimage.maximum_filter(padded.astype(np.uint8), size=size), size=size
-    )
-    inner = tuple(slice(gap, -gap) for _ in range(3))
-    return sheet | ((closed[inner] > 0) & (open_share < OPEN_SHARE))
+    reach = tuple(0 if other == axis else gap for other in range(3))
+    return sheet | (closed(sheet, reach) & (open_share < OPEN_SHARE))
 
 
 def _unfaced(grid, solid, free, walls, lattice, parameters) -> np.ndarray:
     """Return wall blocks whose cells touch no seen free space, away from the walls that do."""
-    faced = ndimage.binary_dilation(free, ndimage.generate_binary_structure(3, 1))
+    faced = beside(free)
     edges = [lattice.edges_of(grid, axis) for axis in range(3)]
     rest = face_shares(solid & ~faced, edges, lattice.shape) >= max(0.5, parameters.face_share)
-    near = ndimage.binary_dilation(walls, np.ones((3, 3, 1), bool))
+    near = grown(walls, (1, 1, 0))
     return rest & ~near
 
 
@@ -151,9 +145,7 @@ def _ceiling(grid, free, lattice, parameters, coloured) -> np.ndarray:
         votes = vote(straight, grid, lattice)
         sheet = votes.area >= parameters.face_share
         gap = max(1, round(parameters.gap_m * lattice.blocks_per_metre / 2))
-        padded = np.pad(sheet, ((gap, gap), (gap, gap), (0, 0)))
-        closed = ndimage.binary_closing(padded, np.ones((2 * gap + 1, 2 * gap + 1, 1), bool))
-        ceiling |= closed[gap:-gap, gap:-gap]
+        ceiling |= closed(sheet, (gap, gap, 0))
         coloured.append((votes.cells, blocks_behind(votes, grid, lattice)))
     ceiling[:, :, : lattice.ground + 1] = False
     return ceiling
@@ -171,15 +163,13 @@ def _footprint(grid, open_share, walls, lattice) -> np.ndarray:
     stood = cover[0] @ low @ cover[1].T >= FOOTPRINT_SHARE
     stood |= (open_share[:, :, ground:top] >= 0.5).any(2)
     stood &= ~walls[:, :, ground:top].any(2)
-    padded = np.pad(stood, 2)
-    closed = ndimage.binary_closing(padded, np.ones((3, 3), bool))
-    return ndimage.binary_fill_holes(closed)[2:-2, 2:-2]
+    return without_holes(closed(stood, (1, 1)))
 
 
 def _floor(grid, footprint, walls, lattice, coloured) -> np.ndarray:
     """Return the floor: one flat layer under the footprint, its walls and its open rim."""
     ground = lattice.ground
-    plan = ndimage.binary_dilation(footprint, np.ones((3, 3), bool))
+    plan = grown(footprint, (1, 1))
     floor = np.zeros(lattice.shape, bool)
     floor[:, :, ground - 1] = plan | walls[:, :, ground:].any(2)
     cells = np.argwhere(grid.labels == FLOOR)
@@ -216,9 +206,7 @@ def _grow_patches(patches: np.ndarray, walls: np.ndarray) -> np.ndarray:
     missing = walls & (patches == 0)
     if not missing.any() or not (patches > 0).any():
         return patches
-    nearest = ndimage.distance_transform_edt(
-        patches == 0, return_distances=False, return_indices=True
-    )
-    grown = patches.copy()
-    grown[missing] = patches[tuple(axis[missing] for axis in nearest)]
-    return grown
+    nearest, _ = nearest_of(patches > 0)
+    result = patches.copy()
+    result[missing] = patches[tuple(axis[missing] for axis in nearest)]
+    return result

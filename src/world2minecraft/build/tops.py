@@ -5,8 +5,8 @@ above unseen ones. Such a step, level with the rim of an object and joined to it
 """
 
 import numpy as np
-from scipy import ndimage
 
+from world2minecraft.build.morphology import grown, grown_within, nearest_of
 from world2minecraft.types import UNSEEN, OccupancyGrid
 
 RIM_LAYERS = 1  # A top lies within a cell of the rim that it joins.
@@ -33,12 +33,14 @@ def top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, np.nd
     body = np.zeros(steps.shape, bool)
     tall = grid.origin_m[2] + (cells[:, 2] + 1) * grid.voxel_m >= LEAST_RIM_M
     body[tuple((cells[tall] - low).T)] = True
-    rim = ndimage.binary_dilation(body, np.ones((1, 1, 2 * RIM_LAYERS + 1), bool))
+    rim = grown(body, (0, 0, RIM_LAYERS))
     joined = _joined(steps, rim, reach)
     upper = body & np.concatenate([free[:, :, 1:], np.zeros_like(free[:, :, :1])], axis=2)
+    flat = upper & ~np.concatenate([np.zeros_like(body[:, :, :1]), body[:, :, :-1]], axis=2)
+    upper = flat if flat.any() else upper  # The edge over a front mixes both their colours.
     if not joined.any() or not upper.any():
         return np.zeros((0, 3), int), np.zeros((0, 3), int)
-    nearest = ndimage.distance_transform_edt(~upper, return_distances=False, return_indices=True)
+    nearest, _ = nearest_of(upper)
     return np.argwhere(joined) + low, np.stack([axis[joined] for axis in nearest], 1) + low
 
 
@@ -55,5 +57,4 @@ def _joined(steps: np.ndarray, rim: np.ndarray, reach: int) -> np.ndarray:
     """Return the steps that join the rim layer by layer, within ``reach`` cells of it."""
     flat = np.zeros((3, 3, 3), bool)
     flat[:, :, 1] = [[0, 1, 0], [1, 1, 1], [0, 1, 0]]
-    grown = ndimage.binary_dilation(rim, flat, iterations=reach, mask=steps | rim)
-    return grown & steps & ~rim
+    return grown_within(rim, steps | rim, flat, reach) & steps & ~rim

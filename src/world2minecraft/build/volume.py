@@ -85,12 +85,15 @@ def grid_corner_m(grid: OccupancyGrid) -> np.ndarray:
 
     A layer of wall cells there counts as shell, outside the corner.
     """
-    occupied = grid.occupied.any(2)
+    occupied = np.asarray(grid.occupied.any(2))
     if not occupied.any():
         return np.array([grid.origin_m[0], grid.origin_m[1] + grid.shape[1] * grid.voxel_m])
-    along_x, along_y = np.flatnonzero(occupied.any(1)), np.flatnonzero(occupied.any(0))
+    along_x, along_y = (
+        np.unique(np.argwhere(occupied)[:, 0]),
+        np.unique(np.argwhere(occupied)[:, 1]),
+    )
     first, last = int(along_x[0]), int(along_y[-1])
-    walls = np.isin(grid.labels, (3, 4)).any(2)
+    walls = np.asarray(np.isin(grid.labels, (3, 4)).any(2))
     first += bool(walls[first].any())
     last -= bool(walls[:, last].any())
     return grid.origin_m[:2] + np.array([first, last + 1]) * grid.voxel_m
