@@ -23,9 +23,10 @@ POINTS_PER_MAP = 700
 SCALES = np.arange(0.80, 1.2001, 0.02)
 SHIFTS_PX = np.arange(-15.0, 15.1, 3.0)
 REFINEMENTS = ((0.01, 1.5), (0.005, 0.75), (0.0025, 0.375))
-CLEAR_GAIN = 1.5  # The kitchen's is over 3; where depth and colour share a camera it is near 1.
+CLEAR_GAIN = 1.25  # The kitchen: over 2.6; where depth and colour share a camera: at most 1.05.
 LEAST_SCORE = 0.04  # Edges must lie on more colour change than the image's mean, by this of 1.
 LEAST_POINTS = 400
+LEAST_INSIDE = 0.6
 
 
 @dataclass(frozen=True)
@@ -161,22 +162,26 @@ def _search(frames: Sequence[_FrameEdges], matrix: np.ndarray) -> tuple[float, f
 def _score(
     frames: Sequence[_FrameEdges], matrix: np.ndarray, scale: float, shift_x: float, shift_y: float
 ) -> float:
-    """Return the mean colour change under the depth edges; outside the image there is none."""
-    total, count = 0.0, 0
+    """Return the mean colour change under the depth edges that fall into the image.
+
+    Those outside say nothing; a camera that leaves most of them out is none.
+    """
+    total, inside = 0.0, 0
     for frame in frames:
         for rays, change in zip(frame.rays, frame.change, strict=True):
-            total += _sum_under(rays, change, matrix, scale, shift_x, shift_y)
-            count += len(rays)
-    return total / count
+            added, met = _sum_under(rays, change, matrix, scale, shift_x, shift_y)
+            total, inside = total + added, inside + met
+    return total / inside if inside > LEAST_INSIDE * _count(frames) else -1.0
 
 
 @njit
 def _sum_under(rays, change, matrix, scale, shift_x, shift_y):
     height, width = change.shape
-    total = 0.0
+    total, inside = 0.0, 0
     for index in range(len(rays)):
         u = int(np.floor(rays[index, 0] * matrix[0] * scale + matrix[2] + shift_x))
         v = int(np.floor(rays[index, 1] * matrix[1] * scale + matrix[3] + shift_y))
         if 0 <= u < width and 0 <= v < height:
             total += change[v, u]
-    return total
+            inside += 1
+    return total, inside

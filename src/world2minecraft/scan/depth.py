@@ -22,7 +22,8 @@ DISTINCT_VALUES = 12  # Fewer say nothing about steps.
 def _nyu_raw(raw: np.ndarray) -> np.ndarray:
     """Decode Kinect disparities as NYUv2 dumped them: bytes swapped, metres by a rational fit."""
     disparity = raw.astype(np.uint16).byteswap().astype(np.float64)
-    return 351.3 / np.maximum(1092.5 - disparity, 1e-3)
+    seen = disparity < 1090  # Beyond, the fit runs to infinity; 2047 marks a hole.
+    return np.where(seen, 351.3 / (1092.5 - np.where(seen, disparity, 0)), 0)
 
 
 def _rotated(raw: np.ndarray) -> np.ndarray:
@@ -156,5 +157,5 @@ def _check_range(path: Path, encoding: DepthEncoding, values: np.ndarray) -> Non
         raise CaptureError(
             path,
             f"a typical depth of {typical:.3g} m (read as {encoding.said}) is no room; "
-            f"say --set depth_unit={'|'.join(DEPTH_UNITS)} or metres per unit",
+            f"say --set capture.depth_unit={'|'.join(DEPTH_UNITS)} or metres per unit",
         )

@@ -10,6 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from world2minecraft.errors import CaptureError, UnknownNameError
 from world2minecraft.scan.checking import Skipped, check_frames
 from world2minecraft.scan.depth import DepthEncoding, find_encoding, read_depth
 from world2minecraft.scan.frames import Capture, FrameFiles
@@ -54,13 +55,20 @@ def judge_capture(
     check_labels(frames)
     looked_at = spread_over([frame for frame in frames if frame.depth_path], SAMPLED_FRAMES)
     paths = [frame.depth_path for frame in looked_at if frame.depth_path]
-    encoding = find_encoding(paths, options.depth_unit or capture.depth_unit)
+    encoding = _encoding(paths, options, capture)
     typical_m = _typical_depth(paths, encoding)
     frames, strayed = check_spread(frames, capture.folder, typical_m)
     notes = list(capture.notes)
     if encoding.guessed:
         notes.append(f"depth is read as {encoding.said}, told from its values")
     return JudgedCapture(capture, frames, (*skipped, *strayed), encoding, typical_m, tuple(notes))
+
+
+def _encoding(paths: Sequence[Path], options: ScanOptions, capture: Capture) -> DepthEncoding:
+    try:
+        return find_encoding(paths, options.depth_unit or capture.depth_unit)
+    except UnknownNameError as error:  # The user's own was checked before: the capture states it.
+        raise CaptureError(capture.folder, str(error)) from error
 
 
 def spread_over(items: Sequence[T], count: int) -> list[T]:

@@ -10,6 +10,7 @@ from world2minecraft.files import read_bytes
 from world2minecraft.scan.frames import FrameFiles
 
 ORTHONORMAL_TOLERANCE = 1e-3  # The shared kitchen is off by 4e-4; a scale of 1.001 is no slip.
+ROUNDING = 1e-12  # What is orthonormal already stays as stated, to the last bit.
 MAX_AWAY_M = 25.0  # From the middle of the cameras; further ones did not see one room.
 MAX_POSE_BYTES = 10_000
 
@@ -64,14 +65,15 @@ def mend_pose(pose: np.ndarray, where: Path, frame: str) -> np.ndarray:
             f"the pose of {frame} mirrors (determinant {np.linalg.det(rotation):.3f}); poses must "
             "be rotations: an axis was flipped on export",
         )
-    if np.abs(rotation @ rotation.T - np.eye(3)).max() > ORTHONORMAL_TOLERANCE:
+    off = np.abs(rotation @ rotation.T - np.eye(3)).max()
+    if off > ORTHONORMAL_TOLERANCE:
         kind = f"is scaled by {sizes.mean():.4g}" if np.ptp(sizes) < 0.01 * sizes[0] else "is bent"
         raise CaptureError(
             where,
             f"the rotation of {frame} {kind}; poses must be rigid: divide the scale out",
         )
     mended = np.eye(4)
-    mended[:3, :3] = left @ right
+    mended[:3, :3] = left @ right if off > ROUNDING else rotation
     mended[:3, 3] = pose[:3, 3]
     return mended
 
