@@ -6,17 +6,17 @@ from typing import cast
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.label.parameters import GeometricParameters
+from world2minecraft.label.morphology import parts_of
+from world2minecraft.label.parameters import PieceParameters
 from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
 
-FULL = np.ones((3, 3, 3), bool)
 PLANE_GATE_M = 0.03
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """One connected piece: its cells and its box. ``thin_m`` is its shortest side in plan."""
+    """One connected piece: its cells, and the box that holds nearly all of its surface."""
 
     at: tuple[np.ndarray, np.ndarray, np.ndarray]  # Cell indices, each int [N].
     low_m: np.ndarray  # float64 [3], of the surface points.
@@ -31,6 +31,11 @@ class Piece:
         return self.high_m - self.low_m
 
     @property
+    def tall_m(self) -> float:
+        """The height of the box."""
+        return float(self.size_m[2])
+
+    @property
     def long_m(self) -> float:
         """The longer side in plan."""
         return float(self.size_m[:2].max())
@@ -42,13 +47,13 @@ class Piece:
 
 
 def find_pieces(
-    surface: Surface, rest: np.ndarray, wall: np.ndarray, parameters: GeometricParameters
+    surface: Surface, rest: np.ndarray, wall: np.ndarray, parameters: PieceParameters
 ) -> list[Piece]:
     """Return the pieces of ``rest``, bool [X, Y, Z], joined by faces, edges and corners.
 
     A piece is near a wall where one of its cells is within ``near_wall_m`` of a wall's column.
     """
-    parts, count = cast(tuple[np.ndarray, int], ndimage.label(rest, FULL))
+    parts, count = parts_of(rest)
     columns = wall.sum(axis=2) >= 2
     apart = cast(np.ndarray, ndimage.distance_transform_edt(~columns)) if columns.any() else None
     near = np.zeros_like(columns)

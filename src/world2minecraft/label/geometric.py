@@ -35,23 +35,24 @@ class GeometricLabeller:
             ValueError: grid and evidence do not lie on the same cells.
         """
         surface = surface_of(grid, evidence)
-        floor = find_floor(surface, self.parameters)
+        structure = self.parameters.structure
+        floor = find_floor(surface, structure)
+        ceiling, ceiling_m = find_ceiling(surface, structure)
+        wall, runs = find_walls(surface, ceiling, ceiling_m, structure)
+        rest = surface.occupied & ~(floor.cells | floor.spill | ceiling | wall)
         labels = np.array(grid.labels)
         labels[surface.occupied] = SemanticClass.OBJS
-        ceiling, ceiling_m = find_ceiling(surface, self.parameters)
-        wall, runs = find_walls(surface, ceiling, ceiling_m, self.parameters)
-        rest = surface.occupied & ~(floor.cells | floor.spill | ceiling | wall)
-        rest &= ~label_screens(surface, rest, runs, labels, self.parameters)
+        rest &= ~label_screens(surface, rest, runs, labels, self.parameters.pieces)
         label_furniture(surface, rest, wall, labels, self.parameters)
         labels[wall] = SemanticClass.WALL
-        label_openings(surface, wall, runs, labels, self.parameters)
+        label_openings(surface, wall, runs, labels, structure)
         labels[ceiling] = SemanticClass.CEILING
         labels[floor.spill] = SemanticClass.EMPTY
         labels[floor.cells] = SemanticClass.FLOOR
-        return _with_labels(grid, labels, floor.spill)
+        return _with_labels(grid, labels)
 
 
-def _with_labels(grid: OccupancyGrid, labels: np.ndarray, spill: np.ndarray) -> OccupancyGrid:
+def _with_labels(grid: OccupancyGrid, labels: np.ndarray) -> OccupancyGrid:
     """Return the grid with new labels; where spill came down, its colour and confidence with it.
 
     A floor cell that no ray had reached before is marked as completed.

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.label.parameters import GeometricParameters
+from world2minecraft.label.parameters import StructureParameters
 from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
 
@@ -22,7 +22,7 @@ class Floor:
     spill: np.ndarray  # bool [X, Y, Z]
 
 
-def find_floor(surface: Surface, parameters: GeometricParameters) -> Floor:
+def find_floor(surface: Surface, parameters: StructureParameters) -> Floor:
     """Return the floor's cells, those that spill is carried down to included.
 
     Spill is a cell of the first layer over the floor whose surface point lies within ``spill_m``
@@ -43,7 +43,7 @@ def find_floor(surface: Surface, parameters: GeometricParameters) -> Floor:
 
 
 def find_ceiling(
-    surface: Surface, parameters: GeometricParameters
+    surface: Surface, parameters: StructureParameters
 ) -> tuple[np.ndarray, float | None]:
     """Return the ceiling's cells, bool [X, Y, Z], and its height in metres, None if not seen.
 

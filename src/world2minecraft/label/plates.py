@@ -4,16 +4,14 @@ In voxels a table with its chairs is one piece; plates are what it is cut by.
 """
 
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
-from scipy import ndimage
 
-from world2minecraft.label.parameters import GeometricParameters
+from world2minecraft.label.morphology import filled, grown, parts_of, plan_of, shrunk
+from world2minecraft.label.parameters import PlateParameters
 from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
 
-EIGHT = np.ones((3, 3), bool)
 MAX_HEIGHTS = 40
 
 
@@ -31,20 +29,20 @@ class Plate:
     rim_share: float  # Of the seen cells under its rim, the share that is surface.
 
 
-def find_plates(surface: Surface, rest: np.ndarray, parameters: GeometricParameters) -> list[Plate]:
+def find_plates(surface: Surface, rest: np.ndarray, parameters: PlateParameters) -> list[Plate]:
     """Return the plates among the cells ``rest``, bool [X, Y, Z], largest at each height first."""
     facing_up = rest.copy()
     facing_up[:, :, :-1] &= ~surface.occupied[:, :, 1:] | _next_is_level(surface)
-    low, high = parameters.plate_height_m
+    low, high = parameters.height_m
     height = surface.points_m[..., 2]
     facing_up &= (height >= low) & (height <= high)
-    facing_up &= _neighbours(facing_up, height, parameters.plate_gate_m) >= 2
+    facing_up &= _neighbours(facing_up, height, parameters.gate_m) >= 2
     plates: list[Plate] = []
     for _ in range(MAX_HEIGHTS):
-        if facing_up.sum() * surface.voxel_m**2 < parameters.plate_area_m2:
+        if facing_up.sum() * surface.voxel_m**2 < parameters.area_m2:
             break
-        peak, _ = highest_peak(height[facing_up], parameters.plate_gate_m)
-        near = facing_up & (np.abs(height - peak) <= parameters.plate_gate_m)
+        peak, _ = highest_peak(height[facing_up], parameters.gate_m)
+        near = facing_up & (np.abs(height - peak) <= parameters.gate_m)
         plates.extend(_plates_at(surface, near, parameters))
         facing_up &= ~near
     return plates
@@ -74,20 +72,20 @@ def _neighbours(mask: np.ndarray, height: np.ndarray, gate_m: float) -> np.ndarr
     return count
 
 
-def _plates_at(surface: Surface, near: np.ndarray, parameters: GeometricParameters) -> list[Plate]:
+def _plates_at(surface: Surface, near: np.ndarray, parameters: PlateParameters) -> list[Plate]:
     """Return the plates among cells of one height, by decreasing number of columns."""
-    parts, count = cast(tuple[np.ndarray, int], ndimage.label(near.any(axis=2), EIGHT))
+    parts, count = parts_of(plan_of(near))
     sizes = np.bincount(parts.reshape(-1), minlength=count + 1)[1:]
     found = []
     for part in np.argsort(-sizes, kind="stable") + 1:
-        if sizes[part - 1] * surface.voxel_m**2 < parameters.plate_area_m2:
+        if sizes[part - 1] * surface.voxel_m**2 < parameters.area_m2:
             break
         found.append(_plate(surface, near & (parts == part)[:, :, None]))
     return found
 
 
 def _plate(surface: Surface, mask: np.ndarray) -> Plate:
-    footprint = filled(mask.any(axis=2))
+    footprint = filled(plan_of(mask))
     heights = surface.points_m[..., 2][mask]
     layer = int(np.bincount(np.nonzero(mask)[2]).argmax())
     rows, columns = np.nonzero(footprint)
@@ -104,12 +102,6 @@ def _plate(surface: Surface, mask: np.ndarray) -> Plate:
     )
 
 
-def filled(footprint: np.ndarray) -> np.ndarray:
-    """Return an outline [X, Y] with gaps of a few cells closed: things lie on tables."""
-    closed = ndimage.binary_closing(np.pad(footprint, 3), EIGHT, iterations=2)[3:-3, 3:-3]
-    return cast(np.ndarray, ndimage.binary_fill_holes(closed | footprint))
-
-
 def _rim_share(surface: Surface, footprint: np.ndarray, layer: int) -> float:
     """Return the share of surface among the seen cells under the rim of a plate.
 
@@ -119,8 +111,8 @@ def _rim_share(surface: Surface, footprint: np.ndarray, layer: int) -> float:
     bottom = max(surface.floor_layer + 2, 0)
     if layer - 1 <= bottom:
         return 0.0
-    inner = ndimage.binary_erosion(footprint, EIGHT, iterations=2)
-    outer = ndimage.binary_dilation(footprint, EIGHT)
+    inner = shrunk(footprint, 2)
+    outer = grown(footprint)
     rim = outer & ~inner
     band = slice(bottom, layer)
     front = rim[:, :, None] & surface.occupied[:, :, band]

@@ -7,15 +7,15 @@ screen depth cameras often see the frame alone, so a part of its box is enough.
 from typing import cast
 
 import numpy as np
-from scipy import ndimage
 
 from world2minecraft.classes import SemanticClass
-from world2minecraft.label.parameters import GeometricParameters
+from world2minecraft.label.morphology import parts_of
+from world2minecraft.label.parameters import PieceParameters, within
 from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
 from world2minecraft.label.walls import WallRun, turned
 
-EIGHT = np.ones((3, 3), bool)
+PLATE_GATE_M = 0.05  # A screen's cells lie within this of its plane.
 MAX_DEPTHS = 6  # How many depths before one wall are looked at.
 
 
@@ -24,7 +24,7 @@ def label_screens(
     rest: np.ndarray,
     runs: list[WallRun],
     labels: np.ndarray,
-    parameters: GeometricParameters,
+    parameters: PieceParameters,
 ) -> np.ndarray:
     """Write tvs to ``labels`` where a screen is; return its cells, all [X, Y, Z].
 
@@ -49,8 +49,8 @@ def label_screens(
         for _ in range(MAX_DEPTHS):
             if cells.sum() * surface.voxel_m**2 < 0.05:
                 break
-            depth, _ = highest_peak(before[cells], parameters.plane_gate_m / 2)
-            near = cells & (np.abs(before - depth) <= parameters.plane_gate_m)
+            depth, _ = highest_peak(before[cells], PLATE_GATE_M / 2)
+            near = cells & (np.abs(before - depth) <= PLATE_GATE_M)
             cells = cells & ~near
             for plate in _plates(near):
                 if _is_screen(plate, colour, surface.voxel_m, parameters):
@@ -61,26 +61,25 @@ def label_screens(
 
 def _plates(near: np.ndarray) -> list[np.ndarray]:
     """Return the parts of cells at one depth that hang together, seen face on."""
-    parts, count = cast(tuple[np.ndarray, int], ndimage.label(near.any(axis=0), EIGHT))
+    parts, count = parts_of(cast(np.ndarray, near.any(axis=0)))
     return [near & (parts == part)[None] for part in range(1, count + 1)]
 
 
 def _is_screen(
-    plate: np.ndarray, oklab: np.ndarray, voxel_m: float, parameters: GeometricParameters
+    plate: np.ndarray, oklab: np.ndarray, voxel_m: float, parameters: PieceParameters
 ) -> bool:
     """Return whether a plate has a screen's size, shape and colours."""
     face = plate.any(axis=0)
     along, up = np.nonzero(face)
     width, height = (np.ptp(along) + 1) * voxel_m, (np.ptp(up) + 1) * voxel_m
-    low, high = parameters.screen_width_m
-    if not (low <= width <= high and 0.24 <= height <= 1.2 and 1.0 <= width / height <= 3.0):
+    sized = within(width, parameters.screen_width_m) and within(height, parameters.screen_height_m)
+    if not sized or not within(width / height, parameters.screen_shape):
         return False
     filled = face.sum() * voxel_m**2 / (width * height)
-    colours = oklab[plate]
-    return filled >= 0.35 and is_screen_colour(colours, parameters) >= 0.5
+    return filled >= parameters.screen_filled and screen_share(oklab[plate], parameters) >= 0.5
 
 
-def is_screen_colour(oklab: np.ndarray, parameters: GeometricParameters) -> float:
+def screen_share(oklab: np.ndarray, parameters: PieceParameters) -> float:
     """Return the share of Oklab colours [N, 3] that are dark or blue to cyan."""
     dark = oklab[:, 0] <= parameters.screen_lightness
     blue = (oklab[:, 1] < 0.02) & (oklab[:, 2] < -0.01) & (np.hypot(*oklab[:, 1:].T) >= 0.04)

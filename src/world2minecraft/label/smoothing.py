@@ -1,13 +1,11 @@
 """Majority smoothing: a part of a class too small to be a thing takes the class around it."""
 
-from typing import cast
-
 import numpy as np
-from scipy import ndimage
 
 from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.label.morphology import parts_of
 
-FULL = np.ones((3, 3, 3), bool)
+NEIGHBOURHOOD = np.argwhere(np.ones((3, 3, 3), bool))
 
 
 def smooth_labels(labels: np.ndarray, small_cells: int) -> np.ndarray:
@@ -21,7 +19,7 @@ def smooth_labels(labels: np.ndarray, small_cells: int) -> np.ndarray:
     result = labels.copy()
     padded = np.pad(labels, 1)
     for class_id in range(1, CLASS_COUNT):
-        parts, count = cast(tuple[np.ndarray, int], ndimage.label(labels == class_id, FULL))
+        parts, count = parts_of(labels == class_id)
         sizes = np.bincount(parts.reshape(-1), minlength=count + 1)
         small = np.flatnonzero(sizes < small_cells)
         cells = np.argwhere(np.isin(parts, small[small > 0]))
@@ -29,7 +27,7 @@ def smooth_labels(labels: np.ndarray, small_cells: int) -> np.ndarray:
             continue
         owner = parts[tuple(cells.T)]
         table = np.zeros((count + 1, CLASS_COUNT), np.int64)
-        for step in np.argwhere(FULL):
+        for step in NEIGHBOURHOOD:
             near = padded[tuple((cells + step).T)]
             other = (near > 0) & (near < CLASS_COUNT) & (near != class_id)
             np.add.at(table, (owner[other], near[other]), 1)

@@ -29,6 +29,10 @@ class Surface:
         """The index of the layer whose top is z = 0; it may lie outside the grid."""
         return round(-self.origin_m[2] / self.voxel_m) - 1
 
+    def cells_of(self, length_m: float) -> int:
+        """Return a length in whole cells, at least 1."""
+        return max(round(length_m / self.voxel_m), 1)
+
     def layers_below(self, height_m: float) -> int:
         """Return how many layers of the grid have their centre under a height."""
         cells = np.ceil((height_m - self.origin_m[2]) / self.voxel_m - 0.5 - 1e-9)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.label.parameters import GeometricParameters
+from world2minecraft.label.parameters import StructureParameters
 from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
 
@@ -36,7 +36,7 @@ def find_walls(
     surface: Surface,
     ceiling: np.ndarray,
     ceiling_m: float | None,
-    parameters: GeometricParameters,
+    parameters: StructureParameters,
 ) -> tuple[np.ndarray, list[WallRun]]:
     """Return the walls' cells, bool [X, Y, Z], and their runs.
 
@@ -51,7 +51,7 @@ def find_walls(
     for axis, sign in DIRECTIONS:
         view = _Turned(surface, ceiling, axis, sign)
         runs = list(_runs(view, ceiling_m, parameters))
-        runs = [run for run in runs if not _is_shadow(run, runs, view.voxel_m)]
+        runs = [run for run in runs if not _is_shadow(run, runs, parameters)]
         runs = [run for run in runs if not _is_furniture(run, runs, ceiling_m, view, parameters)]
         for run in runs:
             _mark(view, run, parameters, cells)
@@ -80,7 +80,7 @@ def turned(values: np.ndarray, axis: int, sign: int) -> np.ndarray:
 
 
 def _runs(
-    view: _Turned, ceiling_m: float | None, parameters: GeometricParameters
+    view: _Turned, ceiling_m: float | None, parameters: StructureParameters
 ) -> Iterator[WallRun]:
     """Yield the planes that may be walls, split where they stop for long."""
     fronts = view.occupied & _free_before(view.free)
@@ -103,7 +103,7 @@ def _free_before(free: np.ndarray) -> np.ndarray:
     return before
 
 
-def _passed_behind(view: _Turned, parameters: GeometricParameters) -> np.ndarray:
+def _passed_behind(view: _Turned, parameters: StructureParameters) -> np.ndarray:
     """Return bool [A, B, 1]: in the columns behind, rays passed at some height."""
     free = view.free[:, :, view.above_floor :].sum(axis=2) >= parameters.passed_cells
     behind = np.zeros_like(free)
@@ -113,7 +113,7 @@ def _passed_behind(view: _Turned, parameters: GeometricParameters) -> np.ndarray
 
 
 def _peeled(
-    view: _Turned, fronts: np.ndarray, parameters: GeometricParameters, top_m: float
+    view: _Turned, fronts: np.ndarray, parameters: StructureParameters, top_m: float
 ) -> Iterator[WallRun]:
     """Yield runs, the plane with most cells first, until none is large enough."""
     along = np.nonzero(fronts)[1]
@@ -145,14 +145,14 @@ def _spans(along: np.ndarray, gap_cells: int) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in zip(firsts, lasts, strict=True)]
 
 
-def _is_shadow(run: WallRun, runs: list[WallRun], voxel_m: float) -> bool:
+def _is_shadow(run: WallRun, runs: list[WallRun], parameters: StructureParameters) -> bool:
     """Return whether a run only follows a larger one within little more than a cell.
 
     Noise, windows, door leaves and curtains make such runs; a pillar stands where the wall does
     not.
     """
     for wall in runs:
-        near = abs(wall.outward_m - run.outward_m) <= 1.6 * voxel_m
+        near = abs(wall.outward_m - run.outward_m) <= parameters.shadow_m
         shared = min(wall.span[1], run.span[1]) - max(wall.span[0], run.span[0]) + 1
         inside = shared >= 0.7 * (run.span[1] - run.span[0] + 1)
         if near and inside and wall.area_m2 > 1.5 * run.area_m2:
@@ -165,7 +165,7 @@ def _is_furniture(
     runs: list[WallRun],
     ceiling_m: float | None,
     view: _Turned,
-    parameters: GeometricParameters,
+    parameters: StructureParameters,
 ) -> bool:
     """Return whether a run is the front of a tall piece of furniture before a wider wall."""
     width = (run.span[1] - run.span[0] + 1) * view.voxel_m
@@ -182,7 +182,7 @@ def _is_furniture(
     return False
 
 
-def _mark(view: _Turned, run: WallRun, parameters: GeometricParameters, cells: np.ndarray) -> None:
+def _mark(view: _Turned, run: WallRun, parameters: StructureParameters, cells: np.ndarray) -> None:
     """Set the cells of a run: those on its plane, and those that noise put before or behind it.
 
     A cell before the plane is noise where the cell behind it was seen too; a picture, a curtain
@@ -200,13 +200,14 @@ def _mark(view: _Turned, run: WallRun, parameters: GeometricParameters, cells: n
     view.turn(cells)[on] = True
 
 
-def _bend(view: _Turned, gap: np.ndarray, parameters: GeometricParameters) -> np.ndarray:
+def _bend(view: _Turned, gap: np.ndarray, parameters: StructureParameters) -> np.ndarray:
     """Return how far a wall stands off its plane around each place, float [A, B], metres.
 
     Lens and sensor bend a long wall by some centimetres; the mean over about half a metre follows
     them, and is drawn to 0 where little of the wall was seen.
     """
     near = view.occupied & (np.abs(gap) <= parameters.plane_gate_m)
-    total = ndimage.gaussian_filter(np.where(near, gap, 0.0).sum(axis=0), 3.0, mode="constant")
-    count = ndimage.gaussian_filter(near.sum(axis=0).astype(float), 3.0, mode="constant")
+    sigma = parameters.bend_m / view.voxel_m
+    total = ndimage.gaussian_filter(np.where(near, gap, 0.0).sum(axis=0), sigma, mode="constant")
+    count = ndimage.gaussian_filter(near.sum(axis=0).astype(float), sigma, mode="constant")
     return total / (count + 0.1)
