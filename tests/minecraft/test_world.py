@@ -18,6 +18,7 @@ from world2minecraft.errors import (
     UsageError,
 )
 from world2minecraft.minecraft import anvil as our_anvil
+from world2minecraft.minecraft import world as our_world
 from world2minecraft.minecraft.anvil import pack_region, read_region
 from world2minecraft.minecraft.level import GAME_RULES
 from world2minecraft.minecraft.nbt import write_nbt
@@ -225,6 +226,21 @@ def test_a_folder_with_other_files_and_a_file_are_left_alone(tmp_path):
     with pytest.raises(OutputError, match="holds other files"):
         write(VOLUMES["one chunk"], folder / "thesis.txt")
     assert [path.name for path in tmp_path.iterdir()] == ["papers"]
+
+
+def test_a_full_disk_leaves_the_old_world_and_nothing_else(tmp_path, monkeypatch):
+    folder = write(VOLUMES["one chunk"], tmp_path / "world")
+    before = (folder / "region" / "r.0.0.mca").read_bytes()
+
+    def full(path, data):
+        raise OutputError(path, "cannot be written: No space left on device")
+
+    monkeypatch.setattr(our_world, "write_bytes", full)
+    with pytest.raises(OutputError) as caught:
+        write(VOLUMES["one layer"], folder)
+    assert str(caught.value) == f"{folder}: cannot be written: No space left on device"
+    assert (folder / "region" / "r.0.0.mca").read_bytes() == before
+    assert [path.name for path in tmp_path.iterdir()] == ["world"]
 
 
 def test_a_build_above_the_sky_is_refused_before_anything_is_written(tmp_path):

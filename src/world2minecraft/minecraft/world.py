@@ -69,6 +69,8 @@ def write_world(
         level = level_data(name, spawn, spawn_yaw_deg, version, (SIZE_PACK_FILE,))
         write_bytes(draft / "level.dat", pack_gzip(write_nbt(level)))
         _move(draft, target)
+    except OutputError as error:  # It names a file of the draft, which is gone by then.
+        raise OutputError(target, error.reason) from error
     finally:
         shutil.rmtree(draft, ignore_errors=True)
 
