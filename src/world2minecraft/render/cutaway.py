@@ -53,7 +53,10 @@ def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVo
     drop[:, level:, :] = outside[:, None, :]
     far = _beyond(floor, 0, -near_x) | _beyond(floor, 1, -near_z)
     flush = ~far & _dilate(outside, max(1, round(HUNG_M * volume.blocks_per_metre)))
-    hangs = np.isin(semantic, (*_WALLS, int(SemanticClass.OBJS))) & flush[:, None, :]
+    # What reaches into the room stands there: a floor lamp keeps its shade.
+    inside = np.unique(volume.instance[np.broadcast_to(~flush[:, None, :], semantic.shape)])
+    stands = np.isin(volume.instance, inside[inside > 0])
+    hangs = np.isin(semantic, (*_WALLS, int(SemanticClass.OBJS))) & flush[:, None, :] & ~stands
     high = floor_level(semantic) + 1 + round(HIGH_M * volume.blocks_per_metre)
     hangs[:, :high, :] &= np.isin(semantic[:, :high, :], _WALLS)
     hangs[:, :level, :] = False

@@ -12,14 +12,14 @@ from world2minecraft.jit import njit
 from world2minecraft.render.trace import FULL, NO_FACE, safe_start, trace
 
 # In the order of the faces -x +x -y +y -z +z of block axes (y is up): the game's shades, softened.
-FACE_SHADE = np.array([0.80, 0.80, 0.64, 1.0, 0.90, 0.90], np.float32)
+FACE_SHADE = np.array([0.85, 0.85, 0.70, 1.0, 0.94, 0.94], np.float32)
 TILE = 8  # Pixels a side of the bundles that share an empty way.
 HASH_SHARE = 0.03
 EDGE_BLOCKS, EDGE_SHADE = 0.035, 0.10
 EDGE_FADE_PX = 6.0  # Edges are drawn in full where a block covers four times as many pixels.
 CORNER_SHADE = 0.15  # What each solid neighbour of a corner takes; the game takes 0.2.
 HEADLIGHT = 0.14  # What a face loses that the camera sees edge-on.
-EXPOSURE = 1.06
+EXPOSURE = 1.10
 GLOW = 1.12
 MEMO = 10
 
