@@ -214,7 +214,7 @@ def test_what_the_errors_say(tmp_path):
         "a palette index out of range": "has a block of number 2, which its palette lacks",
         "too few blocks": "says 4 blocks and holds fewer",
         "a volume of 281 million million blocks": "says 65535 x 65535 x 65535 blocks; 1 to"
-        " 268,435,456 are read",
+        " 67,108,864 are read",
         "no width": "is no Sponge schematic ('Width' is missing)",
         "an unknown version": "is a Sponge schematic of version 9; 1 to 3 are read",
     }

@@ -44,7 +44,7 @@ class NbtLimits:
     """What a file may ask for. The defaults hold for every file that the program writes."""
 
     depth: int = 100  # The game allows 512; real files stay below 20.
-    values: int = 1_000_000  # About 200 MB of Python objects.
+    values: int = 500_000  # About 100 MB of Python objects, read in a second.
     bytes: int = 256 << 20  # Unpacked.
 
 

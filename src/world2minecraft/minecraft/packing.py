@@ -110,15 +110,20 @@ def write_varints(values, out):  # pragma: no cover
 
 
 @njit
-def read_varints(data, values):  # pragma: no cover
-    """Read LEB128 numbers from uint8 ``data`` into int64 ``values``.
+def read_varints(data, lookup, out):  # pragma: no cover
+    """Read LEB128 numbers from uint8 ``data`` and write what ``lookup`` has for each.
+
+    Args:
+        data: uint8 [N].
+        lookup: int32 [M], -1 for a number that means nothing.
+        out: uint16 out, filled whole.
 
     Returns:
         The bytes used, or -1 where the data ends too early, or -2 where a number has more than
-        four bytes.
+        four bytes, or -3 - n where the number n is not in ``lookup``.
     """
     at = 0
-    for index in range(len(values)):
+    for index in range(len(out)):
         value = np.int64(0)
         shift = 0
         while True:
@@ -132,7 +137,9 @@ def read_varints(data, values):  # pragma: no cover
             shift += 7
             if shift > 21:
                 return -2
-        values[index] = value
+        if value >= len(lookup) or lookup[value] < 0:
+            return -3 - value
+        out[index] = lookup[value]
     return at
 
 

@@ -21,10 +21,10 @@ from world2minecraft.minecraft.nbt import (
 from world2minecraft.minecraft.packing import read_varints, write_varints
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.versions import GameVersion, game_version, name_in_version
+from world2minecraft.minecraft.world_reading import MAX_CELLS
 from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
-MAX_CELLS = 256 << 20
-LIMITS = NbtLimits(values=2_000_000, bytes=640 << 20)
+LIMITS = NbtLimits(bytes=256 << 20)
 
 
 def write_schem(
@@ -214,21 +214,21 @@ def _palette(stated: Mapping[str, int], source: Path) -> tuple[tuple[str, ...], 
 
 def _cells(data: np.ndarray, number_of: Mapping[int, int], count: int, source: Path) -> np.ndarray:
     """Return uint16 [count] in our palette from the file's varints."""
-    values = np.empty(count, np.int64)
-    used = read_varints(data, values)
+    lookup = np.full(max(number_of, default=0) + 1, -1, np.int32)
+    for number, ours in number_of.items():
+        lookup[number] = ours
+    cells = np.empty(count, np.uint16)
+    used = read_varints(data, lookup, cells)
+    if used <= -3:
+        raise DamagedFileError(
+            source, f"has a block of number {-3 - used}, which its palette lacks"
+        )
     if used != len(data):
         reason = {-1: "ends too early", -2: "has a number of more than four bytes"}
         raise DamagedFileError(
             source, f"its block data {reason.get(used, 'goes on after the last block')}"
         )
-    lookup = np.full(max(number_of, default=0) + 2, -1, np.int32)
-    for number, ours in number_of.items():
-        lookup[number] = ours
-    found = lookup[np.minimum(values, len(lookup) - 1)]
-    if (found < 0).any():
-        bad = int(values[found < 0][0])
-        raise DamagedFileError(source, f"has a block of number {bad}, which its palette lacks")
-    return found.astype(np.uint16)
+    return cells
 
 
 def _block_entity(nbt: dict[str, Any], corner: tuple[int, int, int], version: int) -> BlockEntity:

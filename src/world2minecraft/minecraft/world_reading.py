@@ -15,7 +15,7 @@ from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, unpack
 from world2minecraft.minecraft.packing import unpack_section
 from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
-MAX_CELLS = 256 << 20  # A volume of this size takes 1.3 GB.
+MAX_CELLS = 64 << 20  # 400 blocks a side; a volume of this size takes 340 MB.
 MAX_UNPACKED_BYTES = 2 << 30  # All chunks of one world together.
 LEVEL_LIMITS = NbtLimits(values=200_000, bytes=32 << 20)
 Place = tuple[int, int]
