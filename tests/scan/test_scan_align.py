@@ -35,7 +35,7 @@ def _check(scan_to_room, room_to_scan, found_size, size, *, degrees, metres):
     np.testing.assert_allclose(corners.max(axis=0), [*size[:2], 0], atol=metres)
 
 
-@settings(max_examples=12, deadline=None, derandomize=True)
+@settings(max_examples=8, deadline=None, derandomize=True)
 @given(st.integers(0, 10**6), st.sampled_from([None, 1]))
 def test_any_tilt_and_turn_gives_the_same_room(surfaces, seed, noise):
     found, size = surfaces

@@ -10,8 +10,8 @@ import numpy as np
 
 from world2minecraft.scan.surface import Surface, profile
 
-DIRECTIONS = 3000  # Fibonacci points on the sphere: about 3.7 degrees apart.
-VOTERS = 6000
+DIRECTIONS = 2000  # Fibonacci points on the sphere: about 4.5 degrees apart.
+VOTERS = 4000
 WITHIN_DEG = 8.0
 ROLL_SIGMA = 0.20  # Sine of how far a hand-held camera rolls.
 FACING_DEG = 20.0
