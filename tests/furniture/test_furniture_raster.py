@@ -81,5 +81,5 @@ def test_the_surface_is_the_cells_with_an_open_face(seed):
 
 
 def test_a_box_beyond_reason_is_refused():
-    with pytest.raises(ValueError, match="box of .* cells is too large; 64000000 at most"):
+    with pytest.raises(ValueError, match="box of .* cells is too large; 8000000 at most"):
         cells_of(template("box"), (100.0, 100.0, 100.0), voxel_m=0.02)

@@ -83,8 +83,11 @@ def _match(
     templates = templates_of(instance.class_id)
     reach = reach_of(templates, grid.voxel_m)
     evidence = evidence_of(grid, cells, reach, chosen.paper_compat)
-    weights = (0.0, 0.0) if chosen.paper_compat else (chosen.tie_weight, chosen.beyond_weight)
-    bias = Bias(quarter_turns, grid.voxel_m, *weights)
+    bias = Bias(
+        quarter_turns, grid.voxel_m, chosen.size_weight, chosen.front_weight, chosen.beyond_weight
+    )
+    if chosen.paper_compat:
+        bias = Bias(quarter_turns, grid.voxel_m, 0.0, 0.0, 0.0)
     matches = best_matches(templates, evidence, bias, chosen)
     return Matched(evidence, quarter_turns, tuple(matches))
 

@@ -10,6 +10,8 @@ from world2minecraft.furnish.evidence import Evidence
 from world2minecraft.furnish.overlap import overlaps
 from world2minecraft.furniture import Template, raster
 
+PARAMETER_SHARE = 0.3  # An unusual parameter is less strange than an unusual size.
+
 Cells = tuple[int, int, int]
 Values = tuple[tuple[str, float], ...]
 
@@ -46,7 +48,8 @@ class Bias(NamedTuple):
 
     quarter_turns: int
     voxel_m: float
-    tie_weight: float
+    size_weight: float
+    front_weight: float
     beyond_weight: float
 
 
@@ -69,19 +72,16 @@ def score_shifts(evidence: Evidence, trial: Trial, shifts: np.ndarray, bias: Bia
 
 
 def tie_break(trial: Trial, bias: Bias) -> float:
-    """Return what the usual size, the usual parameters and the seen front add, 0 to weight."""
-    if not bias.tie_weight:
-        return 0.0
-    spans = trial.template.size_m
-    far = [
-        _strangeness(count * bias.voxel_m, span.minimum, span.typical, span.maximum)
+    """Return what the usual size, the usual parameters and the seen front add to the score."""
+    spans, own = trial.template.size_m, trial.template.parameters
+    size = sum(
+        _strangeness(count * bias.voxel_m, *span)
         for count, span in zip(trial.counts, spans, strict=True)
-    ]
-    own = trial.template.parameters
-    far += [_strangeness(value, *own[name]) for name, value in trial.values]
-    turns = trial.template.turns
-    looks = turns == 1 or (trial.quarter_turns - bias.quarter_turns) % turns == 0
-    return bias.tie_weight * (0.5 * looks + 0.5 * (1 - sum(far) / len(far)))
+    )
+    values = sum(_strangeness(value, *own[name]) for name, value in trial.values)
+    far = size / 3 + PARAMETER_SHARE * values / max(len(own), 1)
+    looks = (trial.quarter_turns - bias.quarter_turns) % trial.template.turns == 0
+    return bias.front_weight * looks - bias.size_weight * far
 
 
 def _strangeness(value: float, minimum: float, typical: float, maximum: float) -> float:
@@ -89,7 +89,7 @@ def _strangeness(value: float, minimum: float, typical: float, maximum: float) -
     return min(abs(value - typical) / room, 1.0) if room > 0 else float(value != typical)
 
 
-@lru_cache(maxsize=8192)
+@lru_cache(maxsize=1024)
 def _turned(
     template: Template, counts: Cells, values: Values, voxel_m: float, quarter_turns: int
 ) -> np.ndarray:

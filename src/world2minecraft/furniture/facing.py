@@ -39,9 +39,9 @@ def facing(cells: np.ndarray, class_id: int, around: Surroundings) -> Facing:
     """Return the front of an object of ``cells``, int32 [N, 3].
 
     Chairs and sofas: away from their high side. Beds: along the long side, away from the wall
-    or the high side (a headboard). Screens: across their thin side, away from the wall. Tables:
-    the long side is the side. Others: away from the wall that covers most of a side, or towards
-    the middle of the room.
+    or the high side (a headboard). Screens and tables: across their thin side, away from the
+    wall. Others: away from the wall that covers most of a side, rather across their thin side
+    (in a corner), or towards the middle of the room.
     """
     low, high = cells.min(axis=0), cells.max(axis=0) + 1
     lean = _lean(cells, low, high)
@@ -50,12 +50,12 @@ def facing(cells: np.ndarray, class_id: int, around: Surroundings) -> Facing:
     if class_id in SEATS:
         return _best(lean + 0.3 * wall + 0.05 * inward)
     if class_id == SemanticClass.TABLE:
-        return _best(_across(low, high) + 0.01 * np.array([1, 1, 0, 0]))
+        return _best(_across(low, high) + 0.3 * wall + 0.05 * inward)
     if class_id == SemanticClass.BED:
         return _best(0.5 * wall + lean + 0.05 * inward + _along(low, high))
     if class_id == SemanticClass.TVS:
         return _best(wall + 0.2 * inward + _across(low, high))
-    return _best(wall + 0.1 * inward + 0.1 * _across(low, high))
+    return _best(wall + 0.1 * inward + 0.3 * _across(low, high))
 
 
 def _best(score: np.ndarray) -> Facing:

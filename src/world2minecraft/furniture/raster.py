@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.coordinates import turn_grid
 from world2minecraft.furniture.template import Parameters, Template
 
-MAX_CELLS = 64_000_000  # A box of 32 m at 0.08 m; more is a mistake in the size.
+MAX_CELLS = 8_000_000  # A box of 4 m at 0.02 m; more is a mistake in the size.
 CLOSE = 1e-6  # A millionth of a cell, for sums of metres that should be whole cells.
 
 
@@ -45,7 +45,7 @@ def size_in_cells(size_m: Sequence[float] | np.ndarray, voxel_m: float) -> tuple
     return depth, width, height
 
 
-@lru_cache(maxsize=8192)
+@lru_cache(maxsize=1024)
 def raster(
     template: Template,
     counts: tuple[int, int, int],
