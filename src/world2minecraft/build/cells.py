@@ -6,7 +6,7 @@ import numpy as np
 
 from world2minecraft.build.halves import of_half_layers
 from world2minecraft.build.lattice import Lattice, face_shares
-from world2minecraft.build.morphology import beside, parts_of
+from world2minecraft.build.morphology import parts_of
 from world2minecraft.types import OccupancyGrid
 
 PHASES = 4  # Shifts of a quarter block along x and y; finer ones changed nothing in reference/fit.
@@ -55,8 +55,10 @@ def _halves(mask: np.ndarray, edges: list[np.ndarray], size: np.ndarray, share: 
     """Return the half blocks whose faces are covered; upright sheets are judged whole."""
     shape = tuple(size.tolist())
     doubled = [edges[0], edges[1], edges[2] * 2]
+    shares = face_shares(mask, edges, shape)
+    share = min(share, float(shares.max()))  # Nothing vanishes for being small.
     fine = face_shares(mask, doubled, (shape[0], shape[1], 2 * shape[2])) >= share
-    whole = face_shares(mask, edges, shape) >= share
+    whole = shares >= share
     halves = of_half_layers(fine)
     halves[~whole] = 0
     halves[whole & (halves == 0)] = 3
@@ -94,10 +96,10 @@ def without_crumbs(halves: np.ndarray, held: np.ndarray) -> np.ndarray:
 
     Args:
         halves: uint8 [X, Y, Z] of one object.
-        held: bool [X, Y, Z], where something else stands that a block may hang on.
+        held: bool [X, Y, Z], where a block has something beside it that it may hang on.
     """
     parts, sizes = parts_of(halves > 0)
-    touching = np.unique(parts[beside(held) & (parts > 0)])
+    touching = np.unique(parts[held & (parts > 0)])
     keep = (sizes > 1) | np.isin(np.arange(len(sizes)), touching)
     keep[0] = False
     return np.where(keep[parts], halves, 0).astype(np.uint8)

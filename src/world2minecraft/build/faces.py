@@ -8,10 +8,13 @@ that plane first, so that walls come out straight and one block thick.
 from typing import NamedTuple
 
 import numpy as np
+from scipy import ndimage
 
 from world2minecraft.build.lattice import Lattice, overlaps
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.types import OccupancyGrid
+
+LEAST_WIDTH_M = 0.24  # Narrower than this, structure is noise or the end of a wall. A guess.
 
 
 class Faces(NamedTuple):
@@ -43,6 +46,8 @@ def find_faces(
     above[:-1] = body[:-1] & empty[1:]
     below = np.zeros_like(body)
     below[1:] = body[1:] & empty[:-1]
+    wide = _spread_wide(above | below, grid.voxel_m) if axis < 2 else np.ones_like(body)
+    above, below = above & wide, below & wide
     ends = _sheet_ends(body, below, above, thin)
     sheet_low = np.argwhere(ends > 0)
     sheet_high = ends[ends > 0] - 1 + sheet_low[:, 0]
@@ -55,6 +60,20 @@ def find_faces(
     faces = [_faces(axis, cells, edge[cells[:, 0]], side) for cells, edge, side in found]
     middles = (edges[sheet_low[:, 0]] + edges[sheet_high + 1]) / 2
     return [*faces, _faces(axis, sheet_low, middles, 0)]
+
+
+def _spread_wide(faces: np.ndarray, voxel_m: float) -> np.ndarray:
+    """Return where faces [axis, side, up] are part of something wide, and no side of a bump.
+
+    Of the places sideways, a quarter of a metre each way, most of one side's must have a face
+    too, at about the same depth and height.
+    """
+    reach = max(1, round(LEAST_WIDTH_M / voxel_m))
+    near = ndimage.maximum_filter(faces.astype(np.uint8), size=(3, 1, 3))
+    counts = ndimage.convolve1d(
+        near.astype(np.int32), np.ones(2 * reach + 1, np.int32), axis=1, mode="constant"
+    )
+    return np.asarray(counts) > reach * 0.8
 
 
 def _sheet_ends(body: np.ndarray, below: np.ndarray, above: np.ndarray, thin: int) -> np.ndarray:
@@ -77,7 +96,7 @@ def _faces(axis: int, cells: np.ndarray, planes: np.ndarray, side: int) -> Faces
     return Faces(axis, cells[:, order], planes, side)
 
 
-def straighten(faces: Faces, lattice: Lattice, voxel_m: float, parameters: BuildParameters):
+def straighten(faces: Faces, voxel_m: float, parameters: BuildParameters) -> Faces:
     """Return the faces with each plane drawn to the strongest plane within reach.
 
     The strongest plane takes all faces near it, then the next takes what is left; a plane under
@@ -119,6 +138,29 @@ def vote(faces: Faces, grid: OccupancyGrid, lattice: Lattice) -> Votes:
         weights = overlaps(lattice.edges_of(grid, axis), lattice.shape[axis])
         flat = np.moveaxis(np.tensordot(weights, flat, axes=(1, position)), 0, position)
     return Votes(np.moveaxis(flat, 0, faces.axis), target, faces.cells, faces.axis)
+
+
+def see_through(
+    faces: Faces, votes: Votes, free: np.ndarray, grid: OccupancyGrid, lattice: Lattice
+) -> np.ndarray:
+    """Return the share of each block's face, float32 [X, Y, Z], through which space was seen.
+
+    It is told in the layer of cells right behind each plane, and -1 where no plane is. A doorway
+    is open there, while the space before a wall that stands back within its block is not.
+    """
+    edges = lattice.edges_of(grid, faces.axis)
+    across = [axis for axis in range(3) if axis != faces.axis]
+    result = np.full(lattice.shape, -1, np.float32)
+    planes, first = np.unique(faces.planes, return_index=True)
+    for plane, target in zip(planes, votes.target[first], strict=True):
+        layer = int(np.searchsorted(edges, plane - 1e-6 * faces.side, "right")) - 1
+        share = np.take(free, np.clip(layer, 0, len(edges) - 2), faces.axis).astype(np.float32)
+        for position, axis in enumerate(across):
+            weights = overlaps(lattice.edges_of(grid, axis), lattice.shape[axis])
+            share = np.moveaxis(np.tensordot(weights, share, axes=(1, position)), 0, position)
+        sheet = np.moveaxis(result, faces.axis, 0)[target]
+        np.maximum(sheet, share, out=sheet)
+    return result
 
 
 def blocks_behind(votes: Votes, grid: OccupancyGrid, lattice: Lattice) -> np.ndarray:

@@ -73,7 +73,9 @@ def default_colour(block: str) -> np.ndarray:
     return oklab_of_srgb(np.array(colour_of(block), np.uint8))
 
 
-def group_medians(groups: np.ndarray, colours: np.ndarray, count: int) -> tuple:
+def group_medians(
+    groups: np.ndarray, colours: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the median colour of each group, float32 [count, 3], and how many it has, int [count].
 
     Args:
@@ -93,7 +95,9 @@ def group_medians(groups: np.ndarray, colours: np.ndarray, count: int) -> tuple:
     return medians, sizes
 
 
-def spread(colours: np.ndarray, known: np.ndarray, wanted: np.ndarray, default: np.ndarray):
+def spread(
+    colours: np.ndarray, known: np.ndarray, wanted: np.ndarray, default: np.ndarray
+) -> np.ndarray:
     """Return the colours, float32 [N, 3], at ``wanted``: each its own, or the nearest known one.
 
     Far from all known ones it is their median: a floor under a table is like the rest of it.

@@ -10,6 +10,7 @@ from world2minecraft.build.cells import shape_of_cells, without_crumbs
 from world2minecraft.build.halves import FULL, slab_states
 from world2minecraft.build.idioms import Thing, idiom_box, put_idiom
 from world2minecraft.build.lattice import volume_shares
+from world2minecraft.build.morphology import beside
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.parts import Design, design_of
@@ -38,6 +39,7 @@ class ObjectBuilder:
         parameters: BuildParameters,
     ):
         free = (grid.labels == 0) & (grid.source != UNSEEN)
+        self.exposed = beside(free)  # What lies inside an object says nothing of how it looks.
         self.open_share = volume_shares(free, grid, canvas.lattice)
         self.canvas, self.grid, self.palette = canvas, grid, palette
         self.colours, self.coloured = colours, coloured
@@ -90,7 +92,7 @@ class ObjectBuilder:
         if _is_flush(halves > 0, window):
             halves = np.where((halves > 0) & window.wall, FULL, halves * window.free)
         else:
-            halves = without_crumbs(halves * window.free, ~window.free)
+            halves = without_crumbs(halves * window.free, window.held)
         thing = Thing(class_id, number, self.parameters.object_colours)
         self._put_halves(window.low, halves, Hues(hues, shape.blocks), thing)
 
@@ -156,18 +158,22 @@ class ObjectBuilder:
         return blocks
 
     def _window(self, low: np.ndarray, shape: tuple[int, ...]) -> "Window":
-        high = np.minimum(low + shape, self.lattice.shape)
-        start = np.maximum(low, [0, 0, self.lattice.ground])
+        high = np.minimum(low + shape, np.array(self.lattice.shape) - 1)
+        start = np.maximum(low, [1, 1, self.lattice.ground])
         stop = np.maximum(high, start)
         box = tuple(slice(int(a), int(b)) for a, b in zip(start - low, stop - low, strict=True))
         inside = tuple(slice(int(a), int(b)) for a, b in zip(start, stop, strict=True))
-        free = self.canvas.states[inside] == 0
-        return Window(box, start, free, self.canvas.semantic[inside] == SemanticClass.WALL)
+        around = tuple(slice(int(a) - 1, int(b) + 1) for a, b in zip(start, stop, strict=True))
+        stands = self.canvas.states[around] > 0
+        free = ~stands[1:-1, 1:-1, 1:-1]
+        wall = self.canvas.semantic[inside] == SemanticClass.WALL
+        return Window(box, start, free, wall, beside(stands)[1:-1, 1:-1, 1:-1])
 
     def _coloured(self, hues: "Hues") -> tuple[np.ndarray, np.ndarray]:
         """Return the colours, float32 [N, 3], of cells and which of them are one, bool [N]."""
         at = tuple(hues.cells.T)
-        return self.colours[at], self.coloured[at]
+        usable = self.coloured[at] & self.exposed[at]
+        return self.colours[at], usable if usable.any() else self.coloured[at]
 
     def _put_halves(
         self,
@@ -210,6 +216,7 @@ class Window(NamedTuple):
     low: np.ndarray  # int [3], its first block on the canvas
     free: np.ndarray  # bool [X, Y, Z], nothing stands there
     wall: np.ndarray  # bool [X, Y, Z]
+    held: np.ndarray  # bool [X, Y, Z], something stands there or beside it
 
 
 class Hues(NamedTuple):

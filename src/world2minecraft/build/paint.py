@@ -127,7 +127,7 @@ def paint(
     extra = np.zeros(len(candidates)) if handicaps is None else handicaps
     sample = costs_of(colours[::stride], candidates, lightness_weight, extra)
     few = choose_few(sample, most, noticed)
-    offered = [candidates[index] for index in few.tolist()]
+    offered = [str(candidates[index]) for index in few]
     parts = calm(costs_of(colours, offered, lightness_weight, extra[few]), positions, calm_step)
     medians, sizes = group_medians(parts, colours, len(few))
     weight = lightness_weight if match_weight is None else match_weight

@@ -51,7 +51,7 @@ def put_shell(
 def _patches(mask: np.ndarray, numbers: np.ndarray):
     """Yield the surfaces of a mask; the small ones come together as one."""
     held = numbers[mask]
-    counts = np.bincount(held, minlength=1)
+    counts = np.bincount(held, minlength=int(numbers.max()) + 1)
     small = counts < LEAST_PATCH
     if (small[held]).any():
         yield mask & small[numbers]

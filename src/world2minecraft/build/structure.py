@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.build.faces import blocks_behind, find_faces, straighten, vote
+from world2minecraft.build.faces import blocks_behind, find_faces, see_through, straighten, vote
 from world2minecraft.build.lattice import Lattice, face_shares, overlaps, volume_shares
 from world2minecraft.build.morphology import beside, closed, grown, nearest_of, without_holes
 from world2minecraft.build.parameters import BuildParameters
@@ -74,8 +74,10 @@ def _walls(grid, free, open_share, lattice, parameters, patches, coloured) -> np
     walls = np.zeros(lattice.shape, bool)
     for axis in (0, 1):
         for faces in find_faces(grid, solid, free, lattice, axis):
-            straight = straighten(faces, lattice, grid.voxel_m, parameters)
+            straight = straighten(faces, grid.voxel_m, parameters)
             votes = vote(straight, grid, lattice)
+            through = see_through(straight, votes, free, grid, lattice)
+            open_share[:] = np.where(through >= 0, through, open_share)
             sheet = _closed(
                 votes.area >= parameters.face_share, axis, open_share, lattice, parameters
             )
@@ -141,7 +143,7 @@ def _ceiling(grid, free, lattice, parameters, coloured) -> np.ndarray:
     for faces in find_faces(grid, solid, free, lattice, 2):
         if faces.side > 0:
             continue  # A ceiling's upper side is not the room's.
-        straight = straighten(faces, lattice, grid.voxel_m, parameters)
+        straight = straighten(faces, grid.voxel_m, parameters)
         votes = vote(straight, grid, lattice)
         sheet = votes.area >= parameters.face_share
         gap = max(1, round(parameters.gap_m * lattice.blocks_per_metre / 2))
@@ -191,7 +193,7 @@ def _windows(grid, walls, free, lattice, parameters) -> np.ndarray:
     solid = (grid.labels == WALL) | (grid.labels == WINDOW)
     for axis in (0, 1):
         for faces in find_faces(grid, solid, free, lattice, axis):
-            straight = straighten(faces, lattice, grid.voxel_m, parameters)
+            straight = straighten(faces, grid.voxel_m, parameters)
             kinds = grid.labels[tuple(straight.cells.T)]
             for kind in area:
                 chosen = straight._replace(

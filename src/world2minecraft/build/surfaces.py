@@ -71,7 +71,9 @@ def painted(
     return np.array(choices, object)[index]
 
 
-def put_painted(canvas: Canvas, mask: np.ndarray, states: np.ndarray, class_id: int, instance=0):
+def put_painted(
+    canvas: Canvas, mask: np.ndarray, states: np.ndarray, class_id: int, instance: int = 0
+) -> None:
     """Set the blocks of a mask to the states that ``painted`` gave for it."""
     names, index = np.unique(states.astype(str), return_inverse=True)
     canvas.put(mask, canvas.ids_of(names.tolist())[index], class_id, instance)

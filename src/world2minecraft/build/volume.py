@@ -88,11 +88,8 @@ def grid_corner_m(grid: OccupancyGrid) -> np.ndarray:
     occupied = np.asarray(grid.occupied.any(2))
     if not occupied.any():
         return np.array([grid.origin_m[0], grid.origin_m[1] + grid.shape[1] * grid.voxel_m])
-    along_x, along_y = (
-        np.unique(np.argwhere(occupied)[:, 0]),
-        np.unique(np.argwhere(occupied)[:, 1]),
-    )
-    first, last = int(along_x[0]), int(along_y[-1])
+    cells = np.argwhere(occupied)
+    first, last = int(cells[:, 0].min()), int(cells[:, 1].max())
     walls = np.asarray(np.isin(grid.labels, (3, 4)).any(2))
     first += bool(walls[first].any())
     last -= bool(walls[:, last].any())
