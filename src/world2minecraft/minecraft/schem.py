@@ -218,7 +218,7 @@ def _cells(data: np.ndarray, number_of: Mapping[int, int], count: int, source: P
     for number, ours in number_of.items():
         lookup[number] = ours
     cells = np.empty(count, np.uint16)
-    used = read_varints(data, lookup, cells)
+    used = int(read_varints(data, lookup, cells))
     if used <= -3:
         raise DamagedFileError(
             source, f"has a block of number {-3 - used}, which its palette lacks"
