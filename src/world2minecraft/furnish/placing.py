@@ -16,6 +16,7 @@ from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.types import Alternative, ObjectInstance, OccupancyGrid, Placement
 
 OWN_CELLS = "cells"
+HALF = 0.5
 
 
 class Matched(NamedTuple):
@@ -100,12 +101,16 @@ def _may_be_cut(whole: Matched, voxel_m: float, chosen: FurnishParameters) -> bo
 
 
 def _is_better_cut(parts: list[Matched], single: float, chosen: FurnishParameters) -> bool:
-    """Whether the runs that are large enough to be furniture match better than the whole."""
+    """Whether the runs that are large enough to be furniture match better than the whole.
+
+    Where nothing explains the whole, runs that explain half of it are better than none.
+    """
     every = sum(part.evidence.own for part in parts)
     large = [part for part in parts if part.matches]
-    together = sum(part.evidence.own * part.iou for part in large) / every
     if single < chosen.min_iou:
-        return together >= chosen.min_iou
+        explained = [part.evidence.own for part in large if part.iou >= chosen.min_iou]
+        return sum(explained) >= HALF * every
+    together = sum(part.evidence.own * part.iou for part in large) / every
     return len(large) > 1 and together >= single + chosen.cut_gain * (len(large) - 1)
 
 
