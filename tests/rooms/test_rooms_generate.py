@@ -194,3 +194,12 @@ def test_beds_and_sofas_stand_with_their_backs_to_a_wall(seed):
         back = item.center_m[:2] - front(item) * item.size_m[0] / 2
         gaps = np.concatenate([back, room.size_m[:2] - back])
         assert gaps.min() < 0.011
+
+
+@pytest.mark.parametrize("seed", [0, 1, 7])
+def test_an_easy_chair_looks_into_the_room(seed):
+    for kind in ("study", "living"):
+        room = room_of(kind, seed)
+        for item in named(room, "armchair"):
+            ahead = item.center_m[:2] + front(item) * (item.size_m[0] / 2 + 0.5)
+            assert ((ahead > 0) & (ahead < room.size_m[:2])).all()

@@ -140,7 +140,9 @@ class Plan:
             back = -near.model.size_m[0] / 2 + model.size_m[0] / 2
             spots = [near.point(back, aside), near.point(back, -aside)]
         for n in self.rng.permutation(len(spots)):
-            placed = self.add(snapped(Item(model, *spots[int(n)], 0.0, 0.0)))
+            x, y = spots[int(n)]
+            yaw = 0.0 if x < width / 2 else 180.0  # Its front looks into the room.
+            placed = self.add(snapped(Item(model, x, y, 0.0, yaw)))
             if placed:
                 return placed
         return None
