@@ -142,6 +142,8 @@ def bed(room, x, y):
     """Put a bed, its head towards x = 0, a corner at x, y."""
     room.add((x, y, 0, x + 2.0, y + 1.4, 0.5), 6, (200, 200, 230))
     room.add((x, y, 0.5, x + 0.06, y + 1.4, 1.0), 6, WOOD)
+    room.add((x + 0.06, y + 0.1, 0.5, x + 0.5, y + 0.65, 0.64), 6, WHITE)
+    room.add((x + 0.06, y + 0.75, 0.5, x + 0.5, y + 1.3, 0.64), 6, WHITE)
 
 
 def label_share(result: OccupancyGrid, truth: np.ndarray, class_id: int) -> float:

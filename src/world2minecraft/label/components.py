@@ -23,6 +23,7 @@ class Piece:
     high_m: np.ndarray
     oklab: np.ndarray  # float64 [3], the median colour.
     near_wall: bool
+    off_wall_m: float  # How far from the nearest wall's column it reaches.
     flat_share: float  # The share of its cells on its largest upright plane.
 
     @property
@@ -55,19 +56,21 @@ def find_pieces(
     """
     parts, count = parts_of(rest)
     columns = wall.sum(axis=2) >= 2
-    apart = cast(np.ndarray, ndimage.distance_transform_edt(~columns)) if columns.any() else None
-    near = np.zeros_like(columns)
-    if apart is not None:
-        near = apart * surface.voxel_m <= parameters.near_wall_m
+    apart_m = np.full(columns.shape, np.inf)
+    if columns.any():
+        apart = cast(np.ndarray, ndimage.distance_transform_edt(~columns))
+        apart_m = apart * surface.voxel_m
     pieces = []
     for part, box in enumerate(ndimage.find_objects(parts, count), 1):
         start = np.array([side.start for side in box])
         cells = np.argwhere(parts[box] == part) + start
-        pieces.append(_piece(surface, cells, near))
+        pieces.append(_piece(surface, cells, apart_m, parameters))
     return pieces
 
 
-def _piece(surface: Surface, cells: np.ndarray, near_wall: np.ndarray) -> Piece:
+def _piece(
+    surface: Surface, cells: np.ndarray, apart_m: np.ndarray, parameters: PieceParameters
+) -> Piece:
     """Return the piece that cells, int [N, 3], form."""
     at = tuple(cells.T)
     points = surface.points_m[at].astype(np.float64)
@@ -77,6 +80,7 @@ def _piece(surface: Surface, cells: np.ndarray, near_wall: np.ndarray) -> Piece:
         low_m=np.quantile(points, 0.02, axis=0),
         high_m=np.quantile(points, 0.98, axis=0),
         oklab=np.median(surface.oklab[at].astype(np.float64), axis=0),
-        near_wall=bool(near_wall[at[:2]].any()),
+        near_wall=bool(apart_m[at[:2]].min() <= parameters.near_wall_m),
+        off_wall_m=float(np.sort(apart_m[at[:2]])[int(0.95 * (len(cells) - 1))]),
         flat_share=max(planes) / len(cells),
     )

@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.label.components import Piece, find_pieces
-from world2minecraft.label.morphology import grown, parts_of
+from world2minecraft.label.morphology import grown, parts_of, plan_of
 from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.plates import Plate, find_plates
 from world2minecraft.label.rules import Table, class_of_piece, class_of_plate
@@ -15,10 +15,11 @@ from world2minecraft.label.surface import Surface
 REACH_M = {
     SemanticClass.TABLE: (0.08, 0.0),
     SemanticClass.FURN: (0.08, 0.0),
-    SemanticClass.BED: (0.16, 1.2),
+    SemanticClass.BED: (0.08, 1.2),
     SemanticClass.SOFA: (0.32, 1.0),
     SemanticClass.CHAIR: (0.24, 1.15),
 }
+HEAD_M = 0.55  # How far pillows reach from the head of a bed.
 TOP_M = 0.06  # A plate's cells lie this near its height.
 
 # What has a say before what: the arms of an easy chair are plates too, and would pass for a box.
@@ -82,13 +83,34 @@ def _claimed(surface: Surface, plate: Plate, left: np.ndarray, kind: SemanticCla
     """Return the cells that go with a plate: a table's top alone, a closed box's whole body."""
     height = surface.points_m[..., 2]
     reach_m, top_m = REACH_M[kind]
-    around = grown(plate.footprint, surface.cells_of(reach_m))[:, :, None]
+    is_bed = kind == SemanticClass.BED
+    outline = _with_head(surface, plate, left) if is_bed else plate.footprint
+    around = grown(outline, surface.cells_of(reach_m))[:, :, None]
     reach = around & left & (height <= max(top_m, plate.height_m + TOP_M))
     if kind == SemanticClass.TABLE:
         return reach & (height >= plate.height_m - TOP_M)
     parts, _ = parts_of(reach)
     own = np.unique(parts[plate.mask & left])
     return reach & np.isin(parts, own[own > 0])
+
+
+def _with_head(surface: Surface, plate: Plate, left: np.ndarray) -> np.ndarray:
+    """Return a bed's outline with its head: pillows and a headboard rise along a whole side."""
+    first = surface.layers_below(plate.height_m + TOP_M)
+    risen = plan_of(left[:, :, first : surface.layers_below(REACH_M[SemanticClass.BED][1])])
+    rows, columns = np.nonzero(plate.footprint)
+    x, y = slice(rows.min(), rows.max() + 1), slice(columns.min(), columns.max() + 1)
+    more = surface.cells_of(HEAD_M)
+    result = plate.footprint.copy()
+    for beyond, axis in (
+        ((slice(max(x.start - more, 0), x.start), y), 0),
+        ((slice(x.stop, x.stop + more), y), 0),
+        ((x, slice(max(y.start - more, 0), y.start)), 1),
+        ((x, slice(y.stop, y.stop + more)), 1),
+    ):
+        if np.any(risen[beyond], axis=axis).mean() >= 0.6:
+            result[beyond] = True
+    return result
 
 
 def _stands_free(claimed: np.ndarray, left: np.ndarray) -> bool:

@@ -75,10 +75,13 @@ class PlateParameters:
     gate_m: half a default cell: two plates this near in height are one.
     box_share: of the seen cells under the rim of a closed box this share is surface; a table's
         rim has legs alone. Trial.
+    desk_height_m, desk_share: at a desk's height more is asked of a box: a desk has drawers on
+        one side and a panel at its back. Trial.
     seat_height_m, chair_length_m, chair_width_m, sofa_length_m, sofa_width_m: catalogue, of the
         seat that is seen.
     back_rise_m: where over a seat its back is looked for.
     back_share: a back takes this share of one side of its seat; slats leave gaps.
+    closed_seat_m: the highest seat of upholstery; a night table is higher.
     same_cloth: Oklab difference of seat and back of one upholstered thing; shades of one cloth
         are nearer, a screen on a board differs by 0.3. A guess.
     shelf_m, shelf_share: what stands this high over this share of a plate makes it a shelf's board.
@@ -89,6 +92,8 @@ class PlateParameters:
     area_m2: float = 0.07
     gate_m: float = 0.04
     box_share: float = 0.5
+    desk_height_m: Range = (0.66, 0.79)
+    desk_share: float = 0.7
     seat_height_m: Range = (0.32, 0.56)
     chair_length_m: float = 0.85
     chair_width_m: float = 0.2
@@ -96,6 +101,7 @@ class PlateParameters:
     sofa_width_m: Range = (0.35, 1.2)
     back_rise_m: Range = (0.2, 0.5)
     back_share: float = 0.6
+    closed_seat_m: float = 0.5
     same_cloth: float = 0.12
     shelf_m: Range = (1.25, 1.9)
     shelf_share: float = 0.3
@@ -124,6 +130,7 @@ class PieceParameters:
     back_height_m, back_length_m, back_thick_m, back_over_m, back_gap_m: a chair back at a table:
         its size, how far it rises over the table, how far from its rim it stands.
     under_table_m: a leg or an apron ends this far under a table's top at most.
+    hanging_m: what reaches no further off its wall is a curtain or a picture, no cupboard.
     leaf: Oklab a at most, b at least, of leaves. A guess.
     joining_bottom_m, joining_share: a low piece that touches a thing over this share is its side.
     screen_lightness: Oklab lightness of a dark screen. A guess.
@@ -148,6 +155,7 @@ class PieceParameters:
     back_over_m: float = 0.08
     back_gap_m: float = 0.48
     under_table_m: float = 0.16
+    hanging_m: float = 0.17
     leaf: Range = (-0.035, 0.02)
     joining_bottom_m: float = 0.5
     joining_share: float = 0.3

@@ -42,7 +42,8 @@ def class_of_plate(
         parameters: the thresholds.
     """
     height, area, width = plate.height_m, plate.area_m2, plate.width_m
-    closed = plate.rim_share >= parameters.box_share
+    desk_high = within(height, parameters.desk_height_m)
+    closed = plate.rim_share >= (parameters.desk_share if desk_high else parameters.box_share)
     seat = class_of_seat(surface, plate, left, closed, parameters)
     if seat is not None:
         return seat
@@ -80,7 +81,8 @@ def class_of_piece(piece: Piece, tables: list[Table], parameters: PieceParameter
         return SemanticClass.OBJS
     large = piece.long_m >= parameters.box_length_m and piece.tall_m >= parameters.box_height_m
     boxy = piece.flat_share >= parameters.flat_share and len(piece.at[0]) >= parameters.box_cells
-    return SemanticClass.FURN if large and boxy and piece.near_wall else SemanticClass.OBJS
+    deep = piece.near_wall and piece.off_wall_m > parameters.hanging_m
+    return SemanticClass.FURN if large and boxy and deep else SemanticClass.OBJS
 
 
 def _is_leg(piece: Piece, table: Table, parameters: PieceParameters) -> bool:

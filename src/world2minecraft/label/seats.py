@@ -29,7 +29,8 @@ def class_of_seat(
     ):
         return None
     share, contrast = back_of(surface, plate, left, parameters)
-    if share < parameters.back_share or (closed and contrast > parameters.same_cloth):
+    padded = contrast <= parameters.same_cloth and plate.height_m <= parameters.closed_seat_m
+    if share < parameters.back_share or (closed and not padded):
         return None
     if plate.length_m >= parameters.sofa_length_m:
         return SemanticClass.SOFA if within(plate.width_m, parameters.sofa_width_m) else None
