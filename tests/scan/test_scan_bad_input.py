@@ -260,6 +260,16 @@ def test_transforms_that_say_nonsense(tmp_path, views, change, words):
     _refused(tmp_path, words)
 
 
+def test_a_missing_image_is_listed_even_where_no_size_is_stated(tmp_path, box_room):
+    write_nerfstudio(tmp_path, box_room.views(8))
+    path = tmp_path / "transforms.json"
+    stated = json.loads(path.read_text())
+    del stated["w"], stated["h"]
+    path.write_text(json.dumps(stated))
+    (tmp_path / "images" / "000005.png").unlink()
+    assert open_scan(tmp_path).frames_skipped == (("000005", "000005.png is not there"),)
+
+
 @pytest.mark.parametrize("name", ["../secret.png", "/etc/passwd", "images/../../x.png", ""])
 def test_transforms_cannot_reach_out_of_the_folder(tmp_path, views, name):
     write_nerfstudio(tmp_path, views)

@@ -13,7 +13,7 @@ from world2minecraft.types import Camera, View
 DEPTH = Camera(320, 240, 270.0, 270.0, 160.0, 120.0)
 
 
-def _views(room, scale, shift, count=8):
+def _views(room, scale, shift, count=12):
     """Return views whose colour was taken with another lens while the depth's is stated."""
     lens = replace(DEPTH, fx_px=270 * scale, fy_px=270 * scale, cx_px=160 + shift, cy_px=120.0)
     for index, pose in enumerate(room.poses(count)):

@@ -20,6 +20,7 @@ from world2minecraft.types import View
 SIDE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
 HEIGHT_M = (1.5, 12.0)
 LEAST_POINTS = 500
+DECIMALS = 9
 ELBOW_M = (0.3, 0.3, 0.1)  # What a person needs behind and over a hand-held camera.
 
 
@@ -66,8 +67,9 @@ def align_surface(surface: Surface) -> Alignment:
     level_to_room[:3, 3] = -low_m
     size = high_m - low_m
     _check_size(size)
-    scan_to_room = level_to_room @ scan_to_level
-    return Alignment(scan_to_room, size, _notes(ground, box, size))
+    # Sums in another order, as with other threads, differ in the last bits; files must not.
+    scan_to_room = np.round(level_to_room @ scan_to_level, DECIMALS)
+    return Alignment(scan_to_room, np.round(size, DECIMALS), _notes(ground, box, size))
 
 
 def _turn_to_walls(level: Surface) -> np.ndarray:

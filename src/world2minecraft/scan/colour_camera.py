@@ -19,6 +19,7 @@ from world2minecraft.types import Camera, View
 WORK_WIDTH_PX = 320  # Shifts below are in pixels of a colour image of this width.
 BLUR_PX = 1.5  # So wide that the coarse steps below cannot pass a peak by.
 JUMP = 0.06  # Of the nearer depth: more than noise and slanted surfaces give between two pixels.
+MAX_HOLE_PX = 8  # A Kinect's shadows beside near things are wider; the rest suffices.
 POINTS_PER_MAP = 700
 SCALES = np.arange(0.80, 1.2001, 0.02)
 SHIFTS_PX = np.arange(-15.0, 15.1, 3.0)
@@ -112,12 +113,21 @@ def _frame_edges(view: View) -> _FrameEdges:
 
 
 def _jumps(depth_m: np.ndarray) -> np.ndarray:
-    """Return where depth jumps along rows, float64 [N, 2]: the borders' x and y in pixels."""
-    left, right = depth_m[:, :-1], depth_m[:, 1:]
-    near = np.minimum(left, right)
-    rows, columns = np.nonzero((near > 0) & (np.abs(left - right) > JUMP * near))
+    """Return where depth jumps along rows, float64 [N, 2]: the borders' x and y in pixels.
+
+    Sensors see nothing right at a border, so a jump may have a hole in it; the border is where
+    the nearer surface ends.
+    """
+    columns = np.arange(depth_m.shape[1], dtype=np.int32)
+    latest = np.maximum.accumulate(np.where(depth_m > 0, columns, -1), axis=1)[:, :-1]
+    left = np.take_along_axis(depth_m, np.maximum(latest, 0), axis=1)
+    right = depth_m[:, 1:]
+    near_by = (latest >= 0) & (columns[1:] - latest <= MAX_HOLE_PX) & (right > 0)
+    jumps = near_by & (np.abs(left - right) > JUMP * np.minimum(left, right))
+    rows, found = np.nonzero(jumps)
+    border = np.where(left[rows, found] < right[rows, found], latest[rows, found], found) + 1
     every = max(1, len(rows) // POINTS_PER_MAP)
-    return np.column_stack([columns[::every] + 1.0, rows[::every] + 0.5])
+    return np.column_stack([border[::every], rows[::every] + 0.5]).astype(np.float64)
 
 
 def _change(pixels: np.ndarray, axis: int) -> np.ndarray:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.coordinates import opengl_to_opencv_pose
-from world2minecraft.errors import CaptureError
+from world2minecraft.errors import CaptureError, InputError, LimitError
 from world2minecraft.files import read_json
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import SUFFIXES, read_header
@@ -63,8 +63,13 @@ def _frame(path: Path, stated: dict[str, Any], entry: Any, scale: float) -> Fram
     depth = entry.get("depth_file_path")
     depth_path = _inside(path, depth) if isinstance(depth, str) else None
     labels = path.parent / "labels" / f"{colour.stem}.png"
-    camera = _camera(path, {**stated, **entry}, colour)
     pose = _pose(path, entry, scale)
+    try:
+        camera = _camera(path, {**stated, **entry}, colour)
+    except (CaptureError, LimitError):
+        raise
+    except InputError as error:  # No size is stated and this one image does not tell it either.
+        return FrameFiles(colour.stem, pose, problem=f"{colour.name} {error.reason}")
     return FrameFiles(
         colour.stem,
         pose,
