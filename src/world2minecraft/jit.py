@@ -4,6 +4,7 @@ Import ``njit`` from here and never from numba, so that every kernel is cached, 
 and computes the same bits on every run (no fast-math).
 """
 
+import hashlib
 import os
 import sys
 from pathlib import Path
@@ -21,7 +22,22 @@ def user_cache_dir() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME", home / ".cache")) / "world2minecraft"
 
 
-os.environ.setdefault("NUMBA_CACHE_DIR", str(user_cache_dir() / "kernels"))
+def kernel_sources_digest() -> str:
+    """Return a digest of all files with kernels.
+
+    numba's cache sees a change of a kernel's own file, but not of the kernels it calls from
+    another; so each state of the sources has its own folder.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
+        source = path.read_bytes()
+        if b"import njit" in source:
+            digest.update(path.name.encode() + source)
+    return digest.hexdigest()[:16]
+
+
+KERNEL_CACHE = user_cache_dir() / "kernels" / kernel_sources_digest()
+os.environ.setdefault("NUMBA_CACHE_DIR", str(KERNEL_CACHE))
 
 import numba  # noqa: E402  # The cache folder must be named before numba is loaded.
 

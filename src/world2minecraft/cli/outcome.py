@@ -6,10 +6,9 @@ from typing import Any
 
 def compiling_note() -> None:
     """Say, once after installation, why the first run takes longer."""
-    from world2minecraft.jit import user_cache_dir
+    from world2minecraft.jit import KERNEL_CACHE
 
-    kernels = user_cache_dir() / "kernels"
-    if not kernels.is_dir() or not any(kernels.iterdir()):
+    if not KERNEL_CACHE.is_dir() or not any(KERNEL_CACHE.iterdir()):
         print("First run: compiling the inner loops, about 30 s; later runs start at once.")
 
 
