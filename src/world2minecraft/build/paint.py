@@ -132,4 +132,27 @@ def paint(
     medians, sizes = group_medians(parts, colours, len(few))
     weight = lightness_weight if match_weight is None else match_weight
     matched = costs_of(medians, candidates, weight, extra).argmin(1)
-    return np.where(sizes > 0, matched, few)[parts]
+    return _alike_as_one(matched, sizes, candidates, lightness_weight, noticed)[parts]
+
+
+def _alike_as_one(
+    blocks: np.ndarray,
+    sizes: np.ndarray,
+    candidates: Sequence[str],
+    lightness_weight: float,
+    noticed: float,
+) -> np.ndarray:
+    """Return the block of each part, a smaller part taking that of a larger one like it."""
+    offered = oklab_of_srgb(colours_of([candidates[index] for index in blocks]))
+    apart = np.sqrt(
+        costs_of(offered, [candidates[i] for i in blocks], lightness_weight, np.zeros(len(blocks)))
+    )
+    result = blocks.copy()
+    kept: list[int] = []
+    for part in np.lexsort((blocks, -sizes)).tolist():
+        alike = [other for other in kept if apart[part, other] < noticed]
+        if alike:
+            result[part] = result[alike[0]]
+        else:
+            kept.append(part)
+    return result

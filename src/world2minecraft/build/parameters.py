@@ -48,8 +48,8 @@ class BuildParameters:
     calm: the Oklab distance that a block gives up for each neighbour it agrees with. 0.04: about
         the noise of fused colours on one plain surface.
     face_share: the share of a block's face that structure must cover. 0.3: a wall seen in part.
-    object_share: the same for objects. 0.3: a chair leg, one cell wide, fills a third of a face
-        at 4 blocks a metre.
+    object_share: the same for objects. 0.25: a chair leg, one cell wide, fills a third of a face
+        at 4 blocks a metre, and less of its uppermost one.
     most_contradicted: the share of a template's blocks that may stand in space seen free. Above
         it the object is built from its own cells. 0.2: a guess, over what snapping alone does.
     close_tops: close the unseen holes in the tops of objects (glossy counters give no depth).
@@ -76,7 +76,7 @@ class BuildParameters:
     lightness_weight: float = 0.4
     calm: float = 0.04
     face_share: float = 0.3
-    object_share: float = 0.3
+    object_share: float = 0.25
     most_contradicted: float = 0.2
     close_tops: bool = True
     plane_reach_blocks: float = 0.75
