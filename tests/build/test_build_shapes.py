@@ -61,7 +61,7 @@ def lattice(scale):
 
 def shape_of(sketch, number, scale, shift=True):
     grid = sketch.grid()
-    return shape_of_cells(np.argwhere(grid.instance == number), grid, lattice(scale), 0.3, shift)
+    return shape_of_cells(np.argwhere(grid.instance == number), grid, lattice(scale), 0.25, shift)
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0, 4.0, 6.25])

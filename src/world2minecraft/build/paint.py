@@ -143,10 +143,9 @@ def _alike_as_one(
     noticed: float,
 ) -> np.ndarray:
     """Return the block of each part, a smaller part taking that of a larger one like it."""
-    offered = oklab_of_srgb(colours_of([candidates[index] for index in blocks]))
-    apart = np.sqrt(
-        costs_of(offered, [candidates[i] for i in blocks], lightness_weight, np.zeros(len(blocks)))
-    )
+    names = [str(candidates[index]) for index in blocks]
+    offered = oklab_of_srgb(colours_of(names))
+    apart = np.sqrt(costs_of(offered, names, lightness_weight, np.zeros(len(names))))
     result = blocks.copy()
     kept: list[int] = []
     for part in np.lexsort((blocks, -sizes)).tolist():
