@@ -24,7 +24,7 @@ from world2minecraft.occupy import predictor
 from world2minecraft.parameters import Parameters
 from world2minecraft.progress import Progress, silent
 from world2minecraft.run_folder import RunFolder, hash_capture
-from world2minecraft.scan import open_scan
+from world2minecraft.scan import open_scan, settled
 from world2minecraft.steps import LATER_STEPS
 from world2minecraft.types import Scan
 
@@ -65,6 +65,8 @@ def reconstruct(
         with run.stage("fuse"):
             views = predictor(chosen.predictor).predict(scan)
             write_evidence(run.path("evidence.npz"), fuse_views(views, scan, chosen.fuse, progress))
+            scan = settled(scan)
+            write_scan(run.path("scan.json"), scan)
     for stage, step in LATER_STEPS.items():
         if run.needs(stage):
             progress(stage, 0, 1)

@@ -154,7 +154,9 @@ def test_one_bad_frame_among_many_is_skipped_and_listed(good, tmp_path):
     capture, out = tmp_path / "capture", tmp_path / "OUT"
     shutil.copytree(good, capture)
     victim = images(capture, "depth")[2]
-    victim.write_bytes(victim.read_bytes()[:-400])
+    whole = bytearray(victim.read_bytes())
+    whole[len(whole) // 2] ^= 0xFF  # The header is whole: only decoding tells.
+    victim.write_bytes(whole)
     assert w2m(["reconstruct", str(capture), "--out", str(out)]) == 0
     skipped = json.loads((out / "scan.json").read_text())["frames_skipped"]
     assert [row["frame"] for row in skipped] == [victim.stem]

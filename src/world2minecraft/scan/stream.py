@@ -1,7 +1,7 @@
 """The views of a capture as a stream: each is decoded when its turn comes, and again next time."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from world2minecraft.errors import DamagedFileError, InputError
 from world2minecraft.scan.depth import DepthEncoding, read_depth
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.images import read_colour, read_raw
-from world2minecraft.types import View
+from world2minecraft.types import Scan, View
 
 
 @dataclass(eq=False, repr=False)
@@ -41,6 +41,20 @@ class CaptureViews:
                 self.damaged[frame.name] = str(error)
                 continue
             yield view
+
+
+def settled(scan: Scan) -> Scan:
+    """Return the scan with the frames that could not be decoded among those skipped.
+
+    Call it once its views have been read through.
+    """
+    damaged = getattr(scan.views, "damaged", {})
+    late = [(name, reason) for name, reason in damaged.items() if name in scan.frames_used]
+    return replace(
+        scan,
+        frames_used=tuple(name for name in scan.frames_used if name not in damaged),
+        frames_skipped=(*scan.frames_skipped, *late),
+    )
 
 
 def read_view(frame: FrameFiles, encoding: DepthEncoding) -> View:
