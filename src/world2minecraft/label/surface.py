@@ -20,6 +20,7 @@ class Surface:
     occupied: np.ndarray  # bool [X, Y, Z]
     free: np.ndarray  # bool [X, Y, Z]
     points_m: np.ndarray  # float32 [X, Y, Z, 3]
+    hits: np.ndarray  # float32 [X, Y, Z]: the points behind each mean, at least 1; 0 not occupied
     oklab: np.ndarray  # float32 [X, Y, Z, 3], 0 where not occupied
     voxel_m: float
     origin_m: np.ndarray
@@ -59,4 +60,5 @@ def surface_of(grid: OccupancyGrid, evidence: FusedEvidence) -> Surface:
     points[at] = cell_centers_m(cells, grid.origin_m, grid.voxel_m) + evidence.offset_sum[at] / hits
     oklab = np.zeros((*grid.shape, 3), np.float32)
     oklab[at] = oklab_of_srgb(grid.colour[at])
-    return Surface(occupied, grid.labels == 0, points, oklab, grid.voxel_m, grid.origin_m)
+    weight = np.where(occupied, np.maximum(evidence.hits, 1), 0).astype(np.float32)
+    return Surface(occupied, grid.labels == 0, points, weight, oklab, grid.voxel_m, grid.origin_m)
