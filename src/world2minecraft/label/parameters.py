@@ -159,7 +159,7 @@ class PieceParameters:
     leaf: Range = (-0.035, 0.02)
     joining_bottom_m: float = 0.5
     joining_share: float = 0.3
-    screen_lightness: float = 0.45
+    screen_lightness: float = 0.38
     screen_before_m: Range = (0.045, 0.32)
     screen_bottom_m: float = 0.45
     screen_width_m: Range = (0.4, 1.9)
