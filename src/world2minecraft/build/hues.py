@@ -16,6 +16,8 @@ GREY_CHROMA, CAST_LIMIT = 0.05, 1.15
 LEAST_CELLS = 50
 # Chroma under which a colour is a grey with a cast, and from which it is meant.
 FAINT_CHROMA, CLEAR_CHROMA = 0.02, 0.06
+# Wood lies within these degrees of hue; red begins where they fade out.
+WOOD_HUE, WOOD_REACH, WOOD_FADE = 65.0, 20.0, 10.0
 NEAR_BLOCKS = 2.0  # So far a block that nobody saw takes the colour of the nearest that was seen.
 
 
@@ -42,9 +44,23 @@ def cell_colours(grid: OccupancyGrid, expose: bool, saturation: float) -> np.nda
         result[seen] = oklab_of_linear(np.clip(linear * gains_of(linear), 0, 1))
     else:
         result[seen] = oklab_of_srgb(colours)
-    chroma = np.hypot(result[..., 1], result[..., 2])
+    result[seen] = strengthened(result[seen], saturation)
+    return result
+
+
+def strengthened(oklab: np.ndarray, saturation: float) -> np.ndarray:
+    """Return Oklab colours, float32 [N, 3], with the chroma of clear ones multiplied.
+
+    Greys stay as they are, and so do the hues of wood, which a stronger chroma turns into those
+    of bricks and oranges.
+    """
+    chroma = np.hypot(oklab[:, 1], oklab[:, 2])
     clear = np.clip((chroma - FAINT_CHROMA) / (CLEAR_CHROMA - FAINT_CHROMA), 0, 1)
-    result[..., 1:] *= (1 + (saturation - 1) * clear)[..., None]
+    hue = np.degrees(np.arctan2(oklab[:, 2], oklab[:, 1]))
+    off_wood = np.abs((hue - WOOD_HUE + 180) % 360 - 180)
+    clear *= np.clip((off_wood - WOOD_REACH) / WOOD_FADE, 0, 1)
+    result = oklab.astype(np.float32)
+    result[:, 1:] *= (1 + (saturation - 1) * clear)[:, None]
     return result
 
 

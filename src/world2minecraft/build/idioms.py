@@ -43,11 +43,10 @@ OWN_COLOUR = 0.1  # Oklab distance up to which a design's full block keeps its o
 
 
 class Thing(NamedTuple):
-    """Whose blocks are set, and how many different ones a surface of it may have."""
+    """Whose blocks are set."""
 
     class_id: int
     instance: int
-    most_colours: int
 
 
 def idiom_box(

@@ -8,6 +8,7 @@ import numpy as np
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.cells import shape_of_cells, without_crumbs
 from world2minecraft.build.halves import FULL, slab_states
+from world2minecraft.build.hues import default_colour, spread
 from world2minecraft.build.idioms import Thing, idiom_box, put_idiom
 from world2minecraft.build.lattice import volume_shares
 from world2minecraft.build.morphology import beside
@@ -22,7 +23,6 @@ from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
 
 CELLS = "cells"
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
-PART_COLOURS = 2  # Of one part of a template: a top with something on it.
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 
 
@@ -93,7 +93,7 @@ class ObjectBuilder:
             halves = np.where((halves > 0) & window.wall, FULL, halves * window.free)
         else:
             halves = without_crumbs(halves * window.free, window.held)
-        thing = Thing(class_id, number, self.parameters.object_colours)
+        thing = Thing(class_id, number)
         self._put_halves(window.low, halves, Hues(hues, shape.blocks), thing)
 
     def put_template(self, placement: Placement, cells: np.ndarray) -> bool:
@@ -102,7 +102,7 @@ class ObjectBuilder:
         Returns:
             False where its parts would stand in space that was seen free: nothing is set then.
         """
-        thing = Thing(placement.class_id, placement.object_id, PART_COLOURS)
+        thing = Thing(placement.class_id, placement.object_id)
         found = idiom(placement, self.lattice.blocks_per_metre)
         if found is not None:
             low, size = idiom_box(found, placement, self.lattice)
@@ -184,20 +184,31 @@ class ObjectBuilder:
         part: np.ndarray | None = None,
         posts: np.ndarray | None = None,
     ) -> None:
-        """Paint half blocks [X, Y, Z] at ``low``, each part of a thing by itself, and set them."""
+        """Paint half blocks [X, Y, Z] at ``low`` and set them.
+
+        A block without a colour of its own takes that of its part: a seat's that of the seat.
+        """
         filled = halves > 0
         if not filled.any():
             return
         tinted, known = block_colours(halves.shape, hues.blocks - low, *self._coloured(hues))
         states = np.empty(halves.shape, object)
         groups = filled.astype(np.int16) if part is None else np.where(filled, part, 0)
+        default = default_colour(self.palette.defaults[thing.class_id])
+        colours = tinted.copy()
         for group in np.unique(groups[filled]):
             mask = groups == group
             usable = known & (mask if (known & mask).any() else filled)
-            lent = _borrowed(tinted, usable, mask)
-            states[mask] = painted(
-                mask, *lent, thing.class_id, self.palette, self.parameters, thing.most_colours
-            )
+            colours[mask] = spread(tinted, usable, mask, default)
+        states[filled] = painted(
+            filled,
+            colours,
+            filled & known.any(),
+            thing.class_id,
+            self.palette,
+            self.parameters,
+            self.parameters.object_colours,
+        )
         margin = self.parameters.slab_margin
         states[filled] = slab_states(states[filled], halves[filled], self.palette.slabs, margin)
         if posts is not None:
@@ -233,14 +244,3 @@ def _is_flush(filled: np.ndarray, window: Window) -> bool:
 
 def _order(placement: Placement) -> tuple:
     return placement.object_id, placement.center_m.tolist(), placement.template
-
-
-def _borrowed(
-    colours: np.ndarray, usable: np.ndarray, mask: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return colours and where they hold, so that a part without its own takes its object's."""
-    if (usable & mask).any() or not usable.any():
-        return colours, usable
-    lent = colours.copy()
-    lent[mask] = np.median(colours[usable], axis=0)
-    return lent, mask

@@ -17,6 +17,7 @@ from world2minecraft.minecraft.colours import colours_of
 LEAST_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
 LEAST_BLOCKS = 3.0
 ROUNDS = 4
+SAME_PAINT = 0.06  # Oklab distance of two medians of one paint: about the noise of fused colours.
 MAX_DISTANCES = 1 << 24  # Blocks times candidates held at once: 64 MB.
 
 
@@ -129,29 +130,38 @@ def paint(
     few = choose_few(sample, most, noticed)
     offered = [str(candidates[index]) for index in few]
     parts = calm(costs_of(colours, offered, lightness_weight, extra[few]), positions, calm_step)
-    medians, sizes = group_medians(parts, colours, len(few))
     weight = lightness_weight if match_weight is None else match_weight
-    matched = costs_of(medians, candidates, weight, extra).argmin(1)
-    return _alike_as_one(matched, sizes, candidates, lightness_weight, noticed)[parts]
+    parts = _joined(parts, colours, len(few), lightness_weight, SAME_PAINT)
+    matched = _matched(parts, colours, candidates, weight, extra)
+    shown = oklab_of_srgb(colours_of([str(candidates[index]) for index in matched]))
+    parts = _joined(parts, shown[parts], len(few), lightness_weight, noticed)
+    return _matched(parts, colours, candidates, weight, extra)[parts]
 
 
-def _alike_as_one(
-    blocks: np.ndarray,
-    sizes: np.ndarray,
+def _matched(
+    parts: np.ndarray,
+    colours: np.ndarray,
     candidates: Sequence[str],
-    lightness_weight: float,
-    noticed: float,
+    weight: float,
+    handicaps: np.ndarray,
 ) -> np.ndarray:
-    """Return the block of each part, a smaller part taking that of a larger one like it."""
-    names = [str(candidates[index]) for index in blocks]
-    offered = oklab_of_srgb(colours_of(names))
-    apart = np.sqrt(costs_of(offered, names, lightness_weight, np.zeros(len(names))))
-    result = blocks.copy()
+    """Return the candidate nearest to the median of each part, intp [parts]."""
+    medians, _ = group_medians(parts, colours, int(parts.max()) + 1)
+    return costs_of(medians, candidates, weight, handicaps).argmin(1)
+
+
+def _joined(
+    parts: np.ndarray, colours: np.ndarray, count: int, lightness_weight: float, noticed: float
+) -> np.ndarray:
+    """Return the parts, int [N], a smaller one named as a larger one that looks like it."""
+    medians, sizes = group_medians(parts, colours, count)
+    medians[:, 0] *= np.sqrt(lightness_weight)
+    result = np.arange(count)
     kept: list[int] = []
-    for part in np.lexsort((blocks, -sizes)).tolist():
-        alike = [other for other in kept if apart[part, other] < noticed]
+    for part in np.argsort(-sizes, kind="stable").tolist():
+        alike = [k for k in kept if np.linalg.norm(medians[part] - medians[k]) < noticed]
         if alike:
-            result[part] = result[alike[0]]
+            result[part] = alike[0]
         else:
             kept.append(part)
-    return result
+    return result[parts]

@@ -32,7 +32,7 @@ class BuildParameters:
     structure_colours: at most so many blocks a wall, the floor or the ceiling. 3: a wall, its
         skirting and one thing on it; more looked like noise.
     object_colours: at most so many blocks an object. 6: a shelf with things on it.
-    saturation: how much clear colours are strengthened. 1.3: haze, glare and the mixing of
+    saturation: how much clear colours are strengthened. 1.2: haze, glare and the mixing of
         neighbouring things in a cell wash colours out; the kitchen's reds came out purple.
     preference: the Oklab distance by which a block of the palette's preferred groups may lie
         farther off. 0.02: one barely visible step, so that a table is of wood.
@@ -68,7 +68,7 @@ class BuildParameters:
     expose: bool = True
     structure_colours: int = 3
     object_colours: int = 6
-    saturation: float = 1.3
+    saturation: float = 1.2
     preference: float = 0.02
     structure_lightness_weight: float = 0.05
     structure_noticed: float = 0.12
