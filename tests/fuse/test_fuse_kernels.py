@@ -1,5 +1,7 @@
 """The fast kernels against a slow reading of the same rules."""
 
+import itertools
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -83,7 +85,7 @@ def crossed(camera, target, clear):
     # The walk goes on past the target's cell edge; one more cut stands for the cell it ends in.
     cells = set()
     cuts = sorted(t for t in cuts if 0 <= t <= length)
-    for near, far in zip(cuts[:-1], cuts[1:], strict=True):
+    for near, far in itertools.pairwise(cuts):
         if far - near > 1e-12 and (near + far) / 2 < length - clear:
             cells.add(tuple(np.floor(camera + way * (near + far) / 2).astype(int)))
     return cells

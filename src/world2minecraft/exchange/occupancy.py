@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.classes import SemanticClass
 from world2minecraft.errors import DamagedFileError, InputError
 from world2minecraft.exchange.paper import read_occ_json
 from world2minecraft.exchange.room import GRID_ARRAYS, read_room
@@ -85,10 +86,10 @@ def inner_corner_m(grid: OccupancyGrid) -> np.ndarray:
     It is the inner face of the outermost wall layers; where there is no wall, the outermost
     occupied cells.
     """
-    walls = (grid.labels == 3).sum(axis=2)
-    occupied = grid.occupied.any(axis=2)
-    x_cell = _inner_cell(walls.sum(axis=1), occupied.any(axis=1))
-    y_cell = _inner_cell(walls.sum(axis=0)[::-1], occupied.any(axis=0)[::-1])
+    walls = np.equal(grid.labels, SemanticClass.WALL)
+    occupied = grid.occupied
+    x_cell = _inner_cell(walls.sum(axis=(1, 2)), np.asarray(occupied.any(axis=(1, 2))))
+    y_cell = _inner_cell(walls.sum(axis=(0, 2))[::-1], np.asarray(occupied.any(axis=(0, 2)))[::-1])
     cells = np.array([x_cell, grid.shape[1] - y_cell])
     return np.round(grid.origin_m[:2] / grid.voxel_m + cells) * grid.voxel_m
 

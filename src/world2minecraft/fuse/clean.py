@@ -10,9 +10,8 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.types import COMPLETED, OccupancyGrid
-
-FULL_NEIGHBOURHOOD = np.ones((3, 3, 3), bool)
 
 
 @dataclass(frozen=True)
@@ -32,7 +31,7 @@ class CleanParameters:
 
 def remove_floaters(grid: OccupancyGrid, parameters: CleanParameters) -> OccupancyGrid:
     """Return the grid with small parts that touch nothing, not even by a corner, made free."""
-    parts, count = ndimage.label(grid.occupied, structure=FULL_NEIGHBOURHOOD)
+    parts, count = connected_parts(grid.occupied)
     sizes = np.bincount(parts.reshape(-1), minlength=count + 1)
     small = sizes < parameters.floater_cells
     small[0] = False
@@ -86,7 +85,6 @@ def _holes(layer: np.ndarray, class_id: int, hole_cells: float) -> np.ndarray:
 
 def _nearest_colour(grid: OccupancyGrid, at: tuple, class_id: int) -> np.ndarray:
     """Return, for each cell of a layer, the colour of the nearest cell of the class in it."""
-    _, nearest = ndimage.distance_transform_edt(
-        grid.labels[at] != class_id, return_distances=True, return_indices=True
-    )
-    return grid.colour[at][tuple(nearest)]
+    elsewhere = grid.labels[at] != class_id
+    nearest = ndimage.distance_transform_edt(elsewhere, return_distances=False, return_indices=True)
+    return grid.colour[at][tuple(np.asarray(nearest))]

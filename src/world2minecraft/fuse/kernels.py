@@ -32,8 +32,8 @@ def to_cells(points_m, scan_to_cells):
 
 @njit
 def add_points(
-    points, weight, colour, votes, camera, low, parameters, log_odds, all_votes, colour_sum, offset_sum,
-    hits, slots,
+    points, weight, colour, votes, camera, low, parameters, log_odds, all_votes, colour_sum,
+    offset_sum, hits, slots,
 ):  # fmt: skip
     """Add one view's points to the map's arrays, in place.
 

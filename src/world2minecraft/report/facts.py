@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.coordinates import apply, cell_centers_m, invert
 from world2minecraft.geometry.planes import LevelPlane, level_planes
 from world2minecraft.metrics.layout import collisions, floaters, out_of_bounds
@@ -31,6 +31,9 @@ def scene_facts(scene: FinishedScene) -> dict[str, Any]:
         "objects": object_rows(scene),
         "built": built_shares(scene),
         "layout": layout_facts(scene),
+        "object_cells_without_object": int(
+            (np.isin(scene.grid.labels, OBJECT_CLASSES) & (scene.grid.instance == 0)).sum()
+        ),
         "blocks": int((scene.volume.states > 0).sum()),
         "blocks_per_metre": scene.volume.blocks_per_metre,
     }
@@ -76,7 +79,8 @@ def surface_explained(scene: FinishedScene) -> dict[str, float]:
 def in_solid_block(volume: BlockVolume, points_m: np.ndarray) -> np.ndarray:
     """Return which room points [N, 3] lie in a cell of the volume that is not air."""
     blocks = np.floor(apply(invert(volume.block_to_room), points_m) - volume.corner + 1e-9)
-    inside = ((blocks >= 0) & (blocks < volume.states.shape)).all(axis=1)
+    shape = np.array(volume.states.shape)
+    inside = np.asarray(((blocks >= 0) & (blocks < shape)).all(axis=1))
     at = np.where(inside[:, None], blocks, 0).astype(np.int64)
     is_air = np.array(["air" in name or "light[" in name for name in volume.palette])
     return inside & ~is_air[volume.states[tuple(at.T)]]
