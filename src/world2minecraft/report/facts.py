@@ -34,7 +34,7 @@ def scene_facts(scene: FinishedScene) -> dict[str, Any]:
         "object_cells_without_object": int(
             (np.isin(scene.grid.labels, OBJECT_CLASSES) & (scene.grid.instance == 0)).sum()
         ),
-        "blocks": int((scene.volume.states > 0).sum()),
+        "blocks": int((scene.volume.semantic > 0).sum()),
         "blocks_per_metre": scene.volume.blocks_per_metre,
     }
 
@@ -77,13 +77,15 @@ def surface_explained(scene: FinishedScene) -> dict[str, float]:
 
 
 def in_solid_block(volume: BlockVolume, points_m: np.ndarray) -> np.ndarray:
-    """Return which room points [N, 3] lie in a cell of the volume that is not air."""
+    """Return which room points [N, 3] lie in a block that stands for something.
+
+    Invisible lights and barriers have no class, and do not count.
+    """
     blocks = np.floor(apply(invert(volume.block_to_room), points_m) - volume.corner + 1e-9)
     shape = np.array(volume.states.shape)
     inside = np.asarray(((blocks >= 0) & (blocks < shape)).all(axis=1))
     at = np.where(inside[:, None], blocks, 0).astype(np.int64)
-    is_air = np.array(["air" in name or "light[" in name for name in volume.palette])
-    return inside & ~is_air[volume.states[tuple(at.T)]]
+    return inside & (volume.semantic[tuple(at.T)] > 0)
 
 
 def object_rows(scene: FinishedScene) -> list[dict[str, Any]]:
