@@ -21,7 +21,7 @@ class Parameters:
     """What decides a result, beside the capture.
 
     voxel_m: the paper's cell. blocks_per_metre: at 4 a room is recognised at once, at 2 it is
-    not (reference/fit). labeller: ``auto`` takes ``votes`` where the capture has 2D labels, else
+    not. labeller: ``auto`` takes ``votes`` where the capture has 2D labels, else
     ``geometric``.
     """
 

@@ -21,12 +21,12 @@ class CleanParameters:
     floater_cells: a part joined to nothing with fewer cells is noise: 6 cells are 24 x 16 x 8 cm,
         less than a cup with its saucer gives.
     hole_m: holes up to this width are closed; a wider one may be a door or an unseen corner. At
-        0.8 one completed cell in forty of the shared kitchen stood in free space, at 0.5 one in
-        a hundred.
+        0.64, 0.4 and 0.32 m the precision of the shared kitchen's cells, completed ones counted,
+        is 0.988, 0.990 and 0.997.
     """
 
     floater_cells: int = 6
-    hole_m: float = 0.5
+    hole_m: float = 0.32
 
 
 def remove_floaters(grid: OccupancyGrid, parameters: CleanParameters) -> OccupancyGrid:
@@ -76,10 +76,9 @@ def structure_layers(mask: np.ndarray, axis: int) -> list[int]:
 
 def _holes(layer: np.ndarray, class_id: int, hole_cells: float) -> np.ndarray:
     """Return the unknown cells of a layer [A, B] that closing by ``hole_cells`` covers."""
-    reach = max(round(hole_cells / 2), 1)
-    present = np.pad(layer == class_id, reach)
-    square = np.ones((2 * reach + 1, 2 * reach + 1), bool)
-    closed = ndimage.binary_closing(present, square)[reach:-reach, reach:-reach]
+    side = int(hole_cells + 1e-6) + 1  # A square closes what is narrower than itself.
+    present = np.pad(layer == class_id, side)
+    closed = ndimage.binary_closing(present, np.ones((side, side), bool))[side:-side, side:-side]
     return closed & (layer == UNKNOWN)
 
 
