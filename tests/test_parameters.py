@@ -1,0 +1,59 @@
+"""Parameters: one truth for every default, and settings that teach."""
+
+import pytest
+
+from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.parameters import Parameters, parameter_keys, with_settings
+
+
+def test_every_key_can_be_set_to_its_own_value():
+    parameters = Parameters()
+    for key in parameter_keys():
+        value = parameters
+        for name in key.split("."):
+            value = getattr(value, name)
+        if value is not None:
+            again = with_settings(parameters, [f"{key}={value}"])
+            assert again.as_json() == parameters.as_json(), key
+
+
+def test_settings_reach_their_stage():
+    changed = with_settings(
+        Parameters(),
+        ["fuse.min_points=5", "find.cluster_radius=3.5", "build.ceiling=no", "clean.hole_m = 0.2"],
+    )
+    assert changed.fuse.min_points == 5 and changed.find.cluster_radius == 3.5
+    assert changed.build.ceiling is False and changed.clean.hole_m == 0.2
+    assert Parameters().fuse.min_points == 2, "the defaults stay"
+
+
+def test_the_voxel_is_said_once():
+    assert Parameters(voxel_m=0.04).fuse.voxel_m == 0.04
+    assert with_settings(Parameters(), ["voxel_m=0.1"]).fuse.voxel_m == 0.1
+
+
+def test_capture_options_are_handed_on_as_they_are():
+    changed = with_settings(Parameters(), ["capture.depth_unit=mm", "capture.every=2"])
+    assert changed.capture == {"depth_unit": "mm", "every": "2"}
+
+
+@pytest.mark.parametrize(
+    ("setting", "text"),
+    [
+        ("fuse.nudge", "no parameter is named 'fuse.nudge'; did you mean 'fuse.nudge_m'?"),
+        ("fuse", "--set takes key=value, not 'fuse'"),
+        ("fuse=3", "no parameter is named 'fuse'; "),
+        ("fuse.min_points=two", "--set fuse.min_points takes a int such as 2, not 'two'"),
+        ("build.ceiling=maybe", "--set build.ceiling takes a bool such as True, not 'maybe'"),
+        ("voxel_m=9", "voxel_m must be 0.01 to 0.5 m, not 9.0"),
+        ("mc_version=1.99", "1.99"),
+        ("labeller=geometry", "no labeller is named 'geometry'; did you mean 'geometric'?"),
+        ("predictor=deep", "no predictor is named 'deep'"),
+        ("build.edge=lava", "build.edge must be barrier or none, not 'lava'"),
+    ],
+)
+def test_a_wrong_setting_says_what_is_right(setting, text):
+    words = [setting if "=" in setting or setting == "fuse" else f"{setting}=1"]
+    with pytest.raises((UsageError, UnknownNameError)) as caught:
+        with_settings(Parameters(), words)
+    assert text in str(caught.value)
