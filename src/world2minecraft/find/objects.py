@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import cell_centers_m
 from world2minecraft.errors import UsageError
 from world2minecraft.find.clusters import cluster_candidates
@@ -16,6 +17,8 @@ from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.types import ObjectInstance, OccupancyGrid
 
 MAX_OBJECTS = 65535
+STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
+STANDS_BELOW_M = 1.0  # What begins higher stands on something else; a chair's back does not.
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +66,7 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
             min_cells=chosen.min_cells,
             join_radius=chosen.join_radius,
         )
-    instances = _instances(grid, owners)
+    instances = _instances(grid, owners, reach_down=not chosen.paper_compat)
     marked = np.zeros(grid.shape, np.uint16)
     for instance in instances:
         marked[tuple(instance.cells.T)] = instance.id
@@ -72,7 +75,9 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
     return Found(replace(grid, instance=marked), instances, centers, leftover)
 
 
-def _instances(grid: OccupancyGrid, owners: np.ndarray) -> tuple[ObjectInstance, ...]:
+def _instances(
+    grid: OccupancyGrid, owners: np.ndarray, *, reach_down: bool
+) -> tuple[ObjectInstance, ...]:
     cells = np.argwhere(owners).astype(np.int32)
     numbers = owners[tuple(cells.T)]
     order = np.argsort(numbers, kind="stable")
@@ -82,7 +87,7 @@ def _instances(grid: OccupancyGrid, owners: np.ndarray) -> tuple[ObjectInstance,
         raise UsageError(f"{len(groups):,} objects are too many; raise find.min_cells")
     around = surroundings(grid.labels)
     return tuple(
-        _instance(number, grid, group, around)
+        _instance(number, grid, group, around, reach_down)
         for number, group in enumerate(sorted(groups, key=lambda g: _rank(grid, g)), start=1)
     )
 
@@ -93,13 +98,29 @@ def _rank(grid: OccupancyGrid, cells: np.ndarray) -> tuple[int, ...]:
     return (int(grid.labels[first]), *(int(value) for value in middle), *first)
 
 
+def _box_m(grid: OccupancyGrid, cells: np.ndarray, class_id: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the low corner and the size, both float64 [3], of an object's box in metres.
+
+    What always stands on the floor reaches down to it, whatever was seen of its lower part: of a
+    chair at a table often only the back is seen, and a table's legs are taken for a chair's.
+    """
+    low = cell_centers_m(cells.min(axis=0), grid.origin_m, grid.voxel_m) - grid.voxel_m / 2
+    high = low + (np.ptp(cells, axis=0) + 1) * grid.voxel_m
+    if class_id in STANDING and 0 < low[2] <= STANDS_BELOW_M:
+        low[2] = 0.0
+    return low, high - low
+
+
 def _instance(
-    number: int, grid: OccupancyGrid, cells: np.ndarray, around: Surroundings
+    number: int,
+    grid: OccupancyGrid,
+    cells: np.ndarray,
+    around: Surroundings,
+    reach_down: bool,
 ) -> ObjectInstance:
     class_id = int(grid.labels[tuple(cells[0])])
     front = facing(cells, class_id, around)
-    low = cell_centers_m(cells.min(axis=0), grid.origin_m, grid.voxel_m) - grid.voxel_m / 2
-    size = (np.ptp(cells, axis=0) + 1) * grid.voxel_m
+    low, size = _box_m(grid, cells, class_id if reach_down else 0)
     own_axes = size[[1, 0, 2]] if front.quarter_turns % 2 else size
     votes = float(grid.confidence[tuple(cells.T)].astype(np.float64).mean())
     return ObjectInstance(

@@ -125,6 +125,13 @@ def _joined_class(
     """Return the class of the thing whose side a piece is: low, and touching it over a third."""
     if piece.low_m[2] > parameters.pieces.joining_bottom_m:
         return None
-    shares = {kind: float(touched[piece.at].mean()) for kind, touched in contact.items()}
+    # A curtain beside an easy chair is no side of it.
+    shares = {
+        kind: float(touched[piece.at].mean())
+        for kind, touched in contact.items()
+        if kind == SemanticClass.FURN or piece.high_m[2] <= REACH_M[kind][1]
+    }
+    if not shares:
+        return None
     best = max(shares, key=lambda kind: shares[kind])
     return best if shares[best] >= parameters.pieces.joining_share else None

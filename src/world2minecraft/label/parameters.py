@@ -152,7 +152,7 @@ class PieceParameters:
     back_height_m: float = 0.1
     back_length_m: Range = (0.25, 0.65)
     back_thick_m: float = 0.4
-    back_over_m: float = 0.08
+    back_over_m: float = 0.05
     back_gap_m: float = 0.48
     under_table_m: float = 0.16
     hanging_m: float = 0.17

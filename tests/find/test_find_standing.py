@@ -1,0 +1,48 @@
+"""What always stands on the floor has a box that reaches it, however little of it was seen."""
+
+import numpy as np
+import pytest
+
+from world2minecraft.classes import SemanticClass
+from world2minecraft.find import FindParameters, find_objects
+from world2minecraft.types import OccupancyGrid
+
+TOP = (slice(10, 26), slice(8, 20), slice(9, 11))
+
+
+def _found(class_id, at=TOP, **changed):
+    labels = np.zeros((36, 30, 24), np.uint8)
+    labels[:, :, 0] = SemanticClass.FLOOR
+    labels[at] = class_id
+    grid = OccupancyGrid(
+        labels=labels,
+        confidence=np.full(labels.shape, 0.5, np.float16),
+        colour=np.zeros((*labels.shape, 3), np.uint8),
+        source=np.ones(labels.shape, np.uint8),
+        instance=np.zeros(labels.shape, np.uint16),
+        voxel_m=0.08,
+        origin_m=np.array([0.0, 0.0, -0.08]),
+    )
+    (instance,) = find_objects(grid, FindParameters(**changed)).instances
+    return instance
+
+
+@pytest.mark.parametrize("class_id", [SemanticClass.TABLE, SemanticClass.CHAIR])
+def test_a_table_top_without_legs_is_a_table_of_full_height(class_id):
+    found = _found(class_id)
+    np.testing.assert_allclose([found.center_m[2], found.size_m[2]], [0.4, 0.8])
+    assert len(found.cells) == 16 * 12 * 2
+
+
+def test_a_thing_and_a_hung_cupboard_stay_where_they_are():
+    for class_id in (SemanticClass.OBJS, SemanticClass.FURN, SemanticClass.TVS):
+        np.testing.assert_allclose(_found(class_id).size_m[2], 0.16)
+
+
+def test_what_begins_above_a_metre_stands_on_something_else():
+    found = _found(SemanticClass.CHAIR, (slice(10, 16), slice(8, 14), slice(15, 20)))
+    np.testing.assert_allclose(found.size_m[2], 0.4)
+
+
+def test_the_papers_steps_alone_add_nothing():
+    np.testing.assert_allclose(_found(SemanticClass.TABLE, paper_compat=True).size_m[2], 0.16)
