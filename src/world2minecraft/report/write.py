@@ -17,6 +17,8 @@ from world2minecraft.report.scene import read_finished
 from world2minecraft.report.truth import truth_facts
 from world2minecraft.types import Scan
 
+PLAN_PX = 720
+
 
 def write_report(
     folder: Path, scan: Scan, *, truth: Path | None = None, progress: Progress = silent
@@ -43,7 +45,9 @@ def write_report(
         {"view": p.name, "depth_error_m": p.depth_error_m, "depth_agrees": p.depth_agrees}
         for p in pairs
     ]
-    outside, plan = preview(scene.volume), plan_view(scene.volume)
+    across = max(scene.volume.states.shape[0], scene.volume.states.shape[2])
+    plan = plan_view(scene.volume, px_per_block=max(PLAN_PX // across, 2))
+    outside = preview(scene.volume)
     progress("report", 2, 3, "page")
     write_bytes(folder / "preview.png", as_png(outside))
     write_json(folder / "report.json", facts)
