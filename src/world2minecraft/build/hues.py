@@ -12,7 +12,7 @@ from world2minecraft.types import OccupancyGrid
 BRIGHT_LIGHT, BRIGHT_QUANTILE = 0.6, 0.95
 GAIN_LIMIT = 1.8
 # White balance: bright cells that are nearly grey are taken for grey.
-GREY_CHROMA, CAST_LIMIT = 0.05, 1.15
+GREY_CHROMA, CAST_LIMIT = 0.05, 1.1
 LEAST_CELLS = 50
 # Chroma under which a colour is a grey with a cast, and from which it is meant.
 FAINT_CHROMA, CLEAR_CHROMA = 0.02, 0.06

@@ -3,12 +3,15 @@
 import numpy as np
 
 from world2minecraft.build.canvas import BARRIER, Canvas
+from world2minecraft.build.hues import spread
 from world2minecraft.build.morphology import grown
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
+from world2minecraft.build.standout import PICTURE, RUG, standing_out
 from world2minecraft.build.structure import CEILING, FLOOR, WALL, WINDOW, Shell
 from world2minecraft.build.surfaces import block_colours, painted, put_painted
 
+STAND_OUT = {WALL: PICTURE, FLOOR: RUG}
 LEAST_PATCH = 12  # Blocks; smaller patches take their colours from the walls as a whole.
 
 
@@ -33,19 +36,51 @@ def put_shell(
     at = tuple(shell.cells.T)
     tinted, known = block_colours(canvas.states.shape, shell.blocks, colours[at], coloured[at])
     for mask, class_id in ((shell.ceiling, CEILING), (shell.walls, WALL), (shell.floor, FLOOR)):
-        for patch in _patches(mask, shell.patches):
-            states = painted(
-                patch,
-                tinted,
-                known & mask,
-                class_id,
-                palette,
-                parameters,
-                parameters.structure_colours,
-            )
-            put_painted(canvas, patch, states, class_id)
+        source = (tinted, known & mask, class_id, palette, parameters)
+        used: frozenset[str] = frozenset()
+        for patch in sorted(_patches(mask, shell.patches), key=lambda patch: -int(patch.sum())):
+            used |= _put_surface(canvas, patch, used, *source)
     _put_windows(canvas, shell.windows, palette)
     _name_foundations(canvas)
+
+
+def _put_surface(
+    canvas: Canvas,
+    patch: np.ndarray,
+    used: frozenset[str],
+    tinted: np.ndarray,
+    known: np.ndarray,
+    class_id: int,
+    palette: Palette,
+    parameters: BuildParameters,
+) -> frozenset[str]:
+    """Set a surface, and on it, in blocks of their own, what stands out from it.
+
+    Returns:
+        The blocks of the surface itself.
+    """
+    parts = np.zeros(patch.shape, np.int32)
+    if class_id in STAND_OUT and (known & patch).any():
+        step_m = 1 / canvas.lattice.blocks_per_metre
+        colours = spread(tinted, known & patch, patch, np.zeros(3, np.float32))
+        parts[patch] = standing_out(patch, colours, step_m, STAND_OUT[class_id])
+    around: frozenset[str] = frozenset()
+    for part in np.unique(parts[patch]).tolist():
+        mask = patch & (parts == part)
+        states = painted(
+            mask,
+            tinted,
+            known & (mask if (known & mask).any() else patch),
+            class_id,
+            palette,
+            parameters,
+            parameters.structure_colours,
+            beside=around,
+            used=used,
+        )
+        put_painted(canvas, mask, states, class_id)
+        around = around or frozenset(states.tolist())
+    return around
 
 
 def _patches(mask: np.ndarray, numbers: np.ndarray):

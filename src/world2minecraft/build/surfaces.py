@@ -8,6 +8,11 @@ from world2minecraft.build.paint import paint
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.classes import STRUCTURE_CLASSES
+from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.minecraft.colours import colours_of
+
+NEW_PAINT = 0.03  # What a block must be nearer by to come in beside those that the room has.
+TOLD_APART = 0.06  # Oklab distance of two blocks that one tells apart at a glance; a guess.
 
 
 def block_colours(
@@ -39,6 +44,9 @@ def painted(
     palette: Palette,
     parameters: BuildParameters,
     most: int,
+    *,
+    beside: frozenset[str] = frozenset(),
+    used: frozenset[str] = frozenset(),
 ) -> np.ndarray:
     """Return the block states, object [N], for the N blocks of a mask, all of one surface.
 
@@ -50,12 +58,17 @@ def painted(
         palette: what may be used.
         parameters: how colours are weighed.
         most: at most so many different blocks.
+        beside: blocks that the surface is to stand out from: none that looks like them is used.
+        used: blocks that the room already has; they win where they are about as near.
     """
     default = palette.defaults[class_id]
     if not (known & mask).any():
         return np.full(int(mask.sum()), default, object)
-    choices = palette.blocks[class_id]
+    choices = _unlike(palette.blocks[class_id], beside)
     preferred = palette.preferred[class_id] or choices
+    handicaps = np.array([parameters.preference * (block not in preferred) for block in choices])
+    if used:
+        handicaps += [NEW_PAINT * (block not in used) for block in choices]
     shell, weight = class_id in STRUCTURE_CLASSES, parameters.lightness_weight
     index = paint(
         spread(colours, known & mask, mask, default_colour(default)),
@@ -66,9 +79,19 @@ def painted(
         noticed=parameters.structure_noticed if shell else parameters.object_noticed,
         match_weight=weight,
         calm_step=parameters.calm,
-        handicaps=np.array([parameters.preference * (block not in preferred) for block in choices]),
+        handicaps=handicaps,
     )
     return np.array(choices, object)[index]
+
+
+def _unlike(choices: tuple[str, ...], beside: frozenset[str]) -> tuple[str, ...]:
+    """Return the choices that one can tell from some blocks; all where none is left."""
+    if not beside:
+        return choices
+    offered = oklab_of_srgb(colours_of(choices))
+    others = oklab_of_srgb(colours_of(sorted(beside)))
+    apart = np.linalg.norm(offered[:, None] - others, axis=-1).min(1) >= TOLD_APART
+    return tuple(np.array(choices)[apart].tolist()) or choices
 
 
 def put_painted(
