@@ -33,7 +33,7 @@ def test_a_rug_stays_and_is_of_its_hue():
     volume = build_volume(sketch.grid(), (), (), corner_m=sketch.corner_m)
     points = np.random.default_rng(1).uniform((1.3, 0.6), (2.7, 1.4), (20, 2))
     rug = {state_at(volume, x, y, -0.1) for x, y in points}
-    floor = {state_at(volume, x, y, -0.1) for x, y in points + (2.2, 0)}
+    floor = {state_at(volume, 3.3 + x / 5, y, -0.1) for x, y in points}
     assert len(rug) == len(floor) == 1 and rug != floor
     assert hue_of(next(iter(rug)))[1] < -0.02  # blue to purple
 
