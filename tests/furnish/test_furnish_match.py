@@ -11,8 +11,8 @@ from world2minecraft.coordinates import turn_grid
 from world2minecraft.errors import UsageError
 from world2minecraft.find import find_objects
 from world2minecraft.furnish import FurnishParameters, furnish
-from world2minecraft.furnish.overlap import overlaps
 from world2minecraft.furniture import TEMPLATES, cells_of, surface, template
+from world2minecraft.furniture.overlap import overlaps
 
 NAMES = TEMPLATES.names()
 FULL_IOU = 0.9

@@ -7,6 +7,7 @@ import numpy as np
 from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import cell_centers_m
 from world2minecraft.errors import UsageError
+from world2minecraft.find.chairs import join_backs, part_chairs
 from world2minecraft.find.clusters import cluster_candidates
 from world2minecraft.find.density import candidate_cells, density_map, object_cells
 from world2minecraft.find.growth import grow
@@ -66,6 +67,9 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
             min_cells=chosen.min_cells,
             join_radius=chosen.join_radius,
         )
+        floor = max(int(np.floor(-grid.origin_m[2] / grid.voxel_m + 0.5)), 0)
+        owners = part_chairs(owners, grid.labels, grid.voxel_m, floor)
+        owners = join_backs(owners, grid.labels, grid.voxel_m, floor)
     instances = _instances(grid, owners, reach_down=not chosen.paper_compat)
     marked = np.zeros(grid.shape, np.uint16)
     for instance in instances:

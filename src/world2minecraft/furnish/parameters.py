@@ -12,6 +12,9 @@ SHARES = (
     "size_weight",
     "front_weight",
     "beyond_weight",
+    "seat_below",
+    "seat_met",
+    "seat_opposed",
 )
 
 
@@ -41,6 +44,12 @@ class FurnishParameters:
         0.2 on noisy scans of generated rooms, those of a box at a wall by nothing.
     beyond_weight: the score that a template loses where it lies wholly in the unseen outside the
         object's box; a tenth, so that it outweighs no clear match.
+    seat_below: a chair matched worse than this may be one of usual size that lies across the
+        grid or is hidden for the most part.
+    seat_met, seat_opposed: where no template of a chair reaches ``min_iou``, a whole chair is put
+        all the same that meets this share of the object's cells, in or beside it, and of which at
+        most so much stands in space that was seen free; build/ refuses more.
+    seat_look_m: a chair whose turn its cells leave open looks to a table this near.
     paper_compat: the paper's equation to the letter: every cell of the template and of the
         object counts, seen or not, nothing breaks ties but the library's order, and nothing is
         cut into runs.
@@ -60,6 +69,10 @@ class FurnishParameters:
     size_weight: float = 0.01
     front_weight: float = 0.05
     beyond_weight: float = 0.1
+    seat_below: float = 0.6
+    seat_met: float = 0.5
+    seat_opposed: float = 0.2
+    seat_look_m: float = 1.0
     paper_compat: bool = False
 
     def __post_init__(self):

@@ -5,18 +5,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.furnish.evidence import Evidence, evidence_of
-from world2minecraft.furnish.match import best_matches
+from world2minecraft.classes import SemanticClass
+from world2minecraft.furnish.evidence import OWN, Evidence, evidence_of
+from world2minecraft.furnish.match import NO_SHIFT, best_matches
 from world2minecraft.furnish.parameters import FurnishParameters
 from world2minecraft.furnish.runs import cut_into_runs
 from world2minecraft.furnish.seeds import reach_of
-from world2minecraft.furnish.trial import Bias, Cells, Scored
-from world2minecraft.furniture import templates_of
+from world2minecraft.furnish.trial import Bias, Cells, Scored, Trial, score_shifts
+from world2minecraft.furniture import template, templates_of
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
+from world2minecraft.furniture.seating import fit_seat, look_at, without_open_top
 from world2minecraft.types import Alternative, ObjectInstance, OccupancyGrid, Placement
 
 OWN_CELLS = "cells"
 HALF = 0.5
+SURELY_MET = 0.9  # A chair of usual size that meets these is taken before a stranger one.
 
 
 class Matched(NamedTuple):
@@ -25,6 +28,7 @@ class Matched(NamedTuple):
     evidence: Evidence
     quarter_turns: int
     matches: tuple[Scored, ...]
+    whole: bool = False  # Its first match stands whatever its IoU.
 
     @property
     def iou(self) -> float:
@@ -60,6 +64,10 @@ def _furnish_one(
 ) -> list[Placement]:
     turns = int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
     whole = _match(grid, instance, instance.cells, turns, chosen)
+    if whole.iou < chosen.seat_below and instance.class_id == SemanticClass.CHAIR:
+        seated = None if chosen.paper_compat else _seated(grid, whole, chosen)
+        if seated is not None:
+            return [_placement(grid, instance, seated, chosen)]
     if not _may_be_cut(whole, grid.voxel_m, chosen):
         return [_placement(grid, instance, whole, chosen)]
     parts = []
@@ -74,6 +82,29 @@ def _furnish_one(
     return [_placement(grid, instance, whole, chosen)]
 
 
+def _seated(grid: OccupancyGrid, found: Matched, chosen: FurnishParameters) -> Matched | None:
+    """Return a whole chair for cells that match none, where it agrees with what was seen.
+
+    A chair across the grid meets few cells exactly, and of one at a table only the back is seen.
+    A chair reads as a chair all the same, and a heap of its cells does not.
+    """
+    evidence = found.evidence
+    cells = np.argwhere(evidence.code == OWN) + evidence.corner
+    tables = (grid.labels == SemanticClass.TABLE).any(axis=2)
+    look = look_at(cells, tables, int(chosen.seat_look_m / grid.voxel_m))
+    fit = fit_seat(template("chair"), evidence.code, evidence.floor, grid.voxel_m, look)
+    if (
+        fit is None
+        or fit.opposed > chosen.seat_opposed
+        or fit.met.mean() < (chosen.seat_met if found.iou < chosen.min_iou else SURELY_MET)
+    ):
+        return None
+    fit = without_open_top(fit, template("chair"), evidence.code, grid.voxel_m)
+    trial = Trial(template("chair"), fit.quarter_turns, fit.counts, fit.values, fit.corner)
+    scored = score_shifts(evidence, trial, NO_SHIFT, _bias(found.quarter_turns, grid, chosen))
+    return found._replace(matches=(scored, *found.matches), whole=True)
+
+
 def _match(
     grid: OccupancyGrid,
     instance: ObjectInstance,
@@ -84,13 +115,16 @@ def _match(
     templates = templates_of(instance.class_id)
     reach = reach_of(templates, grid.voxel_m)
     evidence = evidence_of(grid, cells, reach, chosen.paper_compat)
-    bias = Bias(
+    matches = best_matches(templates, evidence, _bias(quarter_turns, grid, chosen), chosen)
+    return Matched(evidence, quarter_turns, tuple(matches))
+
+
+def _bias(quarter_turns: int, grid: OccupancyGrid, chosen: FurnishParameters) -> Bias:
+    if chosen.paper_compat:
+        return Bias(quarter_turns, grid.voxel_m, 0.0, 0.0, 0.0)
+    return Bias(
         quarter_turns, grid.voxel_m, chosen.size_weight, chosen.front_weight, chosen.beyond_weight
     )
-    if chosen.paper_compat:
-        bias = Bias(quarter_turns, grid.voxel_m, 0.0, 0.0, 0.0)
-    matches = best_matches(templates, evidence, bias, chosen)
-    return Matched(evidence, quarter_turns, tuple(matches))
 
 
 def _may_be_cut(whole: Matched, voxel_m: float, chosen: FurnishParameters) -> bool:
@@ -118,7 +152,7 @@ def _placement(
     grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: FurnishParameters
 ) -> Placement:
     least = 0.0 if chosen.paper_compat else chosen.min_iou
-    explained = bool(found.matches) and found.iou >= least
+    explained = bool(found.matches) and (found.whole or found.iou >= least)
     low, counts, turns = _own_box(found)
     if explained:
         trial = found.matches[0].trial

@@ -7,8 +7,8 @@ import numpy as np
 
 from world2minecraft.coordinates import turn_grid
 from world2minecraft.furnish.evidence import Evidence
-from world2minecraft.furnish.overlap import overlaps
 from world2minecraft.furniture import Template, raster
+from world2minecraft.furniture.overlap import overlaps
 
 PARAMETER_SHARE = 0.3  # An unusual parameter is less strange than an unusual size.
 

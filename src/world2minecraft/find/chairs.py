@@ -1,0 +1,130 @@
+"""Chairs that touch, told apart: whole chairs are laid over a heap that is too wide for one."""
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.furniture import template
+from world2minecraft.furniture.seating import AGAINST, OWN, SeatFit, fit_seat, look_at
+
+WIDE_M = 0.85  # A chair turned by half a quarter is this wide; an easy chair may be wider.
+EASY_WIDE_M = 1.2
+TABLE_M = 1.0
+LEAST_SHARE = 0.15  # Each chair meets at least this share of the heap,
+LEAST_CELLS = 12  # and so many cells: half of a back.
+MOST_OPPOSED = 0.2  # The share of a chair that may stand where nothing was seen to be.
+CLEARLY = 0.1  # By how much of the cells chairs must meet the heap better than an easy chair.
+MOST = 6
+SEAT_M = 0.4  # What begins above this has no seat.
+BACK_M = 0.7  # What ends below this has no back.
+BESIDE_CELLS = 1
+PAD = 10  # Cells around the heap: a chair's depth and some more.
+
+
+def part_chairs(owners: np.ndarray, labels: np.ndarray, voxel_m: float, floor: int) -> np.ndarray:
+    """Return owners, int32 [X, Y, Z], in which chairs that touch have numbers of their own."""
+    chairs = labels == SemanticClass.CHAIR
+    tables = (labels == SemanticClass.TABLE).any(axis=2)
+    result = owners.copy()
+    fresh = int(owners.max(initial=0))
+    for number in np.unique(owners[chairs & (owners > 0)]):
+        cells = np.argwhere((owners == number) & chairs)
+        if np.ptp(cells[:, :2], axis=0).max() + 1 <= WIDE_M / voxel_m:
+            continue
+        part = _parts(cells, labels, tables, voxel_m, floor)
+        moved = part > 0
+        result[tuple(cells[moved].T)] = fresh + part[moved]
+        fresh += int(part.max())
+    return result
+
+
+def join_backs(owners: np.ndarray, labels: np.ndarray, voxel_m: float, floor: int) -> np.ndarray:
+    """Return owners in which a back without a seat joins a seat without a back beside it.
+
+    A scan sees the back of a chair at a table over the table's edge and its seat under it. Both
+    together must not be wider than one chair.
+    """
+    chairs = labels == SemanticClass.CHAIR
+    result = owners.copy()
+    boxes = {}
+    for number in np.unique(owners[chairs & (owners > 0)]).tolist():
+        cells = np.argwhere((owners == number) & chairs)
+        boxes[number] = cells.min(axis=0), cells.max(axis=0) + 1
+    seat, back = floor + SEAT_M / voxel_m, floor + BACK_M / voxel_m
+    seats = [n for n, (_, high) in boxes.items() if high[2] <= back]
+    for number in [n for n, (low, _) in boxes.items() if low[2] >= seat]:
+        apart = {one: _apart(boxes[one], boxes[number]) for one in seats if one != number}
+        near = {one: gap for one, gap in apart.items() if gap is not None}
+        wide = {one: _width(boxes[one], boxes[number]) for one in near}
+        fitting = [one for one in near if wide[one] <= WIDE_M / voxel_m]
+        if fitting:
+            chosen = min(fitting, key=lambda one: (near[one], wide[one], one))
+            result[(owners == number) & chairs] = chosen
+            seats.remove(chosen)
+    return result
+
+
+Box = tuple[np.ndarray, np.ndarray]
+
+
+def _apart(one: Box, other: Box) -> float | None:
+    """Return how many cells lie between two boxes; None for more than ``BESIDE_CELLS``."""
+    gap = np.maximum(np.maximum(one[0] - other[1], other[0] - one[1]), 0)
+    return float(gap.sum()) if gap.max() <= BESIDE_CELLS else None
+
+
+def _width(one: Box, other: Box) -> float:
+    """Return the longer side in plan of two boxes together."""
+    return float((np.maximum(one[1], other[1]) - np.minimum(one[0], other[0]))[:2].max())
+
+
+def _parts(
+    cells: np.ndarray, labels: np.ndarray, tables: np.ndarray, voxel_m: float, floor: int
+) -> np.ndarray:
+    """Return the chair, int32 [N] from 0, of each cell; all 0 where it is one."""
+    code, corner = _window(cells, labels)
+    own = cells - corner
+    look = look_at(cells, tables, int(TABLE_M / voxel_m))
+    fits = _laid(code.copy(), own, floor - int(corner[2]), voxel_m, look)
+    if len(fits) < 2 or not _clearly_better(fits, code, own, floor - int(corner[2]), voxel_m):
+        return np.zeros(len(cells), np.int32)
+    apart = np.stack([KDTree(fit.cells).query(own)[0] for fit in fits])
+    return np.round(apart, 9).argmin(axis=0).astype(np.int32)
+
+
+def _window(cells: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return what was seen around some cells, as codes uint8 [X, Y, Z], and its first cell."""
+    low = np.maximum(cells.min(axis=0) - (PAD, PAD, 0), 0)
+    low[2] = 0
+    high = np.minimum(cells.max(axis=0) + 1 + PAD, labels.shape)
+    seen = labels[low[0] : high[0], low[1] : high[1], low[2] : high[2]]
+    code = np.where((seen <= SemanticClass.WINDOW) & (seen != UNKNOWN), AGAINST, 0)
+    code[tuple((cells - low).T)] = OWN
+    return code.astype(np.uint8), low
+
+
+def _laid(
+    code: np.ndarray, own: np.ndarray, floor: int, voxel_m: float, look: np.ndarray
+) -> list[SeatFit]:
+    """Lay chairs over the heap, each where it meets most of what the ones before left."""
+    fits: list[SeatFit] = []
+    while len(fits) < MOST:
+        fit = fit_seat(template("chair"), code, floor, voxel_m, look)
+        least = max(LEAST_CELLS, LEAST_SHARE * len(own))
+        if fit is None or fit.met.sum() < least or fit.opposed > MOST_OPPOSED:
+            break
+        fits.append(fit)
+        code[tuple(np.argwhere(code == OWN)[fit.met].T)] = 0
+    return fits
+
+
+def _clearly_better(
+    fits: list[SeatFit], code: np.ndarray, own: np.ndarray, floor: int, voxel_m: float
+) -> bool:
+    """Return whether several chairs meet the heap better than one easy chair does."""
+    if (np.ptp(own[:, :2], axis=0).max() + 1) * voxel_m > EASY_WIDE_M:
+        return True
+    easy = [fit_seat(template(name), code, floor, voxel_m, np.zeros(2))
+            for name in ("armchair", "office_chair")]  # fmt: skip
+    single = max(fit.gain for fit in easy if fit is not None)
+    return sum(fit.gain for fit in fits) >= single + CLEARLY * 2 * len(own)

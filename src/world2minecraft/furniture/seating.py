@@ -1,0 +1,186 @@
+"""A whole chair in cells of which only some were seen: tried at every place, turn and size.
+
+A chair that is turned by half a quarter lies across the cells of its template, and of one at a
+table only the back is seen. So a cell beside the template counts as met, and a free cell beside
+the chair as nothing.
+"""
+
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.coordinates import turn_grid
+from world2minecraft.furniture.overlap import overlaps
+from world2minecraft.furniture.raster import raster
+from world2minecraft.furniture.template import Template
+
+AGAINST, OWN = 1, 2  # As in the codes that ``overlaps`` reads.
+BESIDE = np.zeros((3, 3, 3), np.bool_)
+BESIDE[:, :, 1] = True
+SIDES = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])  # Where a front looks, by quarter turns.
+LOOK_WEIGHT = 0.15  # What looking at its table is worth, as a share of the chair's cells.
+OPEN_TOP = 0.4  # A top layer of which more than this was seen free is hardly there.
+MARGIN = np.array((1, 1, 0))
+AROUND = np.array([(x, y, 0) for x in (0, -1, 1) for y in (0, -1, 1)])  # Other forms' places.
+
+Cells = tuple[int, int, int]
+Values = tuple[tuple[str, float], ...]
+
+
+class SeatFit(NamedTuple):
+    """One chair: size in cells along its own axes, parameters, turn, and first cell.
+
+    ``met`` is bool [N], the cells in or beside it; ``gain`` counts cells met, met exactly, and
+    twice those against; ``opposed`` is the share of its cells that were seen free.
+    """
+
+    gain: float
+    opposed: float
+    counts: Cells
+    values: Values
+    quarter_turns: int
+    corner: Cells
+    solid: np.ndarray  # bool [A, B, C], turned
+    met: np.ndarray
+
+    @property
+    def cells(self) -> np.ndarray:
+        """The cells, int64 [M, 3], that the chair fills."""
+        return np.argwhere(self.solid) + self.corner
+
+
+def eased(code: np.ndarray) -> np.ndarray:
+    """Return the code, uint8 [X, Y, Z], in which nothing beside the object speaks against it."""
+    beside = ndimage.binary_dilation(code == OWN, BESIDE)
+    return np.where(beside & (code == AGAINST), 0, code).astype(np.uint8)
+
+
+def fit_seat(
+    template: Template,
+    code: np.ndarray,
+    floor: int,
+    voxel_m: float,
+    look: np.ndarray,
+) -> SeatFit | None:
+    """Return the best place of a chair for the cells that are OWN in ``code``; None without any.
+
+    Args:
+        template: the chair.
+        code: uint8 [X, Y, Z], as ``overlaps`` reads it.
+        floor: the layer on which it stands.
+        voxel_m: the side of a cell.
+        look: float64 [2], the way in plan to what it stands at, of length 1; zeros for nothing.
+    """
+    cells = np.argwhere(code == OWN)
+    if not len(cells) or floor < 0:
+        return None
+    heap = _Heap(cells, eased(code), look)
+    low, high = cells.min(axis=0), cells.max(axis=0) + 1
+    best: SeatFit | None = None
+    usual, *others = _forms(template, int(high[2]) - floor, voxel_m)
+    for turns in range(template.turns):
+        solid = _turned(template, *usual, turns, voxel_m)
+        home = heap.laid(*usual, turns, solid, _corners(solid.shape, low, high, floor))
+        around = np.array(home.corner) + AROUND
+        moved = (
+            heap.laid(*form, turns, _turned(template, *form, turns, voxel_m), around)
+            for form in others
+        )
+        for fit in (home, *moved):
+            best = fit if best is None or fit.gain > best.gain + 1e-9 else best
+    return best
+
+
+def without_open_top(fit: SeatFit, template: Template, code: np.ndarray, voxel_m: float) -> SeatFit:
+    """Return the chair without its top layer where that was seen free for a good part.
+
+    The last cell of a back is often filled by a third, which is no half block.
+    """
+    depth, width, height = fit.counts
+    tops = fit.cells[fit.cells[:, 2] == fit.corner[2] + height - 1]
+    inside = tops[((tops >= 0) & (tops < code.shape)).all(axis=1)]
+    opened = np.count_nonzero(code[tuple(inside.T)] == AGAINST)
+    least = int(template.size_m[2].minimum / voxel_m + 0.5)
+    if height <= least or opened <= OPEN_TOP * len(tops):
+        return fit
+    counts = (depth, width, height - 1)
+    solid = _turned(template, counts, fit.values, fit.quarter_turns, voxel_m)
+    return fit._replace(counts=counts, solid=solid)
+
+
+class _Heap(NamedTuple):
+    """Cells, int64 [N, 3], the code that a chair is compared with, and which way it may look."""
+
+    cells: np.ndarray
+    code: np.ndarray
+    look: np.ndarray
+
+    def laid(
+        self, counts: Cells, values: Values, turns: int, solid: np.ndarray, corners: np.ndarray
+    ) -> SeatFit:
+        """Return the best of a chair's places, int64 [S, 3]; of equals the first."""
+        exact = overlaps(solid, self.code, corners)
+        wide = ndimage.binary_dilation(np.pad(solid, ((1, 1), (1, 1), (0, 0))), BESIDE)
+        near = overlaps(wide, self.code, corners - MARGIN)[:, 0]
+        gain = near + exact[:, 0] - 2 * exact[:, 1]
+        gain = gain + LOOK_WEIGHT * len(self.cells) * (SIDES[turns] @ self.look)
+        at = int(np.argmax(np.round(gain, 9)))
+        x, y, z = (int(value) for value in corners[at])
+        opposed = float(exact[at, 1] / np.count_nonzero(solid))
+        met = _within(self.cells, wide, corners[at] - MARGIN)
+        return SeatFit(float(gain[at]), opposed, counts, values, turns, (x, y, z), solid, met)
+
+
+def _forms(template: Template, tall: int, voxel_m: float) -> list[tuple[Cells, Values]]:
+    """Return sizes and parameters: the usual first, then one cell less deep and other seats."""
+    depth, width = (int(span.typical / voxel_m + 0.5) for span in template.size_m[:2])
+    least, most = (int(limit / voxel_m + 0.5) for limit in template.size_m[2][::2])
+    height = min(max(tall, least), most)
+    usual = tuple((name, span.typical) for name, span in template.parameters.items())
+    spans = [sorted(set(span)) for span in template.parameters.values()]
+    every = [tuple(zip(template.parameters, steps, strict=True)) for steps in product(*spans)]
+    sizes = [(depth, width, height), (max(depth - 1, 1), width, height)]
+    rest = [(size, values) for size in sizes for values in every]
+    return [(sizes[0], usual), *(form for form in rest if form != (sizes[0], usual))]
+
+
+def _turned(
+    template: Template, counts: Cells, values: Values, turns: int, voxel_m: float
+) -> np.ndarray:
+    return np.ascontiguousarray(turn_grid(raster(template, counts, values, voxel_m), turns))
+
+
+def _corners(shape: tuple[int, ...], low: np.ndarray, high: np.ndarray, floor: int) -> np.ndarray:
+    """Return every first cell, int64 [S, 3], at which a box of ``shape`` meets the object's."""
+    along = [np.arange(low[axis] - shape[axis] + 1, high[axis]) for axis in (0, 1)]
+    x, y = np.meshgrid(*along, indexing="ij")
+    return np.stack([x.ravel(), y.ravel(), np.full(x.size, floor)], axis=1).astype(np.int64)
+
+
+def _within(cells: np.ndarray, solid: np.ndarray, corner: np.ndarray) -> np.ndarray:
+    at = cells - corner
+    inside = ((at >= 0) & (at < solid.shape)).all(axis=1)
+    result = np.zeros(len(cells), np.bool_)
+    result[inside] = solid[tuple(at[inside].T)]
+    return result
+
+
+def look_at(cells: np.ndarray, tables: np.ndarray, reach: int) -> np.ndarray:
+    """Return the way in plan, float64 [2], from cells to the nearest table; zeros without one.
+
+    Args:
+        cells: int [N, 3].
+        tables: bool [X, Y], the plan of all tables.
+        reach: how many cells from the middle of the cells a table may be.
+    """
+    at = np.argwhere(tables)
+    middle = cells[:, :2].mean(axis=0)
+    apart = np.linalg.norm(at - middle, axis=1)
+    near = at[apart <= reach]
+    if not len(near):
+        return np.zeros(2)
+    way = near.mean(axis=0) - middle
+    length = float(np.linalg.norm(way))
+    return way / length if length else np.zeros(2)
