@@ -18,6 +18,10 @@ LEAST_CELLS = 50
 FAINT_CHROMA, CLEAR_CHROMA = 0.02, 0.06
 # Wood lies within these degrees of hue; red begins where they fade out.
 WOOD_HUE, WOOD_REACH, WOOD_FADE = 65.0, 20.0, 10.0
+# A paint: so many cells (1 m2 at 8 cm) of a strong chroma within a few degrees of one hue. The
+# reach is that of the kitchen's reds in haze; lightness tells a pink thing from a red one.
+STRONG_CHROMA, PAINT_CELLS, MOST_PAINTS = 0.09, 150, 3
+HUE_BIN, PAINT_REACH, PAINT_LIGHT = 15.0, 25.0, 0.2
 NEAR_BLOCKS = 2.0  # So far a block that nobody saw takes the colour of the nearest that was seen.
 
 
@@ -62,6 +66,39 @@ def strengthened(oklab: np.ndarray, saturation: float) -> np.ndarray:
     result = oklab.astype(np.float32)
     result[:, 1:] *= (1 + (saturation - 1) * clear)[:, None]
     return result
+
+
+def one_paint(oklab: np.ndarray) -> np.ndarray:
+    """Return the colours of a room's things, float32 [N, 3], each strong paint made one colour.
+
+    Haze, shade and the mixing of neighbours in a cell make purple, brown and pink of one red. Where
+    much of a room is of one strong hue, what lies near that hue takes its colour.
+    """
+    result = oklab.astype(np.float32)
+    chroma = np.hypot(oklab[:, 1], oklab[:, 2])
+    hue = np.degrees(np.arctan2(oklab[:, 2], oklab[:, 1]))
+    off_wood = np.abs(_turn(hue - WOOD_HUE)) > WOOD_REACH + WOOD_FADE
+    strong = (chroma >= STRONG_CHROMA) & off_wood
+    for _ in range(MOST_PAINTS):
+        bins = np.bincount((hue[strong] % 360 / HUE_BIN).astype(int), minlength=int(360 / HUE_BIN))
+        wide = bins + np.roll(bins, 1)
+        best = int(wide.argmax())
+        if wide[best] < PAINT_CELLS:
+            break
+        near = np.abs(_turn(hue - best * HUE_BIN)) <= PAINT_REACH
+        core = strong & near
+        middle = np.median(oklab[core], axis=0)
+        middle[1:] *= np.quantile(chroma[core], 0.75) / max(float(np.hypot(*middle[1:])), 1e-6)
+        mine = near & off_wood & (chroma >= CLEAR_CHROMA)
+        mine &= np.abs(oklab[:, 0] - middle[0]) <= PAINT_LIGHT
+        result[mine] = middle
+        strong &= ~near
+    return result
+
+
+def _turn(degrees: np.ndarray) -> np.ndarray:
+    """Return angles from -180 to 180."""
+    return (degrees + 180) % 360 - 180
 
 
 def gains_of(linear: np.ndarray) -> np.ndarray:

@@ -17,8 +17,11 @@ from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.parts import Design, design_of
 from world2minecraft.build.surfaces import block_colours, painted
 from world2minecraft.build.tops import top_cells
+from world2minecraft.build.worktops import Worktop, find_worktop
 from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.furniture import idiom, template
+from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.minecraft.colours import colours_of
 from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
 
 CELLS = "cells"
@@ -45,9 +48,11 @@ class ObjectBuilder:
         self.colours, self.coloured = colours, coloured
         self.parameters = parameters
         self.lattice = canvas.lattice
+        self.worktops: dict[int, Worktop] = {}
 
     def put_all(self, placements: Sequence[Placement]) -> None:
         """Set every placement, then the object cells that no block near them shows."""
+        self.put_worktops()
         for placement in sorted(placements, key=_order):
             cells = self._cells_of(placement)
             if placement.template == CELLS or not self.put_template(placement, cells):
@@ -57,6 +62,34 @@ class ObjectBuilder:
         keys = (self.grid.labels.astype(np.int32) << 16) + self.grid.instance
         for key in np.unique(keys[rest]).tolist():
             self.put_cells(np.argwhere(rest & (keys == key)), key >> 16, key & 0xFFFF)
+
+    def put_worktops(self) -> None:
+        """Set the glossy worktops; what else their objects are made of comes under and on them."""
+        if not self.parameters.close_tops:
+            return
+        for number in np.unique(self.grid.instance[self.grid.labels == SemanticClass.FURN]):
+            cells = np.argwhere(
+                (self.grid.instance == number) & (self.grid.labels == SemanticClass.FURN)
+            )
+            top = find_worktop(self.grid, cells, self.colours, self.coloured, self.lattice)
+            if number and top is not None:
+                self.worktops[int(number)] = top
+                self._put_plate(top, top.columns, int(number))
+
+    def _put_plate(self, top: Worktop, columns: np.ndarray, number: int) -> None:
+        """Set the plate of a worktop over columns, bool [X, Y], where nothing stands."""
+        mask = np.zeros(self.lattice.shape, bool)
+        mask[1:-1, 1:-1, top.layer] = columns[1:-1, 1:-1]
+        mask &= self.canvas.states == 0
+        choices = (
+            list(self.palette.slabs)
+            if top.half != FULL
+            else list(self.palette.blocks[SemanticClass.FURN])
+        )
+        apart = np.linalg.norm(oklab_of_srgb(colours_of(choices)) - top.colour, axis=1)
+        block = choices[int(apart.argmin())]
+        state = f"{self.palette.slabs[block]}[type=bottom]" if top.half != FULL else block
+        self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
 
     def _shown(self) -> np.ndarray:
         """Return the cells, bool [X, Y, Z], that lie in or beside a block of their own object."""
@@ -115,12 +148,26 @@ class ObjectBuilder:
         window = self._window(design.low, design.halves.shape)
         if self._contradicted(design, window) > self.parameters.most_contradicted:
             return False
+        self._plate_over(design, thing.instance)
+        window = self._window(design.low, design.halves.shape)
         hues = self._stretched(cells, placement, design.low, design.halves.shape)
         halves = design.halves[window.box] * window.free
         self._put_halves(
             window.low, halves, hues, thing, design.part[window.box], design.posts[window.box]
         )
         return True
+
+    def _plate_over(self, design: Design, number: int) -> None:
+        """Let an object's worktop cover one of its designs that reaches up to it."""
+        top = self.worktops.get(number)
+        if top is None:
+            return
+        level = top.layer - int(design.low[2])
+        if level == design.halves.shape[2] - 1:
+            columns = np.zeros(self.lattice.shape[:2], bool)
+            for x, y in np.argwhere(design.halves[:, :, level] > 0) + design.low[:2]:
+                columns[x, y] = True
+            self._put_plate(top, columns, number)
 
     def _contradicted(self, design: Design, window: "Window") -> float:
         """Return the share of a design's blocks that were seen free and nearly nothing else."""

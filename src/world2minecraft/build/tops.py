@@ -25,16 +25,9 @@ def top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, np.nd
         int [N, 3], the unseen cells; int [N, 3], for each the nearest cell of the object that
         was seen from above.
     """
-    reach = max(1, round(REACH_M / grid.voxel_m))
-    low = np.maximum(cells.min(0) - [reach, reach, 1], 0)
-    high = np.minimum(cells.max(0) + np.array([reach + 1, reach + 1, 3]), grid.shape)
-    box = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
+    low, box = _box(grid, cells)
     steps, free = _steps(grid, box)
-    body = np.zeros(steps.shape, bool)
-    tall = grid.origin_m[2] + (cells[:, 2] + 1) * grid.voxel_m >= LEAST_RIM_M
-    body[tuple((cells[tall] - low).T)] = True
-    rim = grown(body, (0, 0, RIM_LAYERS))
-    joined = _joined(steps, rim, reach)
+    body, joined = _joined_to(grid, cells, low, steps)
     upper = body & np.concatenate([free[:, :, 1:], np.zeros_like(free[:, :, :1])], axis=2)
     flat = upper & ~np.concatenate([np.zeros_like(body[:, :, :1]), body[:, :, :-1]], axis=2)
     upper = flat if flat.any() else upper  # The edge over a front mixes both their colours.
@@ -42,6 +35,32 @@ def top_cells(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, np.nd
         return np.zeros((0, 3), int), np.zeros((0, 3), int)
     nearest, _ = nearest_of(upper)
     return np.argwhere(joined) + low, np.stack([axis[joined] for axis in nearest], 1) + low
+
+
+def step_cells(grid: OccupancyGrid, cells: np.ndarray) -> np.ndarray:
+    """Return the unseen cells, int [N, 3], that close the top of an object with cells [M, 3]."""
+    low, box = _box(grid, cells)
+    steps, _ = _steps(grid, box)
+    return np.argwhere(_joined_to(grid, cells, low, steps)[1]) + low
+
+
+def _box(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, tuple[slice, ...]]:
+    """Return the box around an object in which its top may lie, and its low corner, int [3]."""
+    reach = max(1, round(REACH_M / grid.voxel_m))
+    low = np.maximum(cells.min(0) - [reach, reach, 1], 0)
+    high = np.minimum(cells.max(0) + np.array([reach + 1, reach + 1, 3]), grid.shape)
+    return low, tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
+
+
+def _joined_to(
+    grid: OccupancyGrid, cells: np.ndarray, low: np.ndarray, steps: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return an object's own tall cells and the steps that join it, bool in the box of steps."""
+    reach = max(1, round(REACH_M / grid.voxel_m))
+    body = np.zeros(steps.shape, bool)
+    tall = grid.origin_m[2] + (cells[:, 2] + 1) * grid.voxel_m >= LEAST_RIM_M
+    body[tuple((cells[tall] - low).T)] = True
+    return body, _joined(steps, grown(body, (0, 0, RIM_LAYERS)), reach)
 
 
 def _steps(grid: OccupancyGrid, box: tuple[slice, ...]) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ import numpy as np
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.connect import connect
 from world2minecraft.build.exact import put_cells_exactly
-from world2minecraft.build.hues import cell_colours, seen_colours
+from world2minecraft.build.hues import cell_colours, one_paint, seen_colours
 from world2minecraft.build.lattice import is_exact, lattice_over, snapped_corner_m
 from world2minecraft.build.lights import put_lights
 from world2minecraft.build.objects import ObjectBuilder
@@ -15,6 +15,7 @@ from world2minecraft.build.palettes import Palette, load_palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.shell import put_edge, put_shell
 from world2minecraft.build.structure import build_shell
+from world2minecraft.classes import OBJECT_CLASSES
 from world2minecraft.errors import UsageError
 from world2minecraft.types import BlockVolume, ObjectInstance, OccupancyGrid, Placement
 
@@ -76,7 +77,10 @@ def _put_room(
     """Set shell and objects; return the footprint, bool [X, Y]."""
     shell = build_shell(grid, canvas.lattice, parameters)
     put_shell(canvas, shell, colours, coloured, palette, parameters)
-    ObjectBuilder(canvas, grid, colours, coloured, palette, parameters).put_all(placements)
+    things = coloured & np.isin(grid.labels, OBJECT_CLASSES)
+    painted = colours.copy()
+    painted[things] = one_paint(colours[things])
+    ObjectBuilder(canvas, grid, painted, coloured, palette, parameters).put_all(placements)
     return shell.footprint
 
 
