@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
+from world2minecraft.furnish.clearing import clear_overlaps
+from world2minecraft.furnish.crumbs import tidied
 from world2minecraft.furnish.evidence import OWN, Evidence, evidence_of
 from world2minecraft.furnish.match import NO_SHIFT, best_matches
 from world2minecraft.furnish.parameters import FurnishParameters
@@ -56,7 +58,7 @@ def furnish(
     for instance in instances:
         if len(instance.cells):
             placed += _furnish_one(grid, instance, around, chosen)
-    return tuple(placed)
+    return tuple(placed) if chosen.paper_compat else clear_overlaps(placed, grid.voxel_m)
 
 
 def _furnish_one(
@@ -78,8 +80,31 @@ def _furnish_one(
     least = max(chosen.min_run_cells, chosen.min_run_share * whole.evidence.own)
     parts = [part if part.evidence.own >= least else part.unmatched() for part in parts]
     if _is_better_cut(parts, whole.iou, chosen):
+        parts = _with_tidy_crumbs(grid, instance, parts, chosen)
         return [_placement(grid, instance, part, chosen) for part in parts]
     return [_placement(grid, instance, whole, chosen)]
+
+
+def _with_tidy_crumbs(
+    grid: OccupancyGrid, instance: ObjectInstance, parts: list[Matched], chosen: FurnishParameters
+) -> list[Matched]:
+    """Return the runs, and of what the cut left over only what has to be placed by itself."""
+    runs = [part for part in parts if part.matches]
+    placed = [part for part in runs if part.iou >= chosen.min_iou]
+    boxes = []
+    for part in placed:
+        trial = part.matches[0].trial
+        low = part.evidence.corner + trial.corner
+        boxes.append((low, low + np.array(trial.turned_counts)))
+    crumbs = [_cells_of(part) for part in parts if not part.matches]
+    reach = reach_of(templates_of(instance.class_id), grid.voxel_m)
+    front = parts[0].quarter_turns
+    kept = tidied(crumbs, [_cells_of(part) for part in placed], boxes)
+    return runs + [Matched(evidence_of(grid, one, reach, False), front, ()) for one in kept]
+
+
+def _cells_of(part: Matched) -> np.ndarray:
+    return (np.argwhere(part.evidence.code == OWN) + part.evidence.corner).astype(np.int32)
 
 
 def _seated(grid: OccupancyGrid, found: Matched, chosen: FurnishParameters) -> Matched | None:
@@ -89,7 +114,7 @@ def _seated(grid: OccupancyGrid, found: Matched, chosen: FurnishParameters) -> M
     A chair reads as a chair all the same, and a heap of its cells does not.
     """
     evidence = found.evidence
-    cells = np.argwhere(evidence.code == OWN) + evidence.corner
+    cells = _cells_of(found)
     tables = (grid.labels == SemanticClass.TABLE).any(axis=2)
     look = look_at(cells, tables, int(chosen.seat_look_m / grid.voxel_m))
     fit = fit_seat(template("chair"), evidence.code, evidence.floor, grid.voxel_m, look)
