@@ -12,7 +12,15 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from world2minecraft.classes import OBJECT_CLASSES
+from world2minecraft.errors import UsageError
 from world2minecraft.types import checks
+
+
+STALE = "; placements.json of another version is made anew by --from furnish"
+
+
+class ParameterError(UsageError, ValueError):
+    """A template has no such parameter, or not with such a value."""
 
 
 class Span(NamedTuple):
@@ -99,18 +107,21 @@ class Template:
         """Return every parameter of the template, the usual value where none is given.
 
         Raises:
-            ValueError: a name is unknown, or a value lies outside its span.
+            ParameterError: a name is unknown, or a value lies outside its span, as in the
+                placements of another version; it is a ValueError too.
         """
         given = dict(parameters or {})
         for name, value in given.items():
             if name not in self.parameters:
                 known = ", ".join(self.parameters) or "none"
-                raise ValueError(f"{self.name} has no parameter {name!r}; it has: {known}")
+                raise ParameterError(
+                    f"{self.name} has no parameter {name!r}; it has: {known}{STALE}"
+                )
             span = self.parameters[name]
             if not span.minimum - 1e-6 <= value <= span.maximum + 1e-6:
-                raise ValueError(
+                raise ParameterError(
                     f"{name} of {self.name} must lie between {span.minimum:g} and "
-                    f"{span.maximum:g}, not {value:g}"
+                    f"{span.maximum:g}, not {value:g}{STALE}"
                 )
         return {
             name: float(given.get(name, self.parameters[name].typical)) for name in self.parameters
@@ -124,7 +135,7 @@ class Template:
             parameters: some of the template's parameters; the others are usual.
 
         Raises:
-            ValueError: a size is not above 0, or ``complete`` refuses a parameter.
+            ValueError: a size is not above 0. ParameterError: ``complete`` refuses a parameter.
         """
         depth, width, height = (checks.positive("size_m", float(side)) for side in size_m)
         return tuple(self.build(depth, width, height, self.complete(parameters)))
