@@ -66,7 +66,8 @@ def find_worktop(
     dark = _rim_of(rim, front, colours, coloured)
     if dark is None:
         return None
-    colour = np.median(colours[tuple(dark.T)], axis=0)
+    # Glare lightens a polished plate: its darker half is what it is.
+    colour = np.median(colours[tuple(dark[: (len(dark) + 1) // 2].T)], axis=0)
     top = (np.median(dark[:, 2]) + 1) * grid.voxel_m + grid.origin_m[2]
     at = float(lattice.coordinates_of(np.array([0.0, 0.0, top]))[2])
     layer = int(np.floor(at - 1e-6))
@@ -97,6 +98,6 @@ def _plan(grid: OccupancyGrid, cells: np.ndarray, steps: np.ndarray, level: int)
     own[tuple(cells.T)] = True
     low, high = max(level - PILLAR_CELLS, 0), level + 2 + PILLAR_CELLS
     pillar = own[:, :, low:level].all(2) & own[:, :, level + 2 : high].any(2)
-    plan = own[:, :, level : level + 3].any(2) & ~pillar
+    plan = np.asarray(own[:, :, level : level + 3].any(2) & ~pillar)
     plan[steps[:, 0], steps[:, 1]] = True
     return closed(plan, (GAP_CELLS, GAP_CELLS))

@@ -1,0 +1,68 @@
+import numpy as np
+from build_samples import DARK, FURN, RED, WHITE, Sketch
+
+from world2minecraft.build import build_volume
+from world2minecraft.build.hues import one_paint
+from world2minecraft.coordinates import apply
+from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
+from world2minecraft.minecraft.colours import colour_of
+
+
+def state_at(volume, *point_m):
+    """The state of the block at a point of the room."""
+    place = apply(np.linalg.inv(volume.block_to_room), np.array(point_m)) - volume.corner
+    return volume.palette[volume.states[tuple(np.floor(place).astype(int))]]
+
+
+def kitchen(lying=WHITE):
+    """A red front under a rim of dark cells; the top itself was never measured."""
+    sketch = Sketch((50, 25, 30))
+    sketch.put((0, 7), (0, 25), (0, 11), 255, 0)
+    sketch.put((7, 8), (0, 25), (0, 10), FURN, RED, 2)
+    sketch.put((7, 8), (0, 25), (10, 11), FURN, DARK, 2)
+    for y in (4, 12, 18):
+        sketch.put((2, 5), (y, y + 3), (10, 12), FURN, lying, 2)
+    return sketch
+
+
+def chroma_of(state):
+    return float(np.hypot(*oklab_of_srgb(np.array(colour_of(state), np.uint8))[1:]))
+
+
+def lightness_of(state):
+    return float(oklab_of_srgb(np.array(colour_of(state), np.uint8))[0])
+
+
+def test_a_glossy_counter_is_one_dark_plate_over_a_red_front():
+    sketch = kitchen()
+    volume = build_volume(sketch.grid(), (), (), corner_m=sketch.corner_m)
+    tops, fronts = set(), set()
+    for y in np.arange(0.1, 1.9, 0.2):
+        fronts |= {state_at(volume, x, y, z) for x in (0.4, 0.6) for z in (0.1, 0.3, 0.6)}
+        tops |= {state_at(volume, x, y, 0.8) for x in (0.1, 0.4, 0.6)}
+    fronts -= {"minecraft:air"}
+    assert len(tops) == 1 and len(fronts) == 1
+    top, front = tops.pop(), fronts.pop()
+    assert lightness_of(top) < 0.4 and chroma_of(top) < 0.05
+    assert "red" in front and "slab" not in front
+
+
+def test_a_counter_that_was_measured_takes_no_plate():
+    sketch = Sketch((50, 25, 30))
+    sketch.put((0, 8), (0, 25), (0, 11), FURN, RED, 2)
+    volume = build_volume(sketch.grid(), (), (), corner_m=sketch.corner_m)
+    assert "red" in state_at(volume, 0.4, 1.0, 0.8)
+
+
+def test_the_shades_and_hazes_of_a_strong_paint_are_one_colour():
+    rng = np.random.default_rng(4)
+    light = linear_of_srgb(np.array(RED, np.uint8)) * rng.uniform(0.5, 1.3, (400, 1))
+    haze = rng.uniform(0, 0.12, (400, 1))
+    reds = oklab_of_linear(np.clip(light * (1 - haze) + 0.4 * haze, 0, 1))
+    wood = np.tile(oklab_of_srgb(np.array([162, 131, 79], np.uint8)), (300, 1))
+    grey = np.tile(oklab_of_srgb(np.array([120, 120, 124], np.uint8)), (300, 1))
+    found = one_paint(np.concatenate([reds, wood, grey]).astype(np.float32))
+    assert np.array_equal(found[400:], np.concatenate([wood, grey]).astype(np.float32))
+    assert len(np.unique(found[:400], axis=0)) < 0.2 * 400
+    few = one_paint(reds[:100])
+    assert np.array_equal(few, reds[:100].astype(np.float32))
