@@ -40,7 +40,9 @@ def test_a_glossy_counter_is_one_dark_plate_over_a_red_front():
     for y in np.arange(0.1, 1.9, 0.2):
         fronts |= {state_at(volume, x, y, z) for x in (0.4, 0.6) for z in (0.1, 0.3, 0.6)}
         tops |= {state_at(volume, x, y, 0.8) for x in (0.1, 0.4, 0.6)}
-    fronts -= {"minecraft:air"}
+    fronts = {
+        state for state in fronts if not state.startswith(("minecraft:air", "minecraft:light["))
+    }
     assert len(tops) == 1 and len(fronts) == 1
     top, front = tops.pop(), fronts.pop()
     assert lightness_of(top) < 0.4 and chroma_of(top) < 0.05
