@@ -13,6 +13,7 @@ from world2minecraft.find.density import candidate_cells, density_map, object_ce
 from world2minecraft.find.growth import grow
 from world2minecraft.find.parameters import FindParameters
 from world2minecraft.find.rejoin import rejoin
+from world2minecraft.find.rows import part_rows
 from world2minecraft.find.stacks import join_stacked
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.types import ObjectInstance, OccupancyGrid
@@ -70,6 +71,7 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
         floor = max(int(np.floor(-grid.origin_m[2] / grid.voxel_m + 0.5)), 0)
         owners = part_chairs(owners, grid.labels, grid.voxel_m, floor)
         owners = join_backs(owners, grid.labels, grid.voxel_m, floor)
+        owners = part_rows(owners, grid.labels, grid.voxel_m)
     instances = _instances(grid, owners, reach_down=not chosen.paper_compat)
     marked = np.zeros(grid.shape, np.uint16)
     for instance in instances:

@@ -15,7 +15,6 @@ from world2minecraft.classes import OBJECT_CLASSES
 from world2minecraft.errors import UsageError
 from world2minecraft.types import checks
 
-
 STALE = "; placements.json of another version is made anew by --from furnish"
 
 
