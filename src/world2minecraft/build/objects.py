@@ -15,6 +15,7 @@ from world2minecraft.build.morphology import beside
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.parts import Design, design_of
+from world2minecraft.build.seats import chair_paints
 from world2minecraft.build.surfaces import block_colours, painted
 from world2minecraft.build.tops import top_cells
 from world2minecraft.build.worktops import Worktop, find_worktop
@@ -49,6 +50,9 @@ class ObjectBuilder:
         self.parameters = parameters
         self.lattice = canvas.lattice
         self.worktops: dict[int, Worktop] = {}
+        self.paints = chair_paints(
+            grid, colours, coloured & self.exposed, parameters.lightness_weight
+        )
 
     def put_all(self, placements: Sequence[Placement]) -> None:
         """Set every placement, then the object cells that no block near them shows."""
@@ -146,7 +150,10 @@ class ObjectBuilder:
         parts = template(placement.template).parts(placement.size_m, placement.parameters)
         design = design_of(placement, parts, self.lattice)
         window = self._window(design.low, design.halves.shape)
-        if self._contradicted(design, window) > self.parameters.most_contradicted:
+        limit = self.parameters.most_contradicted
+        if placement.class_id == SemanticClass.CHAIR:
+            limit = self.parameters.chair_contradicted
+        if self._contradicted(design, window) > limit:
             return False
         self._plate_over(design, thing.instance)
         window = self._window(design.low, design.halves.shape)
@@ -247,6 +254,9 @@ class ObjectBuilder:
             mask = groups == group
             usable = known & (mask if (known & mask).any() else filled)
             colours[mask] = spread(tinted, usable, mask, default)
+        paint = self.paints.get(thing.instance)
+        if paint is not None:
+            colours[filled], known = paint, filled
         states[filled] = painted(
             filled,
             colours,

@@ -31,7 +31,8 @@ class BuildParameters:
     expose: lift the colours of a dim room and take its colour cast away.
     structure_colours: at most so many blocks a wall, the floor or the ceiling. 3: a wall, its
         skirting and one thing on it; more looked like noise.
-    object_colours: at most so many blocks an object. 6: a shelf with things on it.
+    object_colours: at most so many blocks an object. 6: a shelf with things on it. A chair has
+        one: with two, seat and back at 4 blocks a metre read as two things.
     saturation: how much clear colours are strengthened. 1.2: haze, glare and the mixing of
         neighbouring things in a cell wash colours out; the kitchen's reds came out purple.
     preference: the Oklab distance by which a block of the palette's preferred groups may lie
@@ -52,6 +53,8 @@ class BuildParameters:
         at 4 blocks a metre, and less of its uppermost one.
     most_contradicted: the share of a template's blocks that may stand in space seen free. Above
         it the object is built from its own cells. 0.2: a guess, over what snapping alone does.
+    chair_contradicted: the same for chairs. 0.35: a chair that stands at 45 degrees is built at a
+        quarter turn, and reads as a chair; the heap of its own cells does not.
     close_tops: close the unseen holes in the tops of objects (glossy counters give no depth).
     plane_reach_blocks: surfaces nearer than this to a wall's plane belong to it. 0.75: noise of
         two cells at 4 blocks a metre, under the depth of a chimney breast.
@@ -78,6 +81,7 @@ class BuildParameters:
     face_share: float = 0.3
     object_share: float = 0.25
     most_contradicted: float = 0.2
+    chair_contradicted: float = 0.35
     close_tops: bool = True
     plane_reach_blocks: float = 0.75
     plane_area_m2: float = 0.3
@@ -93,7 +97,13 @@ class BuildParameters:
         for name in _DISTANCES:
             if not 0 <= getattr(self, name) < 1e6:
                 raise UsageError(f"build.{name} must be 0 or more, not {getattr(self, name)}")
-        for name in ("face_share", "object_share", "most_contradicted", "plane_reach_blocks"):
+        for name in (
+            "face_share",
+            "object_share",
+            "most_contradicted",
+            "chair_contradicted",
+            "plane_reach_blocks",
+        ):
             if not 0 < getattr(self, name) <= 1:
                 raise UsageError(
                     f"build.{name} must be above 0, up to 1, not {getattr(self, name)}"

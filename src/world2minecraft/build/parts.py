@@ -55,7 +55,29 @@ def design_of(placement: Placement, parts: Sequence[Part], lattice: Lattice) -> 
         wide = box[1] - box[0]
         owner[where] = index + 1
         posts[where] = bool((wide[:2] < POST).all() and wide[2] > 1)
+    for index in order:
+        if parts[index].role == "seat":
+            _rest_on_posts(index + 1, owner, posts)
     return _turned(owner, posts, middle, base, count, placement.quarter_turns)
+
+
+def _rest_on_posts(seat: int, owner: np.ndarray, posts: np.ndarray) -> None:
+    """Lower a thin seat from the upper to the lower half of its blocks, in place.
+
+    A half post cannot be built: under a plate in the upper half it would have to be a whole
+    block, and a chair became a cube. What stands on the seat comes down with it.
+    """
+    layers = np.unique(np.argwhere(owner == seat)[:, 2])
+    if len(layers) != 1 or layers[0] % 2 == 0 or layers[0] < 3:
+        return
+    level = int(layers[0])
+    mask = owner[:, :, level] == seat
+    if not posts[:, :, level - 1][mask].any():
+        return
+    above = owner[:, :, level + 1] if level + 1 < owner.shape[2] else np.zeros_like(mask, np.int16)
+    owner[:, :, level - 1][mask] = seat
+    posts[:, :, level - 1][mask] = False
+    owner[:, :, level][mask] = above[mask]
 
 
 def _turned(owner, posts, middle, base, count, quarter_turns) -> Design:
