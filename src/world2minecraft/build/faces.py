@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.build.lattice import Lattice, overlaps
+from world2minecraft.build.lattice import Lattice, overlaps, summed
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.types import OccupancyGrid
 
@@ -136,7 +136,7 @@ def vote(faces: Faces, grid: OccupancyGrid, lattice: Lattice) -> Votes:
     flat[(target, *(faces.cells[:, axis] for axis in across))] = 1
     for position, axis in enumerate(across, 1):
         weights = overlaps(lattice.edges_of(grid, axis), lattice.shape[axis])
-        flat = np.moveaxis(np.tensordot(weights, flat, axes=(1, position)), 0, position)
+        flat = summed(weights, flat, position)
     return Votes(np.moveaxis(flat, 0, faces.axis), target, faces.cells, faces.axis)
 
 
@@ -157,7 +157,7 @@ def see_through(
         share = np.take(free, np.clip(layer, 0, len(edges) - 2), faces.axis).astype(np.float32)
         for position, axis in enumerate(across):
             weights = overlaps(lattice.edges_of(grid, axis), lattice.shape[axis])
-            share = np.moveaxis(np.tensordot(weights, share, axes=(1, position)), 0, position)
+            share = summed(weights, share, position)
         sheet = np.moveaxis(result, faces.axis, 0)[target]
         np.maximum(sheet, share, out=sheet)
     return result

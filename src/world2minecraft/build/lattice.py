@@ -120,8 +120,17 @@ def carry(values: np.ndarray, weights: tuple[np.ndarray, np.ndarray, np.ndarray]
     """Return ``values`` [X, Y, Z] summed along each axis by weights [blocks, cells]."""
     result = values.astype(np.float32)
     for axis in range(3):
-        result = np.moveaxis(np.tensordot(weights[axis], result, axes=(1, axis)), 0, axis)
+        result = summed(weights[axis], result, axis)
     return result
+
+
+def summed(weights: np.ndarray, values: np.ndarray, axis: int) -> np.ndarray:
+    """Return ``values`` summed along one axis by ``weights`` float32 [blocks, cells]."""
+    # A kernel that computed with infinity leaves the processor's flag up, and numpy's product of
+    # matrices, which does not lower it first, would warn of a value that is not there.
+    with np.errstate(invalid="ignore"):
+        product = np.tensordot(weights, values, axes=(1, axis))
+    return np.moveaxis(product, 0, axis)
 
 
 def volume_shares(mask: np.ndarray, grid: OccupancyGrid, lattice: Lattice) -> np.ndarray:
@@ -148,9 +157,9 @@ def face_shares(mask: np.ndarray, edges: list[np.ndarray], shape: tuple[int, ...
     member = [memberships(edges[axis], shape[axis]) for axis in range(3)]
     best = np.zeros(shape, np.float32)
     for axis in range(3):
-        seen = np.tensordot(member[axis], mask.astype(np.float32), axes=(1, axis)) > 0
-        share = np.moveaxis(seen, 0, axis).astype(np.float32)
+        seen = summed(member[axis], mask.astype(np.float32), axis) > 0
+        share = seen.astype(np.float32)
         for other in {0, 1, 2} - {axis}:
-            share = np.moveaxis(np.tensordot(cover[other], share, axes=(1, other)), 0, other)
+            share = summed(cover[other], share, other)
         np.maximum(best, share, out=best)
     return best
