@@ -2,20 +2,8 @@
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.furniture.designs import table
-from world2minecraft.furniture.shapes import legs, slab
-from world2minecraft.furniture.template import (
-    BlockSize,
-    LocalBlock,
-    Parameters,
-    Part,
-    Span,
-    Template,
-)
-
-
-def _build(depth: float, width: float, height: float, p: Parameters) -> list[Part]:
-    under = max(height - p["top_thickness"], height / 2)
-    return [*legs(depth, width, under, 0.06), slab("top", depth, width, under, height)]
+from world2minecraft.furniture.forms import four_legged
+from world2minecraft.furniture.template import BlockSize, LocalBlock, Parameters, Span, Template
 
 
 def _design(size: BlockSize, p: Parameters) -> list[LocalBlock]:
@@ -26,7 +14,7 @@ TEMPLATE = Template(
     name="dining_table",
     class_id=SemanticClass.TABLE,
     size_m=(Span(0.6, 0.85, 1.2), Span(0.7, 1.5, 3.0), Span(0.66, 0.75, 0.9)),
-    build=_build,
+    build=four_legged,
     design=_design,
     parameters={"top_thickness": Span(0.03, 0.04, 0.16)},
     turns=2,

@@ -1,8 +1,7 @@
 """A bed for two, with a wider headboard and two pillows."""
 
 from world2minecraft.classes import SemanticClass
-from world2minecraft.furniture.designs import bed
-from world2minecraft.furniture.shapes import backrest, part, slab
+from world2minecraft.furniture.forms import bed_with_headboard, bedstead
 from world2minecraft.furniture.template import (
     BlockSize,
     LocalBlock,
@@ -14,26 +13,12 @@ from world2minecraft.furniture.template import (
 
 
 def _build(depth: float, width: float, height: float, p: Parameters) -> list[Part]:
-    top = min(p["mattress_height"], max(height - 0.1, height / 2))
-    parts = [
-        slab("mattress", depth, width, 0.0, top),
-        backrest(depth, width, top, height, 0.08),
-    ]
-    for middle in (-width / 4, width / 4):
-        across = (middle - width / 5, middle + width / 5)
-        parts.append(part("pillow", (0.08 - depth / 2, 0.45 - depth / 2), across, (top, top + 0.1)))
-    return parts
+    pillows = [(-0.45 * width, -0.05 * width), (0.05 * width, 0.45 * width)]
+    return bedstead(depth, width, height, p, pillows)
 
 
 def _design(size: BlockSize, p: Parameters) -> list[LocalBlock]:
-    panel = "minecraft:spruce_trapdoor[facing=east,half=bottom,open=true]"
-    blocks = bed(size, "red")
-    if size.depth > 2:
-        rows = range(size.width)
-        blocks += [
-            LocalBlock((0, j, k), panel, "back") for k in range(1, size.height) for j in rows
-        ]
-    return blocks
+    return bed_with_headboard(size, "red")
 
 
 TEMPLATE = Template(

@@ -1,8 +1,7 @@
 """A bed for one."""
 
 from world2minecraft.classes import SemanticClass
-from world2minecraft.furniture.designs import bed
-from world2minecraft.furniture.shapes import backrest, part, slab
+from world2minecraft.furniture.forms import bed_with_headboard, bedstead
 from world2minecraft.furniture.template import (
     BlockSize,
     LocalBlock,
@@ -14,25 +13,12 @@ from world2minecraft.furniture.template import (
 
 
 def _build(depth: float, width: float, height: float, p: Parameters) -> list[Part]:
-    top = min(p["mattress_height"], max(height - 0.1, height / 2))
-    parts = [
-        slab("mattress", depth, width, 0.0, top),
-        backrest(depth, width, top, height, 0.08),
-    ]
-    across = (-width / 3, width / 3)
-    parts.append(part("pillow", (0.08 - depth / 2, 0.45 - depth / 2), across, (top, top + 0.1)))
-    return parts
+    pillows = [(-width / 3, width / 3)]
+    return bedstead(depth, width, height, p, pillows)
 
 
 def _design(size: BlockSize, p: Parameters) -> list[LocalBlock]:
-    panel = "minecraft:spruce_trapdoor[facing=east,half=bottom,open=true]"
-    blocks = bed(size, "blue")
-    if size.depth > 2:
-        rows = range(size.width)
-        blocks += [
-            LocalBlock((0, j, k), panel, "back") for k in range(1, size.height) for j in rows
-        ]
-    return blocks
+    return bed_with_headboard(size, "blue")
 
 
 TEMPLATE = Template(

@@ -2,7 +2,7 @@
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.furniture.designs import seat_row
-from world2minecraft.furniture.shapes import arms, backrest, slab
+from world2minecraft.furniture.forms import upholstered
 from world2minecraft.furniture.template import (
     BlockSize,
     LocalBlock,
@@ -14,12 +14,7 @@ from world2minecraft.furniture.template import (
 
 
 def _build(depth: float, width: float, height: float, p: Parameters) -> list[Part]:
-    seat = min(p["seat_height"], 0.7 * height)
-    return [
-        slab("seat", depth, width, 0.0, seat),
-        backrest(depth, width, seat, height, 0.22),
-        *arms(depth, width, seat, min(p["arm_height"], height), 0.18),
-    ]
+    return upholstered(depth, width, height, p, back_m=0.22, arm_m=0.18)
 
 
 def _design(size: BlockSize, p: Parameters) -> list[LocalBlock]:
