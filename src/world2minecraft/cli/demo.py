@@ -10,7 +10,7 @@ w2m demo                        a living room, to OUT/
 w2m demo --kind kitchen         another room
 w2m demo --seed 7 --out other   another one again
 """
-DEMO_SEED = 0
+DEMO_SEED = 5
 DEMO_FRAMES = 40
 
 
