@@ -46,6 +46,13 @@ def test_chairs_of_a_set_share_one_paint_and_a_red_one_keeps_its_own():
     assert paints[2][1] > paints[1][1] + 0.05, "more red than the brown ones"
 
 
+def test_grey_cushions_do_not_hide_a_wooden_frame():
+    grey = (150, 150, 148)
+    paints = chair_paints(*chairs((grey, BROWN), (grey, grey)), 0.4)
+    assert np.allclose(paints[1], oklab_of_srgb(np.array(BROWN, np.uint8)), atol=1e-4)
+    assert np.hypot(*paints[2][1:]) < 0.01
+
+
 def test_no_chairs_no_paints():
     grid, colours, usable = chairs((BROWN, SHADE))
     assert chair_paints(grid, colours, np.zeros_like(usable), 0.4) == {}

@@ -1,7 +1,8 @@
 """The paint of chairs: one for a chair, and the same for chairs of one set.
 
 A chair is small and half in the shade of a table, so the median of its cells is that of shadow;
-its lighter half says what it is made of. Chairs whose colours lie near are a set.
+its lighter half says what it is made of, and of a frame with cushions the part that has a hue.
+Chairs whose colours lie near are a set.
 """
 
 import numpy as np
@@ -9,8 +10,9 @@ import numpy as np
 from world2minecraft.classes import SemanticClass
 from world2minecraft.types import OccupancyGrid
 
-SAME_SET = 0.12  # Oklab, lightness counting as little as in the choice of blocks: two woods apart.
+SAME_SET = 0.08  # Oklab, lightness as light as in the choice of blocks: brown and grey are 0.1.
 LIGHTER_SHARE = 0.5
+CLEAR_CHROMA, CLEAR_SHARE = 0.03, 0.3  # Over sensor noise; grey cushions leave so much of a frame.
 
 
 def chair_paints(
@@ -46,9 +48,14 @@ def chair_paints(
 
 
 def lit_colour(colours: np.ndarray) -> np.ndarray:
-    """Return the median, float32 [3], of the lighter half of Oklab colours [N, 3]."""
-    order = np.argsort(colours[:, 0], kind="stable")
-    lighter = colours[order[int(len(order) * (1 - LIGHTER_SHARE)) :]]
+    """Return the median, float32 [3], of the lighter half of Oklab colours [N, 3].
+
+    Only those with a clear hue count, where they are a fair part.
+    """
+    clear = np.hypot(colours[:, 1], colours[:, 2]) >= CLEAR_CHROMA
+    counted = colours[clear] if clear.mean() >= CLEAR_SHARE else colours
+    order = np.argsort(counted[:, 0], kind="stable")
+    lighter = counted[order[int(len(order) * (1 - LIGHTER_SHARE)) :]]
     return np.median(lighter, axis=0).astype(np.float32)
 
 
