@@ -158,11 +158,13 @@ def fuse_views(
         CaptureError: no view gave evidence, or the capture is larger than the map may be.
     """
     map_ = EvidenceMap(scan.scan_to_room, parameters)
-    total = len(scan.views)
-    for done, item in enumerate(evidence, 1):
+    total, done = len(scan.views), 0
+    for item in evidence:
         map_.add(item)
-        progress("fuse", min(done, total), total, item.view)
-    progress("fuse", total, total)
+        done = min(done + 1, total)
+        progress("fuse", done, total, item.view)
+    if done < total:  # Some views gave nothing.
+        progress("fuse", total, total)
     return map_.fused()
 
 
