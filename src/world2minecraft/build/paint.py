@@ -17,6 +17,8 @@ from world2minecraft.minecraft.colours import colours_of
 LEAST_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
 LEAST_BLOCKS = 3.0
 ROUNDS = 4
+# A blue chair may be a stronger blue, but not purple: hue counts more than chroma.
+CHROMA_WEIGHT, HUE_WEIGHT = 0.6, 1.5
 SAME_PAINT = 0.06  # Oklab distance of two medians of one paint: about the noise of fused colours.
 MAX_DISTANCES = 1 << 24  # Blocks times candidates held at once: 64 MB.
 
@@ -29,13 +31,17 @@ def costs_of(
 ) -> np.ndarray:
     """Return squared distances, float32 [N, M], of Oklab colours [N, 3] to M blocks.
 
+    The difference of a and b is parted into that of chroma and the rest, which is that of hue.
+
     ``handicaps`` float [M] are added to the distances.
     """
-    scale = np.array([np.sqrt(lightness_weight), 1, 1], np.float32)
-    wanted = colours.astype(np.float32) * scale
-    offered = oklab_of_srgb(colours_of(candidates)) * scale
-    apart = np.sqrt(((wanted[:, None] - offered) ** 2).sum(-1))
-    return (apart + handicaps.astype(np.float32)) ** 2
+    wanted = colours.astype(np.float32)[:, None]
+    offered = oklab_of_srgb(colours_of(candidates))
+    square = (wanted - offered) ** 2
+    chroma = np.hypot(wanted[..., 1], wanted[..., 2]) - np.hypot(offered[:, 1], offered[:, 2])
+    hue = np.maximum(square[..., 1] + square[..., 2] - chroma**2, 0)
+    apart = lightness_weight * square[..., 0] + CHROMA_WEIGHT * chroma**2 + HUE_WEIGHT * hue
+    return (np.sqrt(apart) + handicaps.astype(np.float32)) ** 2
 
 
 def choose_few(costs: np.ndarray, most: int, noticed: float) -> np.ndarray:
