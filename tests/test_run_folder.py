@@ -70,6 +70,17 @@ def test_times_lie_in_run_json_and_nowhere_else(tmp_path):
     }
 
 
+def test_times_of_one_stage_add_up_and_nothing_is_written_before_it_begins(tmp_path):
+    run = RunFolder(tmp_path / "out", STAGES)
+    with run.timed("scan"):
+        sum(range(200_000))
+    assert not (tmp_path / "out").exists()
+    run.begin({})
+    with run.stage("scan"):
+        pass
+    assert json.loads((tmp_path / "out/run.json").read_text())["stage_s"]["scan"] > 0
+
+
 def test_an_out_that_is_a_file_is_refused_and_kept(tmp_path):
     target = tmp_path / "out"
     target.write_text("mine")

@@ -56,7 +56,8 @@ def reconstruct(
     chosen = parameters or Parameters()
     run = RunFolder(out, STAGES, start)
     options = {"voxel_m": chosen.voxel_m, "labels": labels, "options": chosen.capture}
-    scan = open_scan(capture, progress=progress, **options)
+    with run.timed("scan"):
+        scan = open_scan(capture, progress=progress, **options)
     run.begin(manifest(capture, labels, chosen))
     if run.needs("scan"):
         with run.stage("scan"):
