@@ -85,6 +85,7 @@ def _with_joined_fences(blocks: list[IdiomBlock]) -> list[IdiomBlock]:
     state_at = {block.offset: block.state for block in blocks}
 
     def joined(block: IdiomBlock) -> IdiomBlock:
+        """Return a fence with its sides set, and any other block as it is."""
         state = parse_state(block.state)
         if not state.name.endswith("_fence"):
             return block

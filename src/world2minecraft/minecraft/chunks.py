@@ -122,6 +122,7 @@ class _ChunkReader(NbtReader):
         self._known = known
 
     def elements(self, tag: int, count: int, depth: int) -> list[Any]:
+        """Read a list's elements; of a palette those seen before are not parsed again."""
         ends = np.empty(count if tag == COMPOUND and self.key == "palette" else 0, np.int64)
         if not len(ends) or not skip_texts(np.frombuffer(self.data, np.uint8), self.at, ends):
             return super().elements(tag, count, depth)
