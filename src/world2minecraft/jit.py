@@ -7,6 +7,7 @@ and computes the same bits on every run (no fast-math).
 import hashlib
 import os
 import sys
+import tempfile
 from pathlib import Path
 
 
@@ -36,7 +37,22 @@ def kernel_sources_digest() -> str:
     return digest.hexdigest()[:16]
 
 
-KERNEL_CACHE = user_cache_dir() / "kernels" / kernel_sources_digest()
+def kernel_cache_dir() -> Path:
+    """Make and return the folder of compiled kernels; a passing one where the user's is closed.
+
+    What lies in it is run as code, so it is never a folder that others could have filled.
+    """
+    folder = user_cache_dir() / "kernels" / kernel_sources_digest()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="world2minecraft-kernels-"))
+    if os.access(folder, os.W_OK):
+        return folder
+    return Path(tempfile.mkdtemp(prefix="world2minecraft-kernels-"))
+
+
+KERNEL_CACHE = kernel_cache_dir()
 os.environ.setdefault("NUMBA_CACHE_DIR", str(KERNEL_CACHE))
 
 import numba  # noqa: E402  # The cache folder must be named before numba is loaded.

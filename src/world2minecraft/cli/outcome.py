@@ -8,7 +8,7 @@ def compiling_note() -> None:
     """Say, once after installation, why the first run takes longer."""
     from world2minecraft.jit import KERNEL_CACHE
 
-    if not KERNEL_CACHE.is_dir() or not any(KERNEL_CACHE.iterdir()):
+    if not any(KERNEL_CACHE.iterdir()):
         print("First run: compiling the inner loops, about 30 s; later runs start at once.")
 
 
