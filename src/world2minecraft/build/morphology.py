@@ -3,6 +3,8 @@
 import numpy as np
 from scipy import ndimage
 
+from world2minecraft.geometry.parts import connected_parts
+
 
 def grown(mask: np.ndarray, reach: tuple[int, ...]) -> np.ndarray:
     """Return a bool mask grown by ``reach`` cells each way along each axis, corners included."""
@@ -48,8 +50,7 @@ def parts_of(mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Returns:
         int32 of the mask's shape, 0 where it is empty; int64 [parts + 1], entry 0 is 0.
     """
-    numbers = np.zeros(mask.shape, np.int32)
-    ndimage.label(mask, output=numbers)
+    numbers, _ = connected_parts(mask, corners=False)
     sizes = np.bincount(numbers.ravel(), minlength=1)
     sizes[0] = 0
     return numbers, sizes

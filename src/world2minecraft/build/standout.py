@@ -10,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
+from world2minecraft.geometry.parts import connected_parts
+
 ROUNDS = 4
 SCALE = 0.05  # Oklab distance at which a block counts half in the fit.
 LEAST_BLOCKS = 12  # A fit of six numbers to fewer blocks says nothing.
@@ -52,8 +54,7 @@ def standing_out(mask: np.ndarray, colours: np.ndarray, step_m: float, steps: St
     sheet = np.zeros((2, *(at.max(0) + 1)), bool)
     sheet[:, at[:, 0], at[:, 1]] = sure, maybe
     wide = np.asarray(ndimage.binary_opening(sheet[1], np.ones((2, 2), bool)), bool)
-    parts = np.zeros(wide.shape, np.int32)
-    ndimage.label(wide, output=parts)
+    parts, _ = connected_parts(wide, corners=False)
     sizes = np.bincount(parts.ravel())
     held = np.bincount(parts[sheet[0]], minlength=len(sizes))
     good = (sizes * step_m**2 >= steps.least_m2) & (sizes <= MOST_SHARE * len(places))

@@ -1,10 +1,9 @@
 """What scans tear off: loose pieces join an object of their class near by, or become one."""
 
 import numpy as np
-from scipy import ndimage
 from scipy.spatial import KDTree
 
-ALL_NEIGHBOURS = np.ones((3, 3, 3), np.bool_)
+from world2minecraft.geometry.parts import connected_parts
 
 
 def rejoin(
@@ -43,8 +42,7 @@ def _rejoin_class(mask: np.ndarray, owners: np.ndarray, min_cells: int, join_rad
 
 def _grouped(loose: np.ndarray) -> list[np.ndarray]:
     """Return the cells, int64 [N, 3], of each connected piece."""
-    pieces = np.empty(loose.shape, np.int32)
-    ndimage.label(loose, ALL_NEIGHBOURS, output=pieces)
+    pieces, _ = connected_parts(loose)
     cells = np.argwhere(pieces)
     numbers = pieces[tuple(cells.T)]
     order = np.argsort(numbers, kind="stable")

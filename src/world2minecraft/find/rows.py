@@ -7,13 +7,13 @@ from scipy import ndimage
 from scipy.spatial import KDTree
 
 from world2minecraft.classes import SemanticClass
+from world2minecraft.geometry.parts import connected_parts
 
 LONG_M = 1.2  # Shorter furniture is one piece.
 STEP_M = 0.3  # Tops that differ by less are one row: a counter with a hob, things on a board.
 LEAST_CELLS = 40  # A piece of fewer cells is no cupboard: at 0.08 m, a front of 0.5 m side.
 LEAST_M2 = 0.05  # Of the plan: a cupboard's front, one cell deep.
 THIN_LAYER = 0.35  # A layer with less of the plan than this parts what hangs from what stands.
-ALL_NEIGHBOURS = np.ones((3, 3, 3), np.bool_)
 
 
 def part_rows(owners: np.ndarray, labels: np.ndarray, voxel_m: float) -> np.ndarray:
@@ -75,9 +75,8 @@ def _levels(storey: np.ndarray, voxel_m: float) -> list[np.ndarray]:
     heights = _heights(top[top > 0], STEP_M / voxel_m)
     plans = []
     for first, last in zip(heights, [*heights[1:], storey.shape[2] + 1], strict=True):
-        pieces = np.empty(top.shape, np.int32)
-        ndimage.label((top >= first) & (top < last), ALL_NEIGHBOURS[1], output=pieces)
-        for piece in range(1, int(pieces.max()) + 1):
+        pieces, count = connected_parts((top >= first) & (top < last))
+        for piece in range(1, count + 1):
             plan = pieces == piece
             if plan.sum() * voxel_m**2 >= LEAST_M2:
                 plans.append(plan)

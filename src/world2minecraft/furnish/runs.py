@@ -1,9 +1,9 @@
 """An object that is no box, such as an L of counters, cut into axis-aligned runs."""
 
 import numpy as np
-from scipy import ndimage
 
 from world2minecraft.furnish.evidence import AGAINST, OWN, Evidence
+from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.jit import njit
 
 THIN_LAYER = 0.35  # A layer with less of the plan than this parts what is under it from above.
@@ -49,9 +49,7 @@ def _pieces(cells: np.ndarray) -> list[np.ndarray]:
     low = cells.min(axis=0)
     mask = np.zeros(np.ptp(cells, axis=0) + 1, np.bool_)
     mask[tuple((cells - low).T)] = True
-    numbers = np.empty(mask.shape, np.int32)
-    ndimage.label(mask, np.ones((3, 3, 3)), output=numbers)
-    count = int(numbers.max())
+    numbers, count = connected_parts(mask)
     return [np.argwhere(numbers == number) + low for number in range(1, count + 1)]
 
 

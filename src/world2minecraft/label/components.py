@@ -6,7 +6,7 @@ from typing import cast
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.label.morphology import parts_of
+from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.label.parameters import PieceParameters
 from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
@@ -54,7 +54,7 @@ def find_pieces(
 
     A piece is near a wall where one of its cells is within ``near_wall_m`` of a wall's column.
     """
-    parts, count = parts_of(rest)
+    parts, count = connected_parts(rest)
     columns = wall.sum(axis=2) >= 2
     apart_m = np.full(columns.shape, np.inf)
     if columns.any():

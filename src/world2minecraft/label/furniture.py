@@ -3,8 +3,9 @@
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
+from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.label.components import Piece, find_pieces
-from world2minecraft.label.morphology import grown, parts_of, plan_of
+from world2minecraft.label.morphology import grown, plan_of
 from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.plates import Plate, find_plates
 from world2minecraft.label.rules import Table, class_of_piece, class_of_plate
@@ -89,7 +90,7 @@ def _claimed(surface: Surface, plate: Plate, left: np.ndarray, kind: SemanticCla
     reach = around & left & (height <= max(top_m, plate.height_m + TOP_M))
     if kind == SemanticClass.TABLE:
         return reach & (height >= plate.height_m - TOP_M)
-    parts, _ = parts_of(reach)
+    parts, _ = connected_parts(reach)
     own = np.unique(parts[plate.mask & left])
     return reach & np.isin(parts, own[own > 0])
 

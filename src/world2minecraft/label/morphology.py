@@ -1,4 +1,4 @@
-"""Growing, shrinking and parting masks, in plan or in space; corners join."""
+"""Growing and shrinking masks, in plan or in space; corners join."""
 
 from typing import cast
 
@@ -29,12 +29,6 @@ def filled(mask: np.ndarray, steps: int = 2) -> np.ndarray:
     inner = (slice(2 * steps, -2 * steps),) * mask.ndim
     closed = shrunk(grown(room, steps), steps)[inner] | mask
     return cast(np.ndarray, ndimage.binary_fill_holes(closed))
-
-
-def parts_of(mask: np.ndarray) -> tuple[np.ndarray, int]:
-    """Return the connected parts of a bool mask, numbered from 1, and how many there are."""
-    structure = np.ones((3,) * mask.ndim, bool)
-    return cast(tuple[np.ndarray, int], ndimage.label(mask, structure))
 
 
 def plan_of(mask: np.ndarray) -> np.ndarray:

@@ -8,7 +8,8 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.classes import SemanticClass
-from world2minecraft.label.morphology import grown, opened, parts_of
+from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.label.morphology import grown, opened
 from world2minecraft.label.parameters import StructureParameters, within
 from world2minecraft.label.surface import Surface
 from world2minecraft.label.walls import WallRun, turned
@@ -37,7 +38,7 @@ def label_openings(
         depth = (weight * gap).sum(axis=0) / np.maximum(total, 1)
         recessed = (total > 0) & (depth >= low) & (depth <= high)
         plane = (total > 0) & (np.abs(depth) < low)
-        parts, _ = parts_of(opened(recessed))
+        parts, _ = connected_parts(opened(recessed))
         for number, box in enumerate(ndimage.find_objects(parts), 1):
             part = parts == number
             kind = _kind(part[box], box[1].start, surface, parameters)

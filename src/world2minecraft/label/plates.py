@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.label.morphology import filled, grown, parts_of, plan_of, shrunk
+from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.label.morphology import filled, grown, plan_of, shrunk
 from world2minecraft.label.parameters import PlateParameters
 from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
@@ -74,7 +75,7 @@ def _neighbours(mask: np.ndarray, height: np.ndarray, gate_m: float) -> np.ndarr
 
 def _plates_at(surface: Surface, near: np.ndarray, parameters: PlateParameters) -> list[Plate]:
     """Return the plates among cells of one height, by decreasing number of columns."""
-    parts, count = parts_of(plan_of(near))
+    parts, count = connected_parts(plan_of(near))
     sizes = np.bincount(parts.reshape(-1), minlength=count + 1)[1:]
     found = []
     for part in np.argsort(-sizes, kind="stable") + 1:

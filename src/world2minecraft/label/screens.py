@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
-from world2minecraft.label.morphology import parts_of
+from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.label.parameters import PieceParameters, within
 from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
@@ -61,7 +61,7 @@ def label_screens(
 
 def _plates(near: np.ndarray) -> list[np.ndarray]:
     """Return the parts of cells at one depth that hang together, seen face on."""
-    parts, count = parts_of(cast(np.ndarray, near.any(axis=0)))
+    parts, count = connected_parts(cast(np.ndarray, near.any(axis=0)))
     return [near & (parts == part)[None] for part in range(1, count + 1)]
 
 

@@ -7,16 +7,15 @@ at before they become cells, so that touching furniture is no collision.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
 from world2minecraft.classes import OBJECT_CLASSES, STRUCTURE_CLASSES
+from world2minecraft.geometry.parts import connected_parts
 
 OVERLAP_M = 0.04  # Half a default cell: less than what reading a size from cells can tell.
 OUTSIDE_M = 0.04  # The same, for boxes that reach into walls.
-FULL_NEIGHBOURHOOD = np.ones((3, 3, 3), bool)
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,8 +104,7 @@ def floaters(labels: np.ndarray) -> Floaters:
     """
     is_object = np.isin(labels, OBJECT_CLASSES)
     structure = np.isin(labels, STRUCTURE_CLASSES)
-    joined = ndimage.label(is_object | structure, structure=FULL_NEIGHBOURHOOD)
-    parts, count = cast(tuple[np.ndarray, int], joined)
+    parts, count = connected_parts(is_object | structure)
     carried = np.zeros(count + 1, bool)
     carried[np.unique(parts[structure])] = True
     mask = is_object & ~carried[parts]

@@ -8,9 +8,9 @@ turns of a front that looks away from them: 0 at x = 0, 1 at y = 0, 2 at x = max
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage
 
 from world2minecraft.coordinates import apply, rotation_about_z
+from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.rooms.model import STEP_M, Model
 
 TOUCH_M = 1e-6  # Boxes may share a face.
@@ -209,17 +209,10 @@ def ways_are_clear(plan: Plan, door_m: tuple[float, float], body_m: float = 0.24
         x0, y0, z0, x1, y1, z1 = item.box_m
         if z0 < 1.9 and z1 > 0.05:
             free &= ~((x > x0 - body_m) & (x < x1 + body_m) & (y > y0 - body_m) & (y < y1 + body_m))
-    parts = connected_parts(free)
+    parts, _ = connected_parts(free, corners=False)
     if not parts.any():
         return False
     distance = np.where(free, np.hypot(x - door_m[0], y - door_m[1]), np.inf)
     start = parts.reshape(-1)[int(distance.argmin())]
     reached = int((parts == start).sum())
     return bool(distance.min() < 1.0 and reached >= 0.75 * free.sum() and reached * step**2 > 1.2)
-
-
-def connected_parts(free: np.ndarray) -> np.ndarray:
-    """Return int32 [X, Y]: 0 where not free, else the number of the connected part, from 1."""
-    parts = np.zeros(free.shape, np.int32)
-    ndimage.label(free, output=parts)
-    return parts

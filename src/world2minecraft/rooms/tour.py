@@ -9,9 +9,9 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.coordinates import look_at
+from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.render import cast_voxels
 from world2minecraft.render.scene import RayScene
-from world2minecraft.rooms.place import connected_parts
 from world2minecraft.rooms.room import Room
 from world2minecraft.types import Camera
 
@@ -39,7 +39,7 @@ def free_floor(room: Room) -> np.ndarray:
     nx, ny = (side // step * step for side in taken.shape)
     inner = distance[:nx, :ny]
     free = inner[step // 2 :: step, step // 2 :: step] > body
-    parts = connected_parts(free)
+    parts, _ = connected_parts(free, corners=False)
     if not free.any():
         return free
     return parts == 1 + np.argmax(np.bincount(parts.reshape(-1))[1:])
