@@ -49,12 +49,18 @@ class LayoutObject:
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """A room: its floor polygon (counter-clockwise from above), walls, openings and objects."""
+    """A room: its floor polygon (counter-clockwise from above), walls, openings and objects.
+
+    ``floor_z_m`` is the height of its floor in the frame, above 0 for an upper storey. Sills,
+    heads and the wall's height count from it; places of objects are in the frame.
+    """
 
     floor_polygon_m: np.ndarray  # float64 [N, 2]
     wall_height_m: float
     openings: tuple[Opening, ...] = ()
     objects: tuple[LayoutObject, ...] = field(default=())
+    floor_z_m: float = 0.0
+    name: str = ""
 
     def __post_init__(self):
         put = object.__setattr__
@@ -63,5 +69,6 @@ class Layout:
             raise ValueError(f"floor_polygon_m needs 3 corners or more, not {len(polygon)}")
         put(self, "floor_polygon_m", polygon)
         checks.positive("wall_height_m", self.wall_height_m)
+        checks.floats("floor_z_m", [self.floor_z_m], (1,))
         put(self, "openings", tuple(self.openings))
         put(self, "objects", tuple(self.objects))
