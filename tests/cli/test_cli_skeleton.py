@@ -51,11 +51,45 @@ def test_version(capsys):
 
 @pytest.mark.parametrize("name", verbs.VERBS)
 def test_each_verb_has_a_help_that_ends_with_examples(name, capsys):
-    assert cli.run([name, "--help"]) == 0
+    assert cli.run([*name.split(), "--help"]) == 0
     text = capsys.readouterr().out
     assert text.startswith(f"Usage: w2m {name}")
     assert f"  w2m {name}" in text.partition("Examples:")[2]
     assert "Args:" not in text
+
+
+@pytest.fixture
+def verb_of_two_words(monkeypatch):
+    """Put a verb ``pro be`` in the table that counts to a number."""
+    module = type(sys)("world2minecraft.cli.pro_be")
+
+    def run(number: int) -> int:
+        """Be a probe."""
+        return number
+
+    module.run, module.EXAMPLES = run, "w2m pro be 5      an example\n"
+    monkeypatch.setitem(sys.modules, "world2minecraft.cli.pro_be", module)
+    monkeypatch.setitem(verbs.VERBS, "pro be", "Probe two words.")
+
+
+def test_a_verb_of_two_words_is_called_and_helped(verb_of_two_words, capsys):
+    assert cli.run(["pro", "be", "5"]) == 5
+    assert cli.run(["pro", "be", "--help"]) == 0
+    assert capsys.readouterr().out.startswith("Usage: w2m pro be")
+
+
+def test_the_first_of_two_words_shows_its_verbs(verb_of_two_words, capsys):
+    assert cli.run(["pro", "--help"]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("Usage: w2m pro")
+    assert "be  Probe two words." in text
+    assert "reconstruct" not in text
+
+
+def test_a_wrong_second_word_names_the_right_verb(verb_of_two_words, capsys):
+    assert cli.run(["pro", "bee"]) == 2
+    line = "error: no verb is named 'pro bee'; did you mean 'pro be'?\n"
+    assert capsys.readouterr().err == line
 
 
 def test_help_imports_nothing_heavy():

@@ -1,6 +1,7 @@
 """The verbs of ``w2m``: one line here, one file beside, imported when its verb is called.
 
-A verb is a module ``world2minecraft.cli.NAME`` (dashes become underscores) with a function
+A verb is a module ``world2minecraft.cli.NAME`` (dashes and the space of a verb of two words, such
+as ``rooms scan``, become underscores) with a function
 ``run`` whose typed parameters are its arguments, as typer reads them, and a text ``EXAMPLES``
 that its ``--help`` ends with. ``run`` returns an exit code, or None for 0.
 """
@@ -55,15 +56,24 @@ class VerbCommand(TyperCommand):
 
 
 class VerbGroup(TyperGroup):
-    """All verbs. Listing them imports none."""
+    """The verbs that begin with ``prefix``, all for an empty one. Listing them imports none."""
+
+    prefix = ""
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """Return the names of all verbs."""
-        return list(VERBS)
+        """Return the names of the verbs."""
+        return list(self._lines())
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Import the verb's module and make its command."""
-        return load(cmd_name) if cmd_name in VERBS else None
+        """Import the verb's module and make its command; the first of two words is a group."""
+        name = f"{self.prefix}{cmd_name}"
+        if name in VERBS:
+            return load(name)
+        return _family(name) if any(verb.startswith(f"{name} ") for verb in VERBS) else None
+
+    def _lines(self) -> dict[str, str]:
+        start = len(self.prefix)
+        return {verb[start:]: VERBS[verb] for verb in VERBS if verb.startswith(self.prefix)}
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Find the verb that ``args`` begin with.
@@ -71,30 +81,47 @@ class VerbGroup(TyperGroup):
         Raises:
             UnknownNameError: there is none; the message suggests the nearest.
         """
-        if args[0] not in VERBS and not args[0].startswith("-"):
+        if self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
             from world2minecraft.errors import UnknownNameError
 
-            raise UnknownNameError("verb", args[0], VERBS)
+            raise UnknownNameError("verb", f"{self.prefix}{args[0]}", VERBS)
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the table of verbs from their lines here."""
         with formatter.section("Verbs"):
-            formatter.write_dl(list(VERBS.items()))
+            formatter.write_dl(list(self._lines().items()))
 
     def format_epilog(self, ctx: Any, formatter: Any) -> None:
         """Write the examples under the table."""
-        _write_examples(formatter, EXAMPLES)
+        if not self.prefix:
+            _write_examples(formatter, EXAMPLES)
 
 
 def load(verb: str) -> Any:
     """Import a verb's module and return its command."""
-    module = import_module(f"world2minecraft.cli.{verb.replace('-', '_')}")
+    words = verb.split()
+    module = import_module(f"world2minecraft.cli.{'_'.join(words).replace('-', '_')}")
     app = typer.Typer(rich_markup_mode=None, add_completion=False)
-    app.command(name=verb, help=_help(verb, module.run), cls=VerbCommand)(module.run)
+    app.command(name=words[-1], help=_help(verb, module.run), cls=VerbCommand)(module.run)
     command = typer.main.get_command(app)
     command.examples = module.EXAMPLES  # type: ignore[attr-defined]
     return command
+
+
+def _family(first: str) -> Any:
+    """Return the group of the verbs that begin with a word; alone it shows its help."""
+    app = typer.Typer(
+        cls=VerbGroup, rich_markup_mode=None, add_completion=False, no_args_is_help=True
+    )
+    app.callback(help=f"The verbs that begin with {first}.")(_no_options)
+    group = typer.main.get_command(app)
+    group.name, group.prefix = first, f"{first} "  # type: ignore[attr-defined]
+    return group
+
+
+def _no_options() -> None:
+    """Take nothing: a group's own help."""
 
 
 def _help(verb: str, function: Callable[..., Any]) -> str:
