@@ -10,8 +10,8 @@ from world2minecraft.errors import UnknownNameError
 from world2minecraft.files import read_npz
 from world2minecraft.geometry.lifting import lift_depth
 from world2minecraft.rooms import generate_room, room_views, scan_room
-from world2minecraft.rooms.capture import room_to_scan
 from world2minecraft.rooms.photo import prepare_photos
+from world2minecraft.rooms.shots import room_to_scan
 from world2minecraft.rooms.tour import free_floor, plan_tour
 from world2minecraft.types import Camera
 

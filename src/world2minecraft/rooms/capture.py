@@ -4,31 +4,19 @@ The capture is in our plain layout; its world frame is turned, tilted and shifte
 alignment has work. ``truth.npz`` and ``truth.json`` hold what no sensor knows.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES
+from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.files import write_json, write_npz
 from world2minecraft.progress import Progress, silent
-from world2minecraft.rooms.photo import Photo, PhotoScene, prepare_photos, take_photo
 from world2minecraft.rooms.room import Room
-from world2minecraft.rooms.sensor import (
-    Sensor,
-    jittered_pose,
-    rotation_of_vector,
-    sense_depth,
-    sensor,
-)
-from world2minecraft.rooms.tour import plan_tour
+from world2minecraft.rooms.shots import FrameTruth, Shooting, Shot, room_shots, room_to_scan
 from world2minecraft.scan.plain import write_plain
-from world2minecraft.types import Camera, View
-
-FOCAL_SHARE = 0.82  # Of the width: 525 px at 640, a field of view of 63 degrees.
-MAX_TILT_DEG = 27.0  # What the shared kitchen's world frame is tilted by.
-LUMINANCE = np.array([0.299, 0.587, 0.114], np.float32)
-PATCH_PX = 8  # Label errors come in patches: a segmenter errs by regions.
+from world2minecraft.types import Layout, LayoutObject, Opening, View
 
 
 def scan_room(
@@ -40,39 +28,40 @@ def scan_room(
     seed: int = 0,
     with_labels: bool = False,
     label_error: float = 0.0,
+    depth_scale_sigma: float = 0.0,
+    coverage: float = 1.0,
     width: int = 640,
     height: int = 480,
     progress: Progress = silent,
 ) -> None:
-    """Scan a room virtually and write the capture with its truth.
+    """Scan a room or a house virtually and write the capture with its truth.
 
     Args:
-        room: the room.
+        room: the room or the house.
         folder: where the capture goes; made if missing.
         sensor: ``rgbd`` or ``clean``.
-        frames: how many pictures.
+        frames: how many pictures the whole tour has.
         seed: of the tour, the world frame and the noise; the same seed gives the same bytes.
         with_labels: whether to write label images.
         label_error: the share of the label images, in patches, that says another class.
+        depth_scale_sigma: each frame's depth is multiplied by a factor of its own, 1 give or
+            take this much, as depth networks and badly calibrated sensors do.
+        coverage: the share of the tour that is walked, above 0 and up to 1: the pictures of 0.6
+            are the first 60 % of those of 1, so that some corners stay unseen.
         width: of the pictures, in pixels.
         height: of the pictures, in pixels.
         progress: called after each frame, stage ``capture``.
 
     Raises:
-        UnknownNameError: no sensor has this name. OutputError: the folder cannot be written.
+        UnknownNameError: no sensor has this name. ValueError: a figure is out of its range.
+        OutputError: the folder cannot be written.
     """
-    views = room_views(
-        room, sensor=sensor, frames=frames, seed=seed, with_labels=with_labels,
-        label_error=label_error, width=width, height=height,
-    )  # fmt: skip
-    write_plain(folder, _reported(views, frames, progress))
-    write_truth(room, folder, room_to_scan(seed))
-
-
-def _reported(views: Iterator[View], frames: int, progress: Progress) -> Iterator[View]:
-    for done, view in enumerate(views, start=1):
-        yield view
-        progress("capture", done, frames, view.name)
+    how = Shooting(
+        sensor, frames, seed, with_labels, label_error, depth_scale_sigma, coverage, width, height
+    )
+    truths: list[FrameTruth] = []
+    write_plain(folder, _views(room_shots(room, how), truths, how.taken, progress))
+    write_truth(room, folder, room_to_scan(seed), truths)
 
 
 def room_views(
@@ -83,94 +72,41 @@ def room_views(
     seed: int = 0,
     with_labels: bool = False,
     label_error: float = 0.0,
+    depth_scale_sigma: float = 0.0,
+    coverage: float = 1.0,
     width: int = 640,
     height: int = 480,
 ) -> Iterator[View]:
     """Yield the views of a virtual scan one at a time; arguments as ``scan_room``."""
-    model = _sensor(sensor)
-    if frames < 1 or not 0 <= label_error <= 1:
-        raise ValueError(f"frames must be 1 or more and label_error a share, not {frames}")
-    focal_px = FOCAL_SHARE * width
-    camera = Camera(width, height, focal_px, focal_px, width / 2, height / 2)
-    scene = prepare_photos(room)
-    to_scan = room_to_scan(seed)
-    poses = plan_tour(room, scene.scene, camera, frames, np.random.default_rng([seed, 1]))
-    return (
-        _view(room, scene, model, camera, pose, to_scan, n, seed, with_labels, label_error)
-        for n, pose in enumerate(poses)
+    how = Shooting(
+        sensor, frames, seed, with_labels, label_error, depth_scale_sigma, coverage, width, height
     )
+    return (shot.view for shot in room_shots(room, how))
 
 
-_sensor = sensor  # The argument of the public functions has the same plain name.
+def _views(
+    shots: Iterator[Shot], truths: list[FrameTruth], total: int, progress: Progress
+) -> Iterator[View]:
+    """Pass the views on, and keep what is true of each; the pictures are not kept."""
+    for shot in shots:
+        yield shot.view
+        truths.append(shot.truth)
+        progress("capture", len(truths), total, shot.view.name)
 
 
-def room_to_scan(seed: int) -> np.ndarray:
-    """Return the 4x4 from the room to the capture's world frame: any yaw, tilted up to 27 deg."""
-    rng = np.random.default_rng([seed, 2])
-    yaw, direction = rng.uniform(-np.pi, np.pi, 2)
-    tilt = np.radians(rng.uniform(0.2, 1.0) * MAX_TILT_DEG)
-    axis = np.array([np.cos(direction), np.sin(direction), 0.0])
-    transform = np.eye(4)
-    transform[:3, :3] = rotation_of_vector(axis * tilt) @ rotation_of_vector(np.array([0, 0, yaw]))
-    transform[:3, 3] = rng.uniform(-2, 2, 3)
-    return transform
-
-
-def _view(
+def write_truth(
     room: Room,
-    scene: PhotoScene,
-    model: Sensor,
-    camera: Camera,
-    camera_to_room: np.ndarray,
-    to_scan: np.ndarray,
-    number: int,
-    seed: int,
-    with_labels: bool,
-    label_error: float,
-) -> View:
-    rng = np.random.default_rng([seed, 3, number])
-    photo = take_photo(scene, camera, camera_to_room)
-    luminance = photo.colour.astype(np.float32) @ LUMINANCE
-    depth_m = sense_depth(model, photo.depth_m, photo.cosine, luminance, camera.fx_px, rng)
-    stated = jittered_pose(model, camera_to_room, rng)
-    return View(
-        name=f"frame-{number:06d}",
-        camera_to_scan=to_scan @ stated,
-        colour=_noisy(photo.colour, model.colour_sigma, rng),
-        colour_camera=camera,
-        depth_m=depth_m,
-        depth_camera=camera,
-        labels=_labels(room, photo, label_error, rng) if with_labels else None,
-    )
-
-
-def _noisy(colour: np.ndarray, sigma: float, rng: np.random.Generator) -> np.ndarray:
-    if not sigma:
-        return colour
-    noise = rng.standard_normal(colour.shape[:2], np.float32)[..., None] * np.float32(sigma)
-    return np.clip(colour + noise + 0.5, 0, 255).astype(np.uint8)
-
-
-def _labels(room: Room, photo: Photo, error: float, rng: np.random.Generator) -> np.ndarray:
-    """Return the label image; a share of its patches says another class."""
-    labels = room.labels.reshape(-1)[np.maximum(photo.voxel_index, 0)]
-    labels[photo.voxel_index < 0] = 255
-    if error:
-        height, width = labels.shape
-        shape = (height // PATCH_PX + 1, width // PATCH_PX + 1)
-        wrong = rng.random(shape) < error
-        shift = rng.integers(1, CLASS_COUNT - 1, shape)
-        wrong, shift = (
-            values.repeat(PATCH_PX, axis=0).repeat(PATCH_PX, axis=1)[:height, :width]
-            for values in (wrong, shift)
-        )
-        other = (labels - 1 + shift) % (CLASS_COUNT - 1) + 1
-        labels = np.where(wrong & (labels != 255), other, labels)
-    return labels.astype(np.uint8)
-
-
-def write_truth(room: Room, folder: str | Path, truth_room_to_scan: np.ndarray) -> None:
+    folder: str | Path,
+    truth_room_to_scan: np.ndarray,
+    frames: Sequence[FrameTruth] = (),
+) -> None:
     """Write ``truth.npz`` and ``truth.json`` beside a capture.
+
+    ``truth.npz`` holds ``labels``, ``instance``, ``voxel_m``, ``origin_m``,
+    ``truth_room_to_scan`` and, a row a frame, ``frame_names``, ``camera_to_truth`` (float64
+    [F, 4, 4], the true pose of the camera in the room) and ``depth_scale`` (float64 [F], what
+    true depth was multiplied by). ``truth.json`` holds the kind, the seed, the objects and the
+    layouts.
 
     Raises:
         OutputError: the folder cannot be written.
@@ -183,21 +119,59 @@ def write_truth(room: Room, folder: str | Path, truth_room_to_scan: np.ndarray) 
             "voxel_m": np.array(room.voxel_m),
             "origin_m": room.origin_m,
             "truth_room_to_scan": truth_room_to_scan,
+            "frame_names": np.array([frame.name for frame in frames], np.str_),
+            "camera_to_truth": np.array(
+                [frame.camera_to_truth for frame in frames], np.float64
+            ).reshape(-1, 4, 4),
+            "depth_scale": np.array([frame.depth_scale for frame in frames], np.float64),
         },
     )
-    objects = [
-        {
-            "id": number,
-            "class": CLASS_NAMES[item.class_id],
-            "name": item.name,
-            "center_m": _rounded(item.center_m),
-            "size_m": _rounded(item.size_m),
-            "yaw_deg": item.yaw_deg,
-        }
-        for number, item in enumerate(room.layout.objects, start=1)
-    ]
-    truth = {"kind": room.kind, "seed": room.seed, "size_m": _rounded(room.size_m)}
-    write_json(Path(folder) / "truth.json", {**truth, "objects": objects})
+    layouts = layouts_of(room)
+    objects = [item for layout in layouts for item in layout.objects]
+    truth = {
+        "kind": room.kind,
+        "seed": room.seed,
+        "size_m": _rounded(room.size_m),
+        "objects": [_stated_object(n, item) for n, item in enumerate(objects, start=1)],
+        "layouts": [_stated_layout(layout) for layout in layouts],
+    }
+    write_json(Path(folder) / "truth.json", truth)
+
+
+def layouts_of(room: Room) -> tuple[Layout, ...]:
+    """Return the layouts of a room or a house, one a room."""
+    return getattr(room, "layouts", (room.layout,))
+
+
+def _stated_object(number: int, item: LayoutObject) -> dict[str, Any]:
+    return {
+        "id": number,
+        "class": CLASS_NAMES[item.class_id],
+        "name": item.name,
+        "center_m": _rounded(item.center_m),
+        "size_m": _rounded(item.size_m),
+        "yaw_deg": item.yaw_deg,
+    }
+
+
+def _stated_layout(layout: Layout) -> dict[str, Any]:
+    return {
+        "name": layout.name,
+        "floor_z_m": round(layout.floor_z_m, 4),
+        "wall_height_m": round(layout.wall_height_m, 4),
+        "floor_polygon_m": [_rounded(corner) for corner in layout.floor_polygon_m],
+        "openings": [_stated_opening(opening) for opening in layout.openings],
+    }
+
+
+def _stated_opening(opening: Opening) -> dict[str, Any]:
+    return {
+        "kind": opening.kind,
+        "start_m": _rounded(opening.start_m),
+        "end_m": _rounded(opening.end_m),
+        "sill_m": round(opening.sill_m, 4),
+        "head_m": round(opening.head_m, 4),
+    }
 
 
 def _rounded(values: np.ndarray) -> list[float]:

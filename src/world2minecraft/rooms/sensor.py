@@ -134,6 +134,11 @@ def jittered_pose(
     return stated
 
 
+def scale_factor(sigma: float, rng: np.random.Generator) -> float:
+    """Return what a frame's depth is multiplied by: 1 give or take ``sigma``, 3 sigma at most."""
+    return 1.0 + sigma * float(np.clip(rng.standard_normal(), -3, 3))
+
+
 def rotation_of_vector(vector: np.ndarray) -> np.ndarray:
     """Return the 3x3 rotation about a vector by its length in radians."""
     angle = float(np.linalg.norm(vector))

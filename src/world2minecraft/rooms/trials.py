@@ -1,0 +1,112 @@
+"""The fixed benchmark: fifty scans in five difficulties, and fifty others to tune on.
+
+A trial is a room or a house and the way it is scanned, all from one seed. ``trials("tune")`` has
+seeds 500 to 549, ``trials("test")`` seeds 1000 to 1049. Whoever chooses a parameter, a threshold
+or a model looks at "tune" alone: figures of "test" are worth something only as long as tuning
+never sees it.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+from world2minecraft.errors import UnknownNameError
+from world2minecraft.progress import Progress, silent
+from world2minecraft.rooms.capture import scan_room
+from world2minecraft.rooms.room import Room, generate_room
+
+Split = Literal["tune", "test"]
+FIRST_SEED: dict[str, int] = {"tune": 500, "test": 1000}
+PER_DIFFICULTY = 10
+DIFFICULTIES = ("noise", "coverage", "clutter", "scale", "all")
+LABEL_ERROR = 0.1  # The share of the label images that is wrong, in every trial.
+KINDS_IN_TURN = ("bed", "dining", "kitchen", "living", "study")  # Fixed, whatever kinds are added.
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One scan of the benchmark: what is generated and how it is scanned."""
+
+    name: str
+    difficulty: str
+    seed: int
+    kind: str
+    frames: int = 40
+    sensor: str = "rgbd"
+    depth_scale_sigma: float = 0.0
+    coverage: float = 1.0
+    label_error: float = LABEL_ERROR
+
+    def clean(self) -> "Trial":
+        """Return the same walk through the same room without noise, jitter or depth scale."""
+        return replace(self, name=f"{self.name}-clean", sensor="clean", depth_scale_sigma=0.0)
+
+    def room(self) -> Room:
+        """Generate what is scanned."""
+        return generate_room(self.seed, kind=self.kind)
+
+
+SETTINGS: dict[str, dict[str, float | int]] = {
+    "noise": {},
+    "coverage": {"coverage": 0.6},
+    "clutter": {},
+    "scale": {"depth_scale_sigma": 0.03},
+    "all": {"depth_scale_sigma": 0.02},
+}
+
+
+def trials(split: Split, difficulty: str | None = None) -> tuple[Trial, ...]:
+    """Return the trials of a split, ten a difficulty, in the order of ``DIFFICULTIES``.
+
+    Args:
+        split: ``tune``, or ``test``, which tuning never sees.
+        difficulty: one of ``DIFFICULTIES``; None for all.
+
+    Raises:
+        UnknownNameError: there is no such split or difficulty.
+    """
+    if split not in FIRST_SEED:
+        raise UnknownNameError("split", split, FIRST_SEED)
+    if difficulty is not None and difficulty not in DIFFICULTIES:
+        raise UnknownNameError("difficulty", difficulty, DIFFICULTIES)
+    chosen = DIFFICULTIES if difficulty is None else (difficulty,)
+    return tuple(_trial(name, split, n) for name in chosen for n in range(PER_DIFFICULTY))
+
+
+def trial_named(name: str) -> Trial:
+    """Return a trial by name, such as ``noise-500`` or ``noise-500-clean``.
+
+    Raises:
+        UnknownNameError: no trial has this name.
+    """
+    every = {trial.name: trial for split in ("tune", "test") for trial in trials(split)}
+    found = every.get(name.removesuffix("-clean"))
+    if found is None:
+        raise UnknownNameError("trial", name, every)
+    return found.clean() if name.endswith("-clean") else found
+
+
+def write_trial(trial: Trial, folder: str | Path, progress: Progress = silent) -> None:
+    """Generate and scan a trial, with label images, and write its capture and truth.
+
+    Raises:
+        OutputError: the folder cannot be written.
+    """
+    scan_room(
+        trial.room(),
+        folder,
+        sensor=trial.sensor,
+        frames=trial.frames,
+        seed=trial.seed,
+        with_labels=True,
+        label_error=trial.label_error,
+        depth_scale_sigma=trial.depth_scale_sigma,
+        coverage=trial.coverage,
+        progress=progress,
+    )
+
+
+def _trial(difficulty: str, split: str, number: int) -> Trial:
+    seed = FIRST_SEED[split] + PER_DIFFICULTY * DIFFICULTIES.index(difficulty) + number
+    kind = KINDS_IN_TURN[number % len(KINDS_IN_TURN)]
+    return Trial(f"{difficulty}-{seed}", difficulty, seed, kind, **SETTINGS[difficulty])  # type: ignore[arg-type]
