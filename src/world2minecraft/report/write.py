@@ -8,13 +8,13 @@ import jinja2
 
 from world2minecraft import __version__
 from world2minecraft.classes import CLASS_COLOURS, CLASS_NAMES
+from world2minecraft.evaluate import evaluate_reconstruction
 from world2minecraft.files import write_bytes, write_json, write_text
 from world2minecraft.progress import Progress, silent
 from world2minecraft.render.preview import plan_view, preview
 from world2minecraft.report.facts import scene_facts
 from world2minecraft.report.pictures import Pair, as_data_uri, as_png, make_pairs
 from world2minecraft.report.scene import read_finished
-from world2minecraft.report.truth import truth_facts
 from world2minecraft.types import Scan
 
 PLAN_PX = 720
@@ -38,7 +38,7 @@ def write_report(
     progress("report", 0, 3, "figures")
     facts = scene_facts(scene) | {"scan": _scan_facts(scan)}
     if truth is not None:
-        facts["truth"] = truth_facts(scene, truth, scan)
+        facts["truth"] = evaluate_reconstruction(folder, truth)
     progress("report", 1, 3, "pictures")
     pairs = make_pairs(scan, scene.volume)
     facts["views"] = [

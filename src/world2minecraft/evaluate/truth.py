@@ -1,0 +1,128 @@
+"""``truth.npz`` and ``truth.json``: what lies beside a virtual scan and no sensor knows."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.classes import class_id
+from world2minecraft.errors import DamagedFileError, InputError, UnknownNameError
+from world2minecraft.files import array_names, read_json, read_npz
+from world2minecraft.types import Layout, LayoutObject, Opening, checks
+
+ARRAYS = ("labels", "voxel_m", "origin_m", "truth_room_to_scan")
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """The room that was scanned, in its own frame; ``truth_to_scan`` carries it to the capture's.
+
+    ``camera_to_truth`` holds the true pose of each frame by name; it is empty for truths written
+    before poses were kept, and the stated poses stand for them then.
+    """
+
+    folder: Path
+    labels: np.ndarray  # uint8 [A, B, C]
+    voxel_m: float
+    origin_m: np.ndarray  # float64 [3]
+    truth_to_scan: np.ndarray  # float64 [4, 4]
+    objects: tuple[LayoutObject, ...]
+    layouts: tuple[Layout, ...] = ()
+    camera_to_truth: dict[str, np.ndarray] | None = None
+    depth_scale: dict[str, float] | None = None
+
+    def __post_init__(self):
+        put = object.__setattr__
+        put(self, "labels", checks.labels("labels", self.labels, (None, None, None)))
+        put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
+        put(self, "origin_m", checks.floats("origin_m", self.origin_m, (3,)))
+        put(self, "truth_to_scan", checks.transform("truth_room_to_scan", self.truth_to_scan))
+
+
+def read_truth(folder: Path) -> Truth:
+    """Read ``truth.npz`` and ``truth.json`` of a capture.
+
+    Raises:
+        InputError: a file is missing. DamagedFileError: it is no truth.
+    """
+    path = folder / "truth.npz"
+    if not path.is_file():
+        raise InputError(path, "is not there; a truth lies beside what `w2m rooms scan` writes")
+    stated = read_json(folder / "truth.json")
+    try:
+        objects = tuple(_object(row) for row in stated["objects"])
+        layouts = _layouts(stated)
+    except (KeyError, TypeError, ValueError, AttributeError, UnknownNameError) as error:
+        raise DamagedFileError(folder / "truth.json", f"is no truth ({error})") from error
+    arrays = read_npz(path, ARRAYS)
+    try:
+        return Truth(
+            folder=folder,
+            labels=arrays["labels"],
+            voxel_m=float(arrays["voxel_m"]),
+            origin_m=arrays["origin_m"],
+            truth_to_scan=arrays["truth_room_to_scan"],
+            objects=objects,
+            layouts=layouts,
+            camera_to_truth=_by_frame(path, "camera_to_truth", (4, 4)),
+            depth_scale=_by_frame(path, "depth_scale", ()),
+        )
+    except (TypeError, ValueError) as error:
+        raise DamagedFileError(path, f"is no truth ({error})") from error
+
+
+def read_instances(truth: Truth) -> np.ndarray:
+    """Return uint16 [A, B, C]: 0 or n for the n-th of ``truth.objects``; read when asked for.
+
+    Raises:
+        DamagedFileError: there is none, or it has another shape than the labels.
+    """
+    path = truth.folder / "truth.npz"
+    instance = read_npz(path, ("instance",))["instance"]
+    if instance.shape != truth.labels.shape:
+        raise DamagedFileError(path, f"instance {instance.shape} is not of the labels' shape")
+    return instance
+
+
+def _object(row: dict[str, Any]) -> LayoutObject:
+    return LayoutObject(
+        class_id(row["class"]), row["center_m"], row["size_m"], row["yaw_deg"], row["name"]
+    )
+
+
+def _layouts(stated: dict[str, Any]) -> tuple[Layout, ...]:
+    """Return the rooms; an old truth states the sides of its one room alone."""
+    if "layouts" in stated:
+        return tuple(_layout(row) for row in stated["layouts"])
+    if "size_m" not in stated:
+        return ()
+    width, depth, height = stated["size_m"]
+    outline = np.array([[0, 0], [width, 0], [width, depth], [0, depth]], np.float64)
+    return (Layout(outline, height),)
+
+
+def _layout(row: dict[str, Any]) -> Layout:
+    openings = tuple(
+        Opening(o["kind"], o["start_m"], o["end_m"], o["sill_m"], o["head_m"])
+        for o in row.get("openings", ())
+    )
+    return Layout(
+        floor_polygon_m=np.array(row["floor_polygon_m"], np.float64),
+        wall_height_m=row["wall_height_m"],
+        openings=openings,
+        floor_z_m=row.get("floor_z_m", 0.0),
+        name=row.get("name", ""),
+    )
+
+
+def _by_frame(path: Path, key: str, shape: tuple[int, ...]) -> Any:
+    """Return an array [F, ...] of the truth as a dictionary by frame; None where it has none."""
+    names = array_names(path)
+    if key not in names or "frame_names" not in names:
+        return None
+    arrays = read_npz(path, ("frame_names", key))
+    frames, values = [str(name) for name in arrays["frame_names"]], arrays[key]
+    if values.shape != (len(frames), *shape) or not np.isfinite(values).all():
+        raise ValueError(f"{key} must be one of {shape} for each of {len(frames)} frames")
+    return dict(zip(frames, values.astype(np.float64), strict=True))
