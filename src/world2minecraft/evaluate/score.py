@@ -14,12 +14,14 @@ import numpy as np
 from world2minecraft.classes import UNKNOWN
 from world2minecraft.evaluate.frame_error import frame_error
 from world2minecraft.evaluate.frames import UsedFrame, used_frames
+from world2minecraft.evaluate.layout import in_room, layout_facts, own_rooms
 from world2minecraft.evaluate.objects import (
     TrueObjects,
     object_counts,
     object_facts,
     true_objects,
 )
+from world2minecraft.evaluate.poses import pose_facts
 from world2minecraft.evaluate.reach import CROSSED, Reached, reached_cells
 from world2minecraft.evaluate.truth import Truth, read_truth
 from world2minecraft.exchange.objects import read_objects
@@ -88,6 +90,9 @@ def score_run(out: Path, room: TrueRoom) -> dict[str, Any]:
     instances = read_objects(out / "objects.json", grid)
     facts["objects"] = object_facts(object_counts(instances, room.objects))
     facts["frame_error"] = frame_error(room.truth_to_room, room.truth.layouts)
+    facts["poses"] = pose_facts(out, room.truth, room.frames)
+    true_rooms = in_room(room.truth.layouts, room.truth_to_room)
+    facts["layout"] = layout_facts(out, own_rooms(out), true_rooms, room.objects)
     return {"how": HOW, "headline": headline(facts)} | facts
 
 

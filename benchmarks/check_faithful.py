@@ -1,0 +1,121 @@
+"""The benchmark of fidelity: trials are scanned, reconstructed twice and scored.
+
+``python -m benchmarks.check_faithful [--split tune] [--difficulty noise ...] [--trials N]
+[--labels both] [--stages] [--keep DIR] [--json FILE] [--verbose]``
+
+One table for each labeller, with a row for each difficulty (means over its trials, sums for
+counts) and the targets under it. With ``--keep`` what is there already is not made again, so that
+a run that was cut off goes on. Seeds of ``--split test`` are for the last word alone: nobody tunes
+on them.
+"""
+
+import argparse
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from benchmarks.faithful_table import rows_table, verdicts
+from world2minecraft.evaluate import evaluate_reconstruction
+from world2minecraft.files import read_json, write_json
+from world2minecraft.parameters import Parameters, with_settings
+from world2minecraft.pipeline import reconstruct
+from world2minecraft.rooms.trials import DIFFICULTIES, Trial, trials, write_trial
+
+LABELLERS = ("votes", "geometric")
+CLEAN = "clean"  # The noise trials, scanned without noise and jitter.
+
+
+def chosen_trials(split: str, difficulties: Sequence[str], count: int) -> list[Trial]:
+    """Return the first trials of each difficulty; ``clean`` are those of noise, made clean."""
+    found = []
+    for name in difficulties:
+        if name == CLEAN:
+            found += [trial.clean() for trial in trials(split, "noise")[:count]]  # type: ignore[arg-type]
+        else:
+            found += trials(split, name)[:count]  # type: ignore[arg-type]
+    return found
+
+
+def run_trial(
+    trial: Trial, base: Path, labellers: Sequence[str], settings: Sequence[str], stages: bool
+) -> list[dict[str, Any]]:
+    """Make what is missing of a trial; return one row of facts for each labeller."""
+    capture = base / trial.name / "capture"
+    if not (capture / "truth.json").is_file():
+        write_trial(trial, capture)
+    rows = []
+    for labeller in labellers:
+        out = base / trial.name / labeller
+        path = base / trial.name / f"{labeller}.json"
+        facts = read_json(path) if path.is_file() else {}
+        if not facts:
+            chosen = with_settings(Parameters(labeller=labeller), list(settings))
+            begun = time.perf_counter()
+            reconstruct(capture, out, chosen)
+            facts = evaluate_reconstruction(out, capture)
+            facts["seconds"] = round(time.perf_counter() - begun, 1)
+            write_json(path, facts)
+        rows.append({"trial": trial.name, "labels": labeller, "difficulty": group(trial), **facts})
+    return rows
+
+
+def group(trial: Trial) -> str:
+    """Return the row of the table that a trial belongs to."""
+    return CLEAN if trial.name.endswith("-clean") else trial.difficulty
+
+
+def main(words: Sequence[str]) -> int:
+    """Run the trials that ``words`` ask for, print the tables and return the exit code."""
+    chosen = _options(words)
+    base = chosen.keep or Path(tempfile.mkdtemp())
+    labellers = LABELLERS if chosen.labels == "both" else (chosen.labels,)
+    todo = chosen_trials(chosen.split, chosen.difficulty or (*DIFFICULTIES, CLEAN), chosen.trials)
+    begun = time.perf_counter()
+    jobs = [(trial, base, labellers, chosen.set or [], chosen.stages) for trial in todo]
+    rows: list[dict[str, Any]] = []
+    if chosen.jobs > 1:
+        with ProcessPoolExecutor(chosen.jobs) as pool:
+            for found in pool.map(run_trial, *zip(*jobs, strict=True)):
+                rows += found
+    else:
+        for job in jobs:
+            rows += run_trial(*job)
+            print(f"{job[0].name}: {rows[-1]['seconds']:.0f} s", file=sys.stderr)
+    minutes = (time.perf_counter() - begun) / 60
+    console = Console(width=None if sys.stdout.isatty() else 190)
+    for labeller in labellers:
+        mine = [row for row in rows if row["labels"] == labeller]
+        console.print(rows_table(f"{labeller}, split {chosen.split}", mine, chosen.verbose))
+        for line in verdicts(labeller, mine):
+            console.print(line)
+    console.print(f"{len(todo)} trials in {minutes:.1f} minutes, kept in {base}")
+    if chosen.json:
+        write_json(chosen.json, rows)
+    return 0
+
+
+def _options(words: Sequence[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.check_faithful", description=(__doc__ or "").splitlines()[0]
+    )
+    parser.add_argument("--split", choices=("tune", "test"), default="tune")
+    parser.add_argument("--difficulty", nargs="+", choices=(*DIFFICULTIES, CLEAN))
+    parser.add_argument("--trials", type=int, default=10, help="of each difficulty")
+    parser.add_argument("--labels", choices=(*LABELLERS, "both"), default="both")
+    parser.add_argument("--jobs", type=int, default=1, help="trials at a time")
+    parser.add_argument("--stages", action="store_true", help="what each stage loses, too")
+    parser.add_argument("--keep", type=Path, help="the folder to work in, and to go on from")
+    parser.add_argument("--json", type=Path, help="write all figures to this file")
+    parser.add_argument("--set", action="append", metavar="KEY=VALUE", help="a parameter")
+    parser.add_argument("--verbose", action="store_true", help="a row for each trial")
+    return parser.parse_args(words)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

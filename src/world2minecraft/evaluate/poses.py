@@ -1,0 +1,120 @@
+"""How far the cameras' poses and the depths' scales are off, as stated and as corrected.
+
+``poses.npz`` of a run, where it has one, holds ``names``, ``pose_change`` float64 [F, 4, 4] (to
+be put before the stated pose) and ``depth_scale`` float64 [F] (to be multiplied by).
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.coordinates import invert_rigid
+from world2minecraft.errors import DamagedFileError
+from world2minecraft.evaluate.frames import UsedFrame
+from world2minecraft.evaluate.truth import Truth
+from world2minecraft.files import read_npz
+
+
+@dataclass(frozen=True, eq=False)
+class Corrected:
+    """What a run made of each frame's pose and depth, by name."""
+
+    pose_change: dict[str, np.ndarray]
+    depth_scale: dict[str, float]
+
+
+def read_corrected(out: Path) -> Corrected | None:
+    """Return the corrections of a run; None where it made none.
+
+    Raises:
+        DamagedFileError: ``poses.npz`` holds something else.
+    """
+    path = out / "poses.npz"
+    if not path.is_file():
+        return None
+    arrays = read_npz(path, ("names", "pose_change", "depth_scale"))
+    names = [str(name) for name in arrays["names"]]
+    changes, scales = arrays["pose_change"], arrays["depth_scale"]
+    if changes.shape != (len(names), 4, 4) or scales.shape != (len(names),):
+        raise DamagedFileError(path, "must hold a change and a scale for each of its names")
+    return Corrected(
+        dict(zip(names, changes.astype(np.float64), strict=True)),
+        dict(zip(names, scales.astype(np.float64).tolist(), strict=True)),
+    )
+
+
+def pose_facts(out: Path, truth: Truth, frames: Sequence[UsedFrame]) -> dict[str, Any]:
+    """Return the errors of poses and depth scales; empty where the truth tells no poses."""
+    if not truth.camera_to_truth or not frames:
+        return {}
+    true = [truth.truth_to_scan @ frame.camera_to_truth for frame in frames]
+    stated = [frame.camera_to_scan for frame in frames]
+    scales = [(truth.depth_scale or {}).get(frame.name, 1.0) for frame in frames]
+    facts = {"stated": pose_error(stated, true) | scale_error(scales)}
+    corrected = read_corrected(out)
+    if corrected is not None:
+        changes = [corrected.pose_change.get(frame.name, np.eye(4)) for frame in frames]
+        given = [corrected.depth_scale.get(frame.name, 1.0) for frame in frames]
+        moved = [change @ pose for change, pose in zip(changes, stated, strict=True)]
+        left = [scale * own for scale, own in zip(scales, given, strict=True)]
+        facts["corrected"] = pose_error(moved, true) | scale_error(left)
+    return facts
+
+
+def pose_error(given: Sequence[np.ndarray], true: Sequence[np.ndarray]) -> dict[str, float]:
+    """Return the mean distance and angle between poses [4, 4] of the same frames.
+
+    ``mean_mm`` and ``mean_deg`` are in the scan's frame; the ``apart`` ones are what is left once
+    all poses were moved by one common turn and shift, which is the frame's own error.
+    """
+    turn = _mean_turn([g[:3, :3] @ t[:3, :3].T for g, t in zip(given, true, strict=True)])
+    common = np.eye(4)
+    common[:3, :3] = turn
+    common[:3, 3] = np.mean(
+        [g[:3, 3] - turn @ t[:3, 3] for g, t in zip(given, true, strict=True)], axis=0
+    )
+    together = [common @ t for t in true]
+    return {
+        "mean_mm": _mean_mm(given, true),
+        "mean_deg": _mean_deg(given, true),
+        "apart_mm": _mean_mm(given, together),
+        "apart_deg": _mean_deg(given, together),
+    }
+
+
+def scale_error(left: Sequence[float]) -> dict[str, float]:
+    """Return by how many per cent depths are still wrong: their root mean square, and the mean.
+
+    Args:
+        left: of each frame, what true depth is multiplied by once all corrections are made.
+    """
+    off = 100 * (np.asarray(left, np.float64) - 1)
+    return {
+        "scale_rms_percent": float(np.sqrt((off**2).mean())),
+        "scale_mean_percent": float(off.mean()),
+    }
+
+
+def _mean_turn(turns: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the rotation nearest to the mean of rotations [3, 3]."""
+    left, _, right = np.linalg.svd(np.mean(turns, axis=0))
+    return left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
+
+
+def _mean_mm(given: Sequence[np.ndarray], true: Sequence[np.ndarray]) -> float:
+    apart = [np.linalg.norm(g[:3, 3] - t[:3, 3]) for g, t in zip(given, true, strict=True)]
+    return float(1000 * np.mean(apart))
+
+
+def _mean_deg(given: Sequence[np.ndarray], true: Sequence[np.ndarray]) -> float:
+    angles = []
+    for g, t in zip(given, true, strict=True):
+        between = (invert_rigid(t) @ g)[:3, :3]
+        # The sine half keeps small angles exact, where the cosine alone loses them.
+        sine = np.linalg.norm(between - between.T) / (2 * math.sqrt(2))
+        angles.append(math.degrees(math.atan2(sine, (np.trace(between) - 1) / 2)))
+    return float(np.mean(angles))
