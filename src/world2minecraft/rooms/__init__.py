@@ -1,12 +1,26 @@
 """Procedural furnished rooms as metric layouts and 2 cm voxels, and virtual scans of them.
 
-``generate_room`` gives the room of a seed; ``scan_room`` writes a capture of it as a depth camera
-would hand it over, with the exact truth beside it.
+``generate_room`` gives the room of a seed, ``generate_house`` a house of several rooms;
+``scan_room`` writes a capture of either as a depth camera would hand it over, with the exact truth
+beside it.
 """
 
 from world2minecraft.rooms.capture import room_views, scan_room
-from world2minecraft.rooms.kinds import KINDS
+from world2minecraft.rooms.house import generate_house
+from world2minecraft.rooms.kinds import BASE_KINDS, KINDS
 from world2minecraft.rooms.room import Room, generate_room
 from world2minecraft.rooms.sensor import SENSORS, Sensor
+from world2minecraft.rooms.shapes import SHAPES
 
-__all__ = ["KINDS", "SENSORS", "Room", "Sensor", "generate_room", "room_views", "scan_room"]
+__all__ = [
+    "BASE_KINDS",
+    "KINDS",
+    "SENSORS",
+    "SHAPES",
+    "Room",
+    "Sensor",
+    "generate_house",
+    "generate_room",
+    "room_views",
+    "scan_room",
+]

@@ -39,7 +39,8 @@ def furnish_living(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     wall = round(couch.yaw_deg / 90) % 4
     along = couch.y_m if wall % 2 == 0 else couch.x_m
     board_model = storage.cabinet("tv_board", (0.42, 1.6, 0.48), 3, 1, WHITE, style.wood)
-    share = along / plan.wall_length((wall + 2) % 4)
+    across = plan.ground.walls[(wall + 2) % 4]
+    share = (along - across.first_m) / across.length_m
     board = plan.add_at_walls(board_model, ((wall + 2) % 4,), along=(share,), clear_m=0.5)
     if board is None:
         return None
@@ -113,7 +114,7 @@ def furnish_kitchen(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
     _kitchen_arm(plan, style, wall)
     width = float(rng.choice([0.9, 1.2]))
     table = seating.table("kitchen_table", 0.8, width, 0.74, style.wood)
-    along, away = 0.62 * plan.wall_length(wall), 0.68 * plan.wall_length(1 - wall)
+    along, away = 0.62 * plan.size_m[1 - wall % 2], 0.68 * plan.size_m[wall % 2]
     x, y = (along, away) if wall == 1 else (away, along)
     board = plan.add(snapped(Item(table, x, y, 0.0, 90.0 * wall)))
     if board is None:
@@ -277,6 +278,9 @@ KINDS: dict[str, Kind] = {
     "dining": Kind((3.4, 4.0), (4.2, 5.0), "planks", furnish_dining),
     "study": Kind((3.0, 3.6), (3.6, 4.4), "planks", furnish_study),
 }
+
+
+BASE_KINDS = ("bed", "dining", "kitchen", "living", "study")
 
 
 def random_size(kind: Kind, rng: np.random.Generator) -> tuple[float, float, float]:

@@ -1,10 +1,12 @@
 """The door and the windows of a room, chosen before it is furnished."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from world2minecraft.rooms.decor import curtain, door
+from world2minecraft.rooms.ground import Ground
 from world2minecraft.rooms.model import Colour, whole
 from world2minecraft.rooms.place import Item, Plan
 from world2minecraft.types import Opening
@@ -19,22 +21,18 @@ RECESS_M = 0.06  # How deep a window or a door leaf lies in its wall.
 class Hole:
     """An opening in a wall, from ``first_m`` to ``last_m`` along it; walls as ``Plan`` has them."""
 
-    kind: str
+    kind: Literal["window", "door", "doorway"]
     wall: int
     first_m: float
     last_m: float
     sill_m: float
     head_m: float
 
-    def opening(self, plan: Plan) -> Opening:
+    def opening(self, ground: Ground) -> Opening:
         """Return it as the layout states it."""
-        width, depth, _ = plan.size_m
-        ends = []
-        for along in (self.first_m, self.last_m):
-            spots = {0: (0.0, along), 1: (along, 0.0), 2: (width, along), 3: (along, depth)}
-            ends.append(np.array(spots[self.wall]))
-        kind = "door" if self.kind == "door" else "window"
-        return Opening(kind, ends[0], ends[1], self.sill_m, self.head_m)
+        wall = ground.walls[self.wall]
+        start, end = (np.array(wall.point(along)) for along in (self.first_m, self.last_m))
+        return Opening(self.kind, start, end, self.sill_m, self.head_m)
 
 
 def choose_openings(plan: Plan, *, walls: tuple[int, ...]) -> tuple[Hole, ...]:
@@ -46,32 +44,27 @@ def choose_openings(plan: Plan, *, walls: tuple[int, ...]) -> tuple[Hole, ...]:
     """
     rng = plan.rng
     order = [int(wall) for wall in rng.permutation(walls)]
-    length = plan.wall_length(order[0])
-    first = whole(0.2 if rng.random() < 0.5 else length - 0.2 - DOOR_M[0])
+    side = plan.ground.walls[order[0]]
+    near = rng.random() < 0.5
+    first = side.first_m + whole(0.2 if near else side.length_m - 0.2 - DOOR_M[0])
     holes = [Hole("door", order[0], first, first + DOOR_M[0], 0.0, DOOR_M[1])]
     for wall in order[1 : 2 + int(rng.integers(2))]:
-        length = plan.wall_length(wall)
+        side = plan.ground.walls[wall]
         wide = whole(rng.uniform(1.1, 1.6))
-        first = whole(length / 2 - wide / 2 + rng.uniform(-0.2, 0.2))
+        first = side.first_m + whole(side.length_m / 2 - wide / 2 + rng.uniform(-0.2, 0.2))
         holes.append(Hole("window", wall, first, first + wide, SILL_M, HEAD_M))
     for hole in holes:
-        _reserve(plan, hole)
+        reserve_before(plan, hole)
     return tuple(holes)
 
 
-def _reserve(plan: Plan, hole: Hole) -> None:
-    width, depth, _ = plan.size_m
-    far = DOOR_SWING_M if hole.kind == "door" else 0.2
-    aside = 0.04 if hole.kind == "door" else 0.34
-    a, b = hole.first_m - aside, hole.last_m + aside
-    low, high = (0.0, 2.1) if hole.kind == "door" else (hole.sill_m, hole.head_m)
-    x0, y0, x1, y1 = {
-        0: (0.0, a, far, b),
-        1: (a, 0.0, b, far),
-        2: (width - far, a, width, b),
-        3: (a, depth - far, b, depth),
-    }[hole.wall]
-    plan.reserved.append((x0, y0, low, x1, y1, high))
+def reserve_before(plan: Plan, hole: Hole) -> None:
+    """Keep the swing of a door and the air before a window free."""
+    far = 0.2 if hole.kind == "window" else DOOR_SWING_M
+    aside = 0.34 if hole.kind == "window" else 0.04
+    low, high = (hole.sill_m, hole.head_m) if hole.kind == "window" else (0.0, 2.1)
+    rect = plan.ground.walls[hole.wall].rect(hole.first_m - aside, hole.last_m + aside, 0.0, far)
+    plan.reserved.append((*rect[:2], low, *rect[2:], high))
 
 
 def hang_curtains(plan: Plan, holes: tuple[Hole, ...], colour: Colour) -> None:

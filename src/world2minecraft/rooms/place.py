@@ -1,8 +1,9 @@
 """Where furniture stands: an empty floor plan that is filled piece by piece, without collisions.
 
-The plan knows the room's inner box, what stands in it, and the places that must stay free (the
-door's swing, the air before a window, the way beside a bed). Walls are numbered by the quarter
-turns of a front that looks away from them: 0 at x = 0, 1 at y = 0, 2 at x = max, 3 at y = max.
+The plan knows the room's ground, what stands in it, and the places that must stay free (the
+door's swing, the air before a window, the way beside a bed). Walls are those of the ground; the
+first four are numbered by the quarter turns of a front that looks away from them: 0 at x = 0,
+1 at y = 0, 2 at x = max, 3 at y = max.
 """
 
 from dataclasses import dataclass
@@ -11,12 +12,10 @@ import numpy as np
 
 from world2minecraft.coordinates import apply, rotation_about_z
 from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.rooms.ground import TOUCH_M, Box, Ground, grown
 from world2minecraft.rooms.model import STEP_M, Model
 
-TOUCH_M = 1e-6  # Boxes may share a face.
 TRIES = 40
-
-Box = tuple[float, float, float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -54,38 +53,30 @@ def overlap(a: Box, b: Box) -> bool:
 class Plan:
     """A room that is being furnished."""
 
-    def __init__(self, size_m: tuple[float, float, float], rng: np.random.Generator):
-        self.size_m, self.rng = size_m, rng
+    def __init__(self, ground: Ground, rng: np.random.Generator):
+        self.ground, self.size_m, self.rng = ground, ground.size_m, rng
         self.items: list[Item] = []
         self.reserved: list[Box] = []
 
     def wall_length(self, wall: int) -> float:
         """The length of a wall."""
-        return self.size_m[1] if wall % 2 == 0 else self.size_m[0]
+        return self.ground.walls[wall].length_m
 
     def at_wall(
         self, model: Model, wall: int, along_m: float, z_m: float = 0.0, gap_m: float = 0.0
     ) -> Item:
-        """Return the item with its back to a wall, its middle ``along_m`` from the wall's start.
+        """Return the item with its back to a wall, its middle at ``along_m``.
 
-        ``along_m`` grows with x on walls 1 and 3 and with y on walls 0 and 2.
+        ``along_m`` is an x on walls 1 and 3 and a y on walls 0 and 2.
         """
-        away = model.size_m[0] / 2 + gap_m
-        width, depth, _ = self.size_m
-        x, y = {
-            0: (away, along_m),
-            1: (along_m, away),
-            2: (width - away, along_m),
-            3: (along_m, depth - away),
-        }[wall]
-        return snapped(Item(model, x, y, z_m, 90.0 * wall))
+        side = self.ground.walls[wall]
+        x, y = side.point(along_m, model.size_m[0] / 2 + gap_m)
+        return snapped(Item(model, x, y, z_m, 90.0 * side.turn))
 
     def fits(self, item: Item, *, may_block: bool = False) -> bool:
         """Tell whether an item lies in the room and meets nothing (nor a reserved place)."""
         box = item.box_m
-        inside = all(
-            box[n] >= -TOUCH_M and box[n + 3] <= self.size_m[n] + TOUCH_M for n in range(3)
-        )
+        inside = self.ground.holds(box)
         others = [other.box_m for other in self.items] + ([] if may_block else self.reserved)
         return inside and not any(overlap(box, other) for other in others)
 
@@ -117,10 +108,11 @@ class Plan:
         half = model.size_m[1] / 2
         for n in range(len(walls) * (len(along) + TRIES // 4)):
             wall = walls[n % len(walls)]
-            length = self.wall_length(wall)
+            side = self.ground.walls[wall]
+            length = side.length_m
             turn = n // len(walls)
             share = along[turn] if turn < len(along) else float(self.rng.random())
-            middle = min(max(length * share, half), length - half)
+            middle = side.first_m + min(max(length * share, half), length - half)
             item = self.at_wall(model, wall, middle, z_m)
             front = self.front_box(item, clear_m)
             if self.fits(item) and (clear_m == 0 or self._is_free(front)):
@@ -205,6 +197,9 @@ def ways_are_clear(plan: Plan, door_m: tuple[float, float], body_m: float = 0.24
     x, y = np.meshgrid((np.arange(nx) + 0.5) * step, (np.arange(ny) + 0.5) * step, indexing="ij")
     free = (x > body_m) & (x < plan.size_m[0] - body_m)
     free &= (y > body_m) & (y < plan.size_m[1] - body_m)
+    if plan.ground.blocks or plan.ground.cuts or plan.ground.roofs:
+        low = plan.ground.built(x, y) | (plan.ground.ceiling_m(x, y) < 1.8)
+        free &= ~grown(low, 2)
     for item in plan.items:
         x0, y0, z0, x1, y1, z1 = item.box_m
         if z0 < 1.9 and z1 > 0.05:

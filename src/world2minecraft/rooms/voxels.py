@@ -1,10 +1,12 @@
 """A furnished plan becomes voxels: labels, instances and colours at 2 cm."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
+from world2minecraft.rooms.ground import Ground, Wall
 from world2minecraft.rooms.kinds import Rug
 from world2minecraft.rooms.model import STEP_M, Colour, Part, shade
 from world2minecraft.rooms.openings import RECESS_M, Hole
@@ -40,6 +42,11 @@ class Canvas:
         a, b, c = (slice(x, max(x + 1, y)) for x, y in zip(low, high, strict=True))
         return a, b, c
 
+    def middles_m(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the x [X, 1] and the y [1, Y] of the middles of all voxels."""
+        x, y = ((np.arange(side) - SHELL + 0.5) * VOXEL_M for side in self.labels.shape[:2])
+        return x[:, None], y[None, :]
+
     def fill(self, cells: tuple[slice, ...], label: int, instance: int, colour: Any) -> None:
         """Paint a box of voxels; ``colour`` is one colour or broadcasts to the box."""
         self.labels[cells] = label
@@ -59,13 +66,34 @@ def paint_shell(canvas: Canvas, style: Style, floor: str, rng: np.random.Generat
     canvas.fill(
         (*everywhere[:2], slice(-SHELL, None)), int(SemanticClass.CEILING), 0, (244, 243, 239)
     )
-    pattern = _planks if floor == "planks" else _tiles
-    colours = pattern(canvas.labels.shape[:2], style.floor_wood, rng)
+    colours = floor_colours(floor, canvas.labels.shape[:2], style.floor_wood, rng)
     canvas.fill(
         (*everywhere[:2], slice(0, SHELL)), int(SemanticClass.FLOOR), 0, colours[:, :, None]
     )
     air = tuple(slice(SHELL, -SHELL) for _ in range(3))
     canvas.fill(air, 0, 0, 0)
+
+
+def floor_colours(
+    floor: str, shape: tuple[int, ...], wood: Colour, rng: np.random.Generator
+) -> np.ndarray:
+    """Return uint8 [X, Y, 3]: a floor of ``planks`` or ``tiles``."""
+    return (_planks if floor == "planks" else _tiles)(shape, wood, rng)
+
+
+def paint_built(canvas: Canvas, ground: Ground, style: Style) -> None:
+    """Paint what is built into the box: blocks and cut corners as wall, roofs as ceiling."""
+    x, y = canvas.middles_m()
+    inner = tuple(slice(SHELL, -SHELL) for _ in range(3))
+    built = ground.built(x, y)[inner[:2]]
+    walls = (canvas.labels[inner], canvas.colour[inner])
+    walls[0][built] = int(SemanticClass.WALL)
+    walls[1][built] = style.wall
+    walls[1][built, :4] = shade(WHITE, 0.96)
+    z = (np.arange(canvas.inner[2]) + 0.5) * VOXEL_M
+    above = ~built[..., None] & (z > ground.ceiling_m(x, y)[inner[:2]][..., None])
+    walls[0][above] = int(SemanticClass.CEILING)
+    walls[1][above] = (244, 243, 239)
 
 
 def _planks(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> np.ndarray:
@@ -139,27 +167,29 @@ def _toned(colour: Colour, tone: np.ndarray) -> np.ndarray:
     return np.clip(np.array(colour) * tone[..., None] + 0.5, 0, 255).astype(np.uint8)
 
 
-def paint_hole(canvas: Canvas, hole: Hole) -> None:
-    """Cut a recess for a window or a door, and glaze a window."""
+def paint_hole(canvas: Canvas, hole: Hole, wall: Wall, floor_z_m: float = 0.0) -> None:
+    """Cut a recess for a window or a door, and glaze a window; ``wall`` is the hole's own."""
     deep = round(RECESS_M / VOXEL_M)
-    recess = _in_wall(canvas, hole, 0, deep)
+    recess = _in_wall(canvas, hole, wall, 0, deep, floor_z_m)
     canvas.fill(recess, 0, 0, 0)
     if hole.kind == "door":
         return
-    pane = _in_wall(canvas, hole, deep, SHELL)
+    pane = _in_wall(canvas, hole, wall, deep, SHELL, floor_z_m)
     heights = np.linspace(0, 1, pane[2].stop - pane[2].start)[:, None]
     sky = np.array([196, 214, 224]) * (1 - heights) + np.array([146, 192, 232]) * heights
     view = np.where(heights < 0.22, np.array([128, 158, 112]), sky).astype(np.uint8)
     canvas.fill(pane, WINDOW, 0, view)
-    for bar in _frame(canvas, hole, deep):
+    for bar in _frame(canvas, hole, wall, deep, floor_z_m):
         canvas.fill(bar, WINDOW, 0, WHITE)
 
 
-def _frame(canvas: Canvas, hole: Hole, deep: int):
+def _frame(
+    canvas: Canvas, hole: Hole, wall: Wall, deep: int, floor_z_m: float
+) -> Iterator[tuple[slice, ...]]:
     """Yield the bars of a window's frame, 6 cm wide, and its middle post."""
-    x, y, z = _in_wall(canvas, hole, deep - 2, deep)
-    along = [x, y]
-    run = along[1 - _axis(hole)]
+    x, y, z = _in_wall(canvas, hole, wall, deep - 2, deep, floor_z_m)
+    along = 1 - wall.turn % 2
+    run = (x, y)[along]
     middle = (run.start + run.stop) // 2
     for low, high in (
         (run.start, run.start + 3),
@@ -167,22 +197,21 @@ def _frame(canvas: Canvas, hole: Hole, deep: int):
         (middle - 1, middle + 2),
     ):
         bar = [x, y]
-        bar[1 - _axis(hole)] = slice(low, high)
+        bar[along] = slice(low, high)
         yield bar[0], bar[1], z
     yield x, y, slice(z.start, z.start + 3)
     yield x, y, slice(z.stop - 3, z.stop)
 
 
-def _axis(hole: Hole) -> int:
-    """Return the axis across the hole's wall."""
-    return hole.wall % 2
-
-
-def _in_wall(canvas: Canvas, hole: Hole, near: int, far: int) -> tuple[slice, slice, slice]:
+def _in_wall(
+    canvas: Canvas, hole: Hole, wall: Wall, near: int, far: int, floor_z_m: float = 0.0
+) -> tuple[slice, slice, slice]:
     """Return the voxels of a hole between two depths behind the wall's inner face."""
     first, last = (round(value / VOXEL_M) + SHELL for value in (hole.first_m, hole.last_m))
-    low, high = (round(value / VOXEL_M) + SHELL for value in (hole.sill_m, hole.head_m))
-    face = SHELL if hole.wall < 2 else SHELL + canvas.inner[_axis(hole)]
-    across = slice(face - far, face - near) if hole.wall < 2 else slice(face + near, face + far)
+    low, high = (
+        round((floor_z_m + value) / VOXEL_M) + SHELL for value in (hole.sill_m, hole.head_m)
+    )
+    face = SHELL + round(wall.at_m / VOXEL_M)
+    across = slice(face - far, face - near) if wall.turn < 2 else slice(face + near, face + far)
     run, up = slice(first, last), slice(low, high)
-    return (across, run, up) if _axis(hole) == 0 else (run, across, up)
+    return (across, run, up) if wall.turn % 2 == 0 else (run, across, up)
