@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import ndimage
 
 from world2minecraft.coordinates import turn_grid
 from world2minecraft.label import LABELLERS, labeller
@@ -136,15 +137,36 @@ def test_evidence_wins_and_nothing_is_invented(kind, seed):
         room.add((*low, *(low + random.uniform(0.1, 0.7, 3))), 11, random.integers(0, 255, 3))
     grid, evidence, _ = room.scanned(noise_m=0.01, seed=seed)
     result = GeometricLabeller().label(grid, evidence)
+    structure = (result.labels >= 1) & (result.labels <= 4)
     lost = grid.occupied & ~result.occupied
     made = result.occupied & ~grid.occupied
-    layers = np.arange(grid.shape[2])
-    assert set(layers[lost.any(axis=(0, 1))]) <= {rooms.MARGIN}  # The spill, and only it,
-    assert set(layers[made.any(axis=(0, 1))]) <= {rooms.MARGIN - 1}  # comes down by one.
-    assert (result.labels[made] == 2).all()
+    # Only cells of a plane are pulled into its layer; they stay within two cells of it.
+    near = ndimage.binary_dilation(structure, np.ones((5, 5, 5), bool))
+    assert not (lost & ~near).any()
+    assert structure[made].all()
+    assert not (made & ~ndimage.binary_dilation(grid.occupied, iterations=2)).any()
     kept = grid.occupied & result.occupied
     assert np.array_equal(result.source[kept], grid.source[kept])
-    assert np.array_equal(result.labels == 0, (grid.labels == 0) & ~made | lost)
+
+
+@pytest.mark.parametrize("shift_m", [0.0, 0.012, 0.03, -0.012])
+def test_a_wall_is_one_cell_thick_and_in_the_layer_that_holds_its_matter(shift_m):
+    # The wall towards x = 0 stands before or behind the edge of two cells by a shift.
+    room = rooms.SmallRoom(size_m=(3.2, 4.0, 2.4))
+    if shift_m > 0:
+        room.add((0, 0, 0, shift_m, 4.0, 2.4), 3, rooms.WHITE)
+    grid, evidence, _ = room.scanned(noise_m=0.012)
+    if shift_m < 0:
+        offset = np.array(evidence.offset_sum)
+        offset[:4, ..., 0] += shift_m * np.array(evidence.hits, np.float32)[:4]
+        evidence = replace(evidence, offset_sum=offset)
+    result = GeometricLabeller().label(grid, evidence)
+    inner = (slice(0, 6), slice(6, -6), slice(6, -6))
+    layer = rooms.MARGIN if shift_m > 0.01 else rooms.MARGIN - 1
+    wall = result.labels[inner] == 3
+    assert wall[layer].mean() > 0.99
+    assert wall.sum() == wall[layer].sum()
+    assert not result.occupied[inner][layer + 1 :].any()
 
 
 def test_labels_do_not_depend_on_which_way_the_room_lies():

@@ -11,12 +11,13 @@ import numpy as np
 from world2minecraft.classes import SemanticClass
 from world2minecraft.label.furniture import label_furniture
 from world2minecraft.label.horizontal import find_ceiling, find_floor
-from world2minecraft.label.openings import label_openings
+from world2minecraft.label.openings import read_wall
 from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.screens import label_screens
+from world2minecraft.label.straighten import Straightening
 from world2minecraft.label.surface import surface_of
 from world2minecraft.label.walls import find_walls
-from world2minecraft.types import COMPLETED, UNSEEN, FusedEvidence, OccupancyGrid
+from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 # How far a class may be trusted: the share of its cells that were right on generated rooms, objects
 # capped at 0.8, because real rooms hold more than the generator knows.
@@ -35,41 +36,42 @@ class GeometricLabeller:
         Raises:
             ValueError: grid and evidence do not lie on the same cells.
         """
+        return self.traced(grid, evidence)[0]
+
+    def traced(
+        self, grid: OccupancyGrid, evidence: FusedEvidence
+    ) -> tuple[OccupancyGrid, np.ndarray]:
+        """Return what ``label`` returns, and where each cell's surface was seen.
+
+        The second is int64 [X, Y, Z]: the flat index of the cell that a cell of a straightened
+        plane came from, its own elsewhere.
+
+        Raises:
+            ValueError: grid and evidence do not lie on the same cells.
+        """
         surface = surface_of(grid, evidence)
         structure = self.parameters.structure
         floor = find_floor(surface, structure)
         ceiling, ceiling_m = find_ceiling(surface, structure)
-        wall, runs = find_walls(surface, ceiling, ceiling_m, structure)
+        wall, walls = find_walls(surface, ceiling, ceiling_m, structure)
         rest = surface.occupied & ~(floor.cells | floor.spill | ceiling | wall)
         labels = np.array(grid.labels)
         labels[surface.occupied] = SemanticClass.OBJS
+        runs = [run for run, _ in walls]
         rest &= ~label_screens(surface, rest, runs, labels, self.parameters.pieces)
         label_furniture(surface, rest, wall, labels, self.parameters)
-        labels[wall] = SemanticClass.WALL
-        label_openings(surface, wall, runs, labels, structure)
-        labels[ceiling] = SemanticClass.CEILING
-        labels[floor.spill] = SemanticClass.EMPTY
-        labels[floor.cells] = SemanticClass.FLOOR
-        return _with_labels(grid, labels)
+        straight = Straightening(surface)
+        for _, relief in walls:
+            straight.add(relief, *read_wall(surface, relief, structure))
+        if ceiling_m is not None:
+            straight.add_level(ceiling, 1, SemanticClass.CEILING)
+        straight.add_level(floor.cells | floor.spill, -1, SemanticClass.FLOOR, 0.0)
+        return _trusted(straight.applied(grid, labels)), straight.origin
 
 
-def _with_labels(grid: OccupancyGrid, labels: np.ndarray) -> OccupancyGrid:
-    """Return the grid with new labels; where spill came down, its colour and confidence with it.
-
-    A floor cell that no ray had reached before is marked as completed.
-    """
-    source, colour = np.array(grid.source), np.array(grid.colour)
+def _trusted(grid: OccupancyGrid) -> OccupancyGrid:
+    """Return the grid with its confidence drawn down by how far each class may be trusted."""
     confidence = np.array(grid.confidence, np.float32)
-    filled = (labels == SemanticClass.FLOOR) & ~grid.occupied
-    above = np.roll(filled, 1, axis=2)
-    colour[filled], confidence[filled] = grid.colour[above], confidence[above]
-    source[filled & (source == UNSEEN)] = COMPLETED
-    known = labels <= SemanticClass.OBJS
-    confidence[known] *= RELIABILITY[labels[known]]
-    return replace(
-        grid,
-        labels=labels,
-        source=source,
-        colour=colour,
-        confidence=confidence.astype(np.float16),
-    )
+    known = grid.labels <= SemanticClass.OBJS
+    confidence[known] *= RELIABILITY[grid.labels[known]]
+    return replace(grid, confidence=confidence.astype(np.float16))

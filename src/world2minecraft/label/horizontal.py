@@ -38,7 +38,6 @@ def find_floor(surface: Surface, parameters: StructureParameters) -> Floor:
         spill[:, :, layer + 1] = surface.occupied[:, :, layer + 1] & low
     if layer + 2 < surface.occupied.shape[2]:
         spill[:, :, layer + 1] &= ~surface.occupied[:, :, layer + 2]
-    cells[:, :, layer] |= spill[:, :, layer + 1]
     return Floor(cells, spill)
 
 

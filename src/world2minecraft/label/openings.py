@@ -11,52 +11,47 @@ from world2minecraft.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.label.morphology import grown, opened
 from world2minecraft.label.parameters import StructureParameters, within
+from world2minecraft.label.relief import Relief
 from world2minecraft.label.surface import Surface
-from world2minecraft.label.walls import WallRun, turned
 
 
-def label_openings(
-    surface: Surface,
-    wall: np.ndarray,
-    runs: list[WallRun],
-    labels: np.ndarray,
-    parameters: StructureParameters,
-) -> None:
-    """Write windows and door leaves over the wall cells of ``labels``, all [X, Y, Z]."""
+def read_wall(
+    surface: Surface, relief: Relief, parameters: StructureParameters
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return what each place of a wall is, and how deep it lies.
+
+    Returns:
+        ``classes`` uint8 [A, B]: wall, window, or objs for the leaf of a door; ``depth_m`` float
+        [A, B] along the relief's axis 0, that of the whole plane or of the whole opening.
+    """
     low, high = parameters.opening_depth_m
-    for run in runs:
-        outward = run.sign * turned(surface.points_m[..., run.axis], run.axis, run.sign)
-        cells = turned(wall, run.axis, run.sign).copy()
-        cells[:, : run.span[0]] = False
-        cells[:, run.span[1] + 1 :] = False
-        # Seen face on, along the wall and up: the mean depth of all points of a place. Where noise
-        # spreads a face over two cells, each alone would read off by a centimetre or two.
-        gap = outward - run.outward_m
-        cells &= np.abs(gap) <= high
-        weight = np.where(cells, turned(surface.hits, run.axis, run.sign), 0)
-        total = weight.sum(axis=0)
-        depth = (weight * gap).sum(axis=0) / np.maximum(total, 1)
-        recessed = (total > 0) & (depth >= low) & (depth <= high)
-        plane = (total > 0) & (np.abs(depth) < low)
-        parts, _ = connected_parts(opened(recessed))
-        for number, box in enumerate(ndimage.find_objects(parts), 1):
-            part = parts == number
-            kind = _kind(part[box], box[1].start, surface, parameters)
-            if kind is not None and _framed(part, plane) >= parameters.frame_share:
-                chosen = cells & (grown(part) & recessed)[None]
-                turned(labels, run.axis, run.sign)[chosen] = kind
+    classes = np.full(relief.weight.shape, SemanticClass.WALL, np.uint8)
+    depth_m = relief.plane_m.copy()
+    gap = relief.gap_m
+    recessed = relief.seen & (gap >= low) & (gap <= high)
+    plane = relief.seen & (np.abs(gap) < low)
+    parts, count = connected_parts(opened(recessed))
+    bottom_m = surface.origin_m[2] + relief.box[2].start * surface.voxel_m
+    for number, box in enumerate(ndimage.find_objects(parts, count), 1):
+        part = parts == number
+        kind = _kind(part[box], bottom_m + box[1].start * surface.voxel_m, surface, parameters)
+        if kind is None or _framed(part, plane) < parameters.frame_share:
+            continue
+        whole = grown(part) & recessed
+        classes[whole] = kind
+        depth_m[whole] += np.median(gap[whole])
+    return classes, depth_m
 
 
 def _kind(
-    part: np.ndarray, bottom_layer: int, surface: Surface, parameters: StructureParameters
+    part: np.ndarray, bottom_m: float, surface: Surface, parameters: StructureParameters
 ) -> SemanticClass | None:
     """Return what a recessed part, seen face on, is; None where it is too small or ragged."""
     width, height = np.array(part.shape) * surface.voxel_m
-    bottom = surface.origin_m[2] + bottom_layer * surface.voxel_m
     if part.sum() * surface.voxel_m**2 < parameters.opening_area_m2 or part.mean() < 0.5:
         return None
     sized = within(width, parameters.window_size_m) and height >= parameters.window_size_m[0]
-    if sized and bottom >= parameters.window_sill_m:
+    if sized and bottom_m >= parameters.window_sill_m:
         return SemanticClass.WINDOW
     leaf = within(width, parameters.door_width_m) and height >= parameters.door_height_m
     return SemanticClass.OBJS if leaf else None

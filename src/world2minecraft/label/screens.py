@@ -12,8 +12,8 @@ from world2minecraft.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.label.parameters import PieceParameters, within
 from world2minecraft.label.peaks import highest_peak
-from world2minecraft.label.surface import Surface
-from world2minecraft.label.walls import WallRun, turned
+from world2minecraft.label.surface import Surface, turned
+from world2minecraft.label.walls import WallRun
 
 PLATE_GATE_M = 0.05  # A screen's cells lie within this of its plane.
 MAX_DEPTHS = 6  # How many depths before one wall are looked at.

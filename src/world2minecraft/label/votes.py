@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from world2minecraft.classes import CLASS_COUNT
 from world2minecraft.label.geometric import GeometricLabeller
 from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.smoothing import smooth_labels
@@ -29,15 +30,16 @@ class VotesLabeller:
         Raises:
             ValueError: grid and evidence do not lie on the same cells.
         """
-        base = self.geometric.label(grid, evidence)
-        occupied = base.occupied & grid.occupied
-        votes = evidence.votes[occupied].astype(np.float32)[:, 1:]
+        base, origin = self.geometric.traced(grid, evidence)
+        occupied = np.argwhere(base.occupied)
+        seen_at = origin[tuple(occupied.T)]
+        votes = evidence.votes.reshape(-1, CLASS_COUNT)[seen_at].astype(np.float32)[:, 1:]
         total = votes.sum(axis=1)
         voted = total > 0
-        at = tuple(np.argwhere(occupied)[voted].T)
+        at = tuple(occupied[voted].T)
         labels, confidence = np.array(base.labels), np.array(base.confidence, np.float32)
         labels[at] = votes[voted].argmax(axis=1) + 1
         share = votes[voted].max(axis=1) / total[voted]
-        confidence[at] = share * grid.confidence[at].astype(np.float32)
+        confidence[at] = share * grid.confidence.reshape(-1)[seen_at[voted]].astype(np.float32)
         labels = smooth_labels(labels, self.small_cells)
         return replace(base, labels=labels, confidence=confidence.astype(np.float16))

@@ -14,7 +14,8 @@ from scipy import ndimage
 
 from world2minecraft.label.parameters import StructureParameters
 from world2minecraft.label.peaks import highest_peak
-from world2minecraft.label.surface import Surface
+from world2minecraft.label.relief import Relief, relief_of
+from world2minecraft.label.surface import Surface, turned
 
 DIRECTIONS = ((0, 1), (0, -1), (1, 1), (1, -1))  # The axis a wall is square to, the way out.
 MAX_PLANES = 24  # For each direction: a bound on the search, well above any room's walls.
@@ -37,8 +38,8 @@ def find_walls(
     ceiling: np.ndarray,
     ceiling_m: float | None,
     parameters: StructureParameters,
-) -> tuple[np.ndarray, list[WallRun]]:
-    """Return the walls' cells, bool [X, Y, Z], and their runs.
+) -> tuple[np.ndarray, list[tuple[WallRun, Relief]]]:
+    """Return the walls' cells, bool [X, Y, Z], and their runs, each with its relief.
 
     Args:
         surface: the room.
@@ -47,15 +48,16 @@ def find_walls(
         parameters: the thresholds.
     """
     cells = np.zeros(surface.occupied.shape, bool)
-    found: list[WallRun] = []
+    found: list[tuple[WallRun, Relief]] = []
     for axis, sign in DIRECTIONS:
         view = _Turned(surface, ceiling, axis, sign)
         runs = list(_runs(view, ceiling_m, parameters))
         runs = [run for run in runs if not _is_shadow(run, runs, parameters)]
         runs = [run for run in runs if not _is_furniture(run, runs, ceiling_m, view, parameters)]
         for run in runs:
-            _mark(view, run, parameters, cells)
-        found.extend(runs)
+            box, on = _marked(view, run, parameters)
+            turned(cells, axis, sign)[box] |= on
+            found.append((run, relief_of(surface, on, axis, sign, box)))
     return cells, found
 
 
@@ -69,14 +71,11 @@ class _Turned:
         self.free = self.turn(surface.free)
         self.outward_m = sign * self.turn(surface.points_m[..., axis])
         self.height_m = self.turn(surface.points_m[..., 2])
+        ends = surface.origin_m[axis] + np.array([0, surface.occupied.shape[axis]]) * self.voxel_m
+        self.edge_m = float(min(sign * ends))  # Where layer 0 begins.
 
     def turn(self, values: np.ndarray) -> np.ndarray:
         return turned(values, self.axis, self.sign)
-
-
-def turned(values: np.ndarray, axis: int, sign: int) -> np.ndarray:
-    """Return a view of [X, Y, Z] turned: axis 0 leads out of the room, axis 1 along the wall."""
-    return (np.swapaxes(values, 0, 1) if axis else values)[::sign]
 
 
 def _runs(
@@ -182,31 +181,56 @@ def _is_furniture(
     return False
 
 
-def _mark(view: _Turned, run: WallRun, parameters: StructureParameters, cells: np.ndarray) -> None:
-    """Set the cells of a run: those on its plane, and those that noise put before or behind it.
+def _marked(
+    view: _Turned, run: WallRun, parameters: StructureParameters
+) -> tuple[tuple[slice, slice, slice], np.ndarray]:
+    """Return a box of the turned room and the cells of a run in it, bool [N, A, B].
 
-    A cell before the plane is noise where the cell behind it was seen too; a picture, a curtain
-    or a screen hides what is behind.
+    They are those on its plane, and those that noise put before or behind it. A cell before the
+    plane is noise where the cell behind it was seen too; a picture, a curtain or a screen hides
+    what is behind.
     """
-    gap = view.outward_m - run.outward_m
-    gap = gap - _bend(view, gap, parameters)[None]
-    on = view.occupied & (gap >= -parameters.before_m) & (gap <= parameters.behind_m)
-    before = view.occupied & ~on & (gap >= -view.voxel_m) & (gap < 0)
-    before[1:] &= ~view.occupied[:-1]  # Noise stands alone; a shelf goes on into the room.
+    box = _box(view, run, parameters)
+    occupied, free = view.occupied[box], view.free[box]
+    gap = view.outward_m[box] - run.outward_m
+    gap = gap - _bend(view, occupied, gap, parameters)[None]
+    on = occupied & (gap >= -parameters.before_m) & (gap <= parameters.behind_m)
+    on &= ~(_free_beyond(free) & (gap > parameters.before_m))  # The other face of a thin wall.
+    before = occupied & ~on & (gap >= -view.voxel_m) & (gap < 0)
+    before[1:] &= ~occupied[:-1]  # Noise stands alone; a shelf goes on into the room.
     on[:-1] |= before[:-1] & on[1:]
-    on[:, : max(run.span[0] - 1, 0)] = False
-    on[:, run.span[1] + 2 :] = False
-    on[:, :, : view.above_floor] = False
-    view.turn(cells)[on] = True
+    return box, on
 
 
-def _bend(view: _Turned, gap: np.ndarray, parameters: StructureParameters) -> np.ndarray:
+def _box(
+    view: _Turned, run: WallRun, parameters: StructureParameters
+) -> tuple[slice, slice, slice]:
+    """Return the part of the turned room in which a run's cells lie."""
+    x, y, z = view.occupied.shape
+    layer = (run.outward_m - view.edge_m) / view.voxel_m
+    first = int(np.floor(layer)) - 3
+    last = int(np.ceil(layer + parameters.behind_m / view.voxel_m)) + 2
+    return (
+        slice(max(first, 0), min(last + 1, x)),
+        slice(max(run.span[0] - 1, 0), min(run.span[1] + 2, y)),
+        slice(view.above_floor, z),
+    )
+
+
+def _free_beyond(free: np.ndarray) -> np.ndarray:
+    """Return where one of the two cells on the far side is free."""
+    return _free_before(free[::-1])[::-1]
+
+
+def _bend(
+    view: _Turned, occupied: np.ndarray, gap: np.ndarray, parameters: StructureParameters
+) -> np.ndarray:
     """Return how far a wall stands off its plane around each place, float [A, B], metres.
 
     Lens and sensor bend a long wall by some centimetres; the mean over about half a metre follows
     them, and is drawn to 0 where little of the wall was seen.
     """
-    near = view.occupied & (np.abs(gap) <= parameters.plane_gate_m)
+    near = occupied & (np.abs(gap) <= parameters.plane_gate_m)
     sigma = parameters.bend_m / view.voxel_m
     total = ndimage.gaussian_filter(np.where(near, gap, 0.0).sum(axis=0), sigma, mode="constant")
     count = ndimage.gaussian_filter(near.sum(axis=0).astype(float), sigma, mode="constant")
