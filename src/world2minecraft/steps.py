@@ -20,6 +20,7 @@ from world2minecraft.exchange.objects import (
 from world2minecraft.exchange.occupancy import inner_corner_m
 from world2minecraft.exchange.paper import write_centers_json, write_occ_json
 from world2minecraft.exchange.room import read_room, write_room
+from world2minecraft.exchange.rooms import read_rooms
 from world2minecraft.exchange.scan import read_room_size
 from world2minecraft.find import find_objects
 from world2minecraft.furnish import furnish
@@ -55,7 +56,8 @@ def furnish_stage(folder: Path, chosen: Parameters) -> None:
     """``room.npz`` and ``objects.json`` -> ``placements.json``."""
     grid, _ = read_room(folder / "room.npz")
     instances = read_objects(folder / "objects.json", grid)
-    write_placements(folder / "placements.json", furnish(grid, instances, chosen.furnish))
+    placed = furnish(grid, instances, chosen.furnish, read_rooms(folder, grid))
+    write_placements(folder / "placements.json", placed)
 
 
 def build_stage(folder: Path, chosen: Parameters) -> None:

@@ -12,6 +12,7 @@ from world2minecraft.report.scene import FinishedScene, read_built
 from world2minecraft.types import (
     BlockVolume,
     FusedEvidence,
+    Layout,
     ObjectInstance,
     OccupancyGrid,
     Placement,
@@ -65,7 +66,8 @@ def floor_and_table() -> FinishedScene:
         block_to_room=block_to_room(np.array([0.0, 1.6]), 12.5),
     )
     room = np.array([2.0, 1.6, 0.88])
-    return FinishedScene(Path(), grid, evidence, (table,), (placed, away), volume, room)
+    outline = Layout(np.array([[0, 0], [2, 0], [2, 1.6], [0, 1.6]]), 0.88)
+    return FinishedScene(Path(), grid, evidence, (table,), (placed, away), volume, room, (outline,))
 
 
 def test_heights_are_finer_than_cells():

@@ -6,18 +6,18 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
-from world2minecraft.furnish.clearing import clear_overlaps
 from world2minecraft.furnish.crumbs import tidied
 from world2minecraft.furnish.evidence import OWN, Evidence, evidence_of
 from world2minecraft.furnish.match import NO_SHIFT, best_matches
 from world2minecraft.furnish.parameters import FurnishParameters
 from world2minecraft.furnish.runs import cut_into_runs
 from world2minecraft.furnish.seeds import reach_of
+from world2minecraft.furnish.settling import settle
 from world2minecraft.furnish.trial import Bias, Cells, Scored, Trial, score_shifts
 from world2minecraft.furniture import template, templates_of
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.furniture.seating import fit_seat, look_at, without_open_top
-from world2minecraft.types import Alternative, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.types import Alternative, Layout, ObjectInstance, OccupancyGrid, Placement
 
 OWN_CELLS = "cells"
 HALF = 0.5
@@ -46,11 +46,13 @@ def furnish(
     grid: OccupancyGrid,
     instances: Sequence[ObjectInstance],
     parameters: FurnishParameters | None = None,
+    rooms: Sequence[Layout] = (),
 ) -> tuple[Placement, ...]:
     """Return the furniture that stands for each object, in the objects' order.
 
     An object that was cut has several placements with its id. Where no template reaches
-    ``min_iou`` the template is ``cells`` and ``iou`` is that of the best one refused.
+    ``min_iou`` the template is ``cells`` and ``iou`` is that of the best one refused. Placements
+    stay within ``rooms``, where any are given, and no two are solid in the same place.
     """
     chosen = parameters or FurnishParameters()
     around = surroundings(grid.labels)
@@ -58,7 +60,7 @@ def furnish(
     for instance in instances:
         if len(instance.cells):
             placed += _furnish_one(grid, instance, around, chosen)
-    return tuple(placed) if chosen.paper_compat else clear_overlaps(placed, grid.voxel_m)
+    return tuple(placed) if chosen.paper_compat else settle(placed, grid, rooms)
 
 
 def _furnish_one(

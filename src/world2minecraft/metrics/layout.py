@@ -1,10 +1,19 @@
-"""Physical sense of a layout: objects that overlap, that leave the room, that hang in the air.
+"""Physical sense of a layout: objects that collide, leave the room, hang in the air or get lost.
 
-In: objects as boxes (ObjectInstance, LayoutObject, Placement), or a label grid. Boxes are looked
+In: objects as boxes (ObjectInstance, LayoutObject), as placements, or as labels. Boxes are looked
 at before they become cells, so that touching furniture is no collision.
+
+A **collision** is where solid parts meet. A placement is as solid as its template's parts or its
+own cells (``metrics.solids``): a chair pushed under a table is none, its back through the table's
+top is one. Of an object that is but a box, all of the box is solid. ``overlapping_boxes`` counts
+boxes whatever they hold, as the layout methods of the paper do.
+
+**Semantic integrity** is the paper's: the categories of the true room that the scene has, over
+all of them (``category_integrity``). Beside it stands ``kept_objects``: the objects that were found
+and that blocks of their class and number still show in their place.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -12,7 +21,10 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.classes import OBJECT_CLASSES, STRUCTURE_CLASSES
+from world2minecraft.coordinates import apply, invert
 from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.metrics.solids import depth_m, solids_m
+from world2minecraft.types import BlockVolume, Layout, ObjectInstance, OccupancyGrid, Placement
 
 OVERLAP_M = 0.04  # Half a default cell: less than what reading a size from cells can tell.
 OUTSIDE_M = 0.04  # The same, for boxes that reach into walls.
@@ -27,11 +39,34 @@ class Floaters:
     mask: np.ndarray  # bool [X, Y, Z]
 
 
-def collisions(objects: Sequence[Any], tolerance_m: float = OVERLAP_M) -> list[tuple[int, int]]:
-    """Return the pairs of indices, sorted, of objects whose boxes overlap.
+def collisions(
+    objects: Sequence[Any], tolerance_m: float = OVERLAP_M, grid: OccupancyGrid | None = None
+) -> list[tuple[int, int]]:
+    """Return the pairs of indices, sorted, of objects whose solid parts meet.
 
-    Two boxes overlap where they would have to be moved by more than ``tolerance_m`` to part.
-    Several placements of one object (the runs of an L) do not collide.
+    Two parts meet where they would have to be moved by more than ``tolerance_m`` to part. Several
+    placements of one object (the runs of an L) do not collide.
+
+    Args:
+        objects: ObjectInstance, LayoutObject or Placement.
+        tolerance_m: the depth of overlap that is forgiven.
+        grid: holds the cells of placements that are built from them; without it such a
+            placement is solid all through its box.
+    """
+    pairs = overlapping_boxes(objects, tolerance_m)
+    touched = {index for pair in pairs for index in pair if isinstance(objects[index], Placement)}
+    solid = {index: solids_m(objects[index], grid) for index in touched}
+    return [
+        (m, n)
+        for m, n in pairs
+        if not (m in solid and n in solid) or depth_m(solid[m], solid[n]) > tolerance_m
+    ]
+
+
+def overlapping_boxes(
+    objects: Sequence[Any], tolerance_m: float = OVERLAP_M
+) -> list[tuple[int, int]]:
+    """Return the pairs of indices, sorted, of objects whose boxes overlap, whatever they hold.
 
     Args:
         objects: ObjectInstance, LayoutObject or Placement: ``center_m``, ``size_m`` along its own
@@ -71,26 +106,88 @@ def out_of_bounds(
     floor_polygon_m: np.ndarray,
     height_m: float | None = None,
     tolerance_m: float = OUTSIDE_M,
+    floor_z_m: float = 0.0,
 ) -> list[int]:
     """Return the indices of objects of which a part lies outside the room.
 
     Args:
-        objects: as for ``collisions``.
+        objects: as for ``overlapping_boxes``.
         floor_polygon_m: float [N, 2], the room's inner outline, simple, in either direction.
-        height_m: where the ceiling hangs; None = unknown. The floor is at 0.
+        height_m: where the ceiling hangs, over the floor; None = unknown.
         tolerance_m: how far a box may reach out.
+        floor_z_m: how high the floor lies.
     """
     polygon = np.asarray(floor_polygon_m, np.float64)
     if polygon.ndim != 2 or polygon.shape[1] != 2 or len(polygon) < 3:
         raise ValueError(f"floor_polygon_m must be [N, 2] with N >= 3, not {polygon.shape}")
     outside = []
     for index, item in enumerate(objects):
-        bottom = item.center_m[2] - item.size_m[2] / 2
-        top = item.center_m[2] + item.size_m[2] / 2
+        bottom = item.center_m[2] - item.size_m[2] / 2 - floor_z_m
+        top = item.center_m[2] + item.size_m[2] / 2 - floor_z_m
         upright = bottom >= -tolerance_m and (height_m is None or top <= height_m + tolerance_m)
-        if not (upright and _inside(_outline_m(item), polygon, tolerance_m).all()):
+        if not (upright and inside_polygon(_outline_m(item), polygon, tolerance_m).all()):
             outside.append(index)
     return outside
+
+
+def out_of_rooms(
+    objects: Sequence[Any], rooms: Sequence[Layout], tolerance_m: float = OUTSIDE_M
+) -> list[int]:
+    """Return the indices of objects that lie wholly within none of several rooms."""
+    outside = set(range(len(objects)))
+    for room in rooms:
+        outside &= set(
+            out_of_bounds(
+                objects, room.floor_polygon_m, room.wall_height_m, tolerance_m, room.floor_z_m
+            )
+        )
+    return sorted(outside)
+
+
+def category_integrity(built: Collection[int], true: Collection[int]) -> float:
+    """Return the paper's semantic integrity: the share of the true categories that are there.
+
+    Args:
+        built: the object classes, 5 to 11, of the scene; others are left out.
+        true: those of the true room. Without any, nothing is missing and the share is 1.
+    """
+    wanted = set(true) & set(OBJECT_CLASSES)
+    return len(wanted & set(built)) / len(wanted) if wanted else 1.0
+
+
+def kept_objects(
+    volume: BlockVolume,
+    instances: Sequence[ObjectInstance],
+    grid: OccupancyGrid,
+    least_share: float = 0.5,
+) -> list[int]:
+    """Return the indices of objects that blocks still show in their place, as their class.
+
+    An object is kept where at least ``least_share`` of its cells lie in, or within one cell of, a
+    block of its own number and class.
+
+    Args:
+        volume: what was built.
+        instances: what was found.
+        grid: where the objects' cells lie.
+        least_share: how many of its cells are enough. Half: a template leaves out what is noise.
+    """
+    room_to_block = invert(volume.block_to_room)
+    shape = np.array(volume.states.shape)
+    kept = []
+    for index, one in enumerate(instances):
+        centers_m = grid.origin_m + (one.cells + 0.5) * grid.voxel_m
+        shown = np.zeros(len(centers_m), bool)
+        for step in np.vstack([np.zeros((1, 3)), np.eye(3), -np.eye(3)]):
+            points = apply(room_to_block, centers_m + step * grid.voxel_m) - volume.corner
+            blocks = np.floor(points + 1e-9).astype(np.int64)
+            inside = ((blocks >= 0) & (blocks < shape)).all(axis=1)
+            at = tuple(np.clip(blocks, 0, shape - 1).T)
+            same = (volume.instance[at] == one.id) & (volume.semantic[at] == one.class_id)
+            shown |= inside & same
+        if len(shown) and shown.mean() >= least_share:
+            kept.append(index)
+    return kept
 
 
 def floaters(labels: np.ndarray) -> Floaters:
@@ -139,8 +236,8 @@ def _outline_m(item: Any) -> np.ndarray:
     return np.concatenate(points)
 
 
-def _inside(points_m: np.ndarray, polygon_m: np.ndarray, tolerance_m: float) -> np.ndarray:
-    """Return for points [M, 2] whether each lies in the polygon or within the tolerance of it."""
+def inside_polygon(points_m: np.ndarray, polygon_m: np.ndarray, tolerance_m: float) -> np.ndarray:
+    """Return, bool [M], which points [M, 2] lie in a polygon [N, 2] or near its outline."""
     start, end = polygon_m, np.roll(polygon_m, -1, axis=0)
     side = end - start
     to_point = points_m[:, None] - start[None]

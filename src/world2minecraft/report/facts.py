@@ -7,7 +7,7 @@ import numpy as np
 from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.coordinates import apply, cell_centers_m, invert
 from world2minecraft.geometry.planes import LevelPlane, level_planes
-from world2minecraft.metrics.layout import collisions, floaters, out_of_bounds
+from world2minecraft.report.layout import confidence_facts, layout_facts, room_rows
 from world2minecraft.report.scene import FinishedScene
 from world2minecraft.types import COMPLETED, OBSERVED, BlockVolume
 
@@ -31,6 +31,8 @@ def scene_facts(scene: FinishedScene) -> dict[str, Any]:
         "objects": object_rows(scene),
         "built": built_shares(scene),
         "layout": layout_facts(scene),
+        "rooms": room_rows(scene),
+        "confidence": confidence_facts(scene),
         "object_cells_without_object": int(
             (np.isin(scene.grid.labels, OBJECT_CLASSES) & (scene.grid.instance == 0)).sum()
         ),
@@ -112,14 +114,3 @@ def built_shares(scene: FinishedScene) -> dict[str, float]:
     own = sum(placement.template == "cells" for placement in scene.placements)
     total = max(len(scene.placements), 1)
     return {"own_cells": round(own / total, 4), "template": round((total - own) / total, 4)}
-
-
-def layout_facts(scene: FinishedScene) -> dict[str, int]:
-    """Return the counts of objects that overlap, leave the room or hang in the air."""
-    width, depth, _ = scene.room_size_m
-    outline = np.array([[0, 0], [width, 0], [width, depth], [0, depth]], np.float64)
-    return {
-        "collisions": len(collisions(scene.placements)),
-        "out_of_bounds": len(out_of_bounds(scene.placements, outline)),
-        "floaters": floaters(scene.grid.labels).parts,
-    }

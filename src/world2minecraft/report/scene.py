@@ -9,12 +9,14 @@ from world2minecraft.errors import DamagedFileError
 from world2minecraft.exchange.evidence import read_evidence
 from world2minecraft.exchange.objects import read_objects, read_placements
 from world2minecraft.exchange.room import read_room
+from world2minecraft.exchange.rooms import read_rooms
 from world2minecraft.exchange.scan import read_room_size
 from world2minecraft.exchange.scene import read_scene
 from world2minecraft.minecraft.schem import read_schem
 from world2minecraft.types import (
     BlockVolume,
     FusedEvidence,
+    Layout,
     ObjectInstance,
     OccupancyGrid,
     Placement,
@@ -32,6 +34,7 @@ class FinishedScene:
     placements: tuple[Placement, ...]
     volume: BlockVolume
     room_size_m: np.ndarray
+    rooms: tuple[Layout, ...] = ()
 
 
 def read_finished(folder: Path) -> FinishedScene:
@@ -42,6 +45,7 @@ def read_finished(folder: Path) -> FinishedScene:
     """
     grid, _ = read_room(folder / "room.npz")
     return FinishedScene(
+        rooms=read_rooms(folder, grid),
         folder=folder,
         grid=grid,
         evidence=read_evidence(folder / "evidence.npz"),

@@ -9,10 +9,13 @@ import jinja2
 from world2minecraft import __version__
 from world2minecraft.classes import CLASS_COLOURS, CLASS_NAMES
 from world2minecraft.evaluate import evaluate_reconstruction
+from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.files import write_bytes, write_json, write_text
+from world2minecraft.metrics.layout import category_integrity
 from world2minecraft.progress import Progress, silent
 from world2minecraft.render.preview import plan_view, preview
 from world2minecraft.report.facts import scene_facts
+from world2minecraft.report.layout import built_categories
 from world2minecraft.report.pictures import Pair, as_data_uri, as_png, make_pairs
 from world2minecraft.report.scene import read_finished
 from world2minecraft.types import Scan
@@ -39,6 +42,12 @@ def write_report(
     facts = scene_facts(scene) | {"scan": _scan_facts(scan)}
     if truth is not None:
         facts["truth"] = evaluate_reconstruction(folder, truth)
+        facts["layout"]["semantic_integrity"]["true_categories"] = round(
+            category_integrity(
+                built_categories(scene), {one.class_id for one in read_truth(truth).objects}
+            ),
+            4,
+        )
     progress("report", 1, 3, "pictures")
     pairs = make_pairs(scan, scene.volume)
     facts["views"] = [
