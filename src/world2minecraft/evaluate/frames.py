@@ -20,6 +20,7 @@ class UsedFrame:
     name: str
     camera: Camera
     camera_to_truth: np.ndarray  # float64 [4, 4], the true pose
+    colour_to_truth: np.ndarray  # float64 [4, 4], that of the colour camera
     camera_to_scan: np.ndarray  # float64 [4, 4], as the capture states it
 
 
@@ -51,4 +52,4 @@ def _used(frame, truth: Truth) -> UsedFrame:
     if true is None:
         true = invert_rigid(truth.truth_to_scan) @ stated
     to_colour = frame.depth_to_colour if frame.depth_camera else np.eye(4)
-    return UsedFrame(frame.name, camera, true @ to_colour, stated @ to_colour)
+    return UsedFrame(frame.name, camera, true @ to_colour, true, stated @ to_colour)

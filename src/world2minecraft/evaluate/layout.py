@@ -8,41 +8,41 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.coordinates import apply
-from world2minecraft.evaluate.objects import TrueObjects, semantic_integrity
+from world2minecraft.evaluate.objects import TrueObjects
 from world2minecraft.exchange.objects import read_placements
-from world2minecraft.exchange.scan import read_room_size
-from world2minecraft.metrics.layout import collisions, out_of_bounds
-from world2minecraft.types import Layout
+from world2minecraft.exchange.rooms import read_rooms
+from world2minecraft.metrics.layout import category_integrity, collisions, out_of_rooms
+from world2minecraft.types import Layout, OccupancyGrid
 
 
 def layout_facts(
-    out: Path, own: Sequence[Layout], true: Sequence[Layout], objects: TrueObjects
+    out: Path, grid: OccupancyGrid, true_rooms: Sequence[Layout], objects: TrueObjects
 ) -> dict[str, Any]:
     """Return the counts of the placements of a run; empty where it was not furnished.
 
+    ``out_of_bounds`` is judged by the rooms that the run itself found, ``out_of_true_rooms`` by
+    the true ones; an object may stand in any of several rooms. ``semantic_integrity`` is the
+    share of the object classes that were seen in the true room and were placed.
+
     Args:
         out: the folder of the run.
-        own: the rooms that the run found, in the room frame.
-        true: the true rooms in the room frame.
+        grid: its ``room.npz``.
+        true_rooms: the true rooms in the room frame.
         objects: the true objects.
     """
     if not (out / "placements.json").is_file():
         return {}
     placements = read_placements(out / "placements.json")
+    pairs = zip(objects.objects, objects.seen, strict=True)
     return {
         "placements": len(placements),
-        "collisions": len(collisions(placements)),
-        "out_of_bounds": len(_outside(placements, own)),
-        "out_of_true_rooms": len(_outside(placements, true)),
-        "semantic_integrity": semantic_integrity(placements, objects),
+        "collisions": len(collisions(placements, grid=grid)),
+        "out_of_bounds": _outside(placements, read_rooms(out, grid)),
+        "out_of_true_rooms": _outside(placements, true_rooms),
+        "semantic_integrity": category_integrity(
+            {item.class_id for item in placements}, {item.class_id for item, seen in pairs if seen}
+        ),
     }
-
-
-def own_rooms(out: Path) -> tuple[Layout, ...]:
-    """Return the room that a run found, as its scan was aligned to it. Raises InputError."""
-    width, depth, height = read_room_size(out / "scan.json").tolist()
-    outline = np.array([[0, 0], [width, 0], [width, depth], [0, depth]], np.float64)
-    return (Layout(outline, height),)
 
 
 def in_room(layouts: Sequence[Layout], truth_to_room: np.ndarray) -> tuple[Layout, ...]:
@@ -60,9 +60,6 @@ def in_room(layouts: Sequence[Layout], truth_to_room: np.ndarray) -> tuple[Layou
     return tuple(moved)
 
 
-def _outside(placements: Sequence[Any], rooms: Sequence[Layout]) -> set[int]:
-    """Return the placements that lie wholly within none of the rooms."""
-    outside = set(range(len(placements))) if rooms else set()
-    for room in rooms:
-        outside &= set(out_of_bounds(placements, room.floor_polygon_m))
-    return outside
+def _outside(placements: Sequence[Any], rooms: Sequence[Layout]) -> int:
+    """Return how many placements lie wholly within none of the rooms, where any are known."""
+    return len(out_of_rooms(placements, rooms)) if rooms else 0

@@ -70,13 +70,3 @@ def object_facts(counts: ObjectCounts) -> dict[str, Any]:
         "orientation_hits": counts.turns_right,
         "by_class": rows,
     }
-
-
-def semantic_integrity(found: Sequence[Any], true: TrueObjects) -> float:
-    """Return the paper's measure: of the object classes that are there, the share that was found.
-
-    Classes of which no object was seen are not asked for; 1 where there are none.
-    """
-    there = {item.class_id for item, seen in zip(true.objects, true.seen, strict=True) if seen}
-    said = {int(item.class_id) for item in found}
-    return len(there & said) / len(there) if there else 1.0

@@ -72,7 +72,7 @@ def reached_cells(
     scene = prepare_voxels(truth.labels, truth.voxel_m, truth.origin_m)
     voxels = []
     for frame in frames:
-        camera = _coarse(frame.camera, rays_wide)
+        camera = pinhole(frame.camera, rays_wide)
         hits = cast_voxels(scene, camera, frame.camera_to_truth)
         _mark(
             hits.depth_m,
@@ -91,7 +91,7 @@ def reached_cells(
     return Reached(flags, low, voxel_m, met[met >= 0].astype(np.int64))
 
 
-def _coarse(camera: Camera, rays_wide: int) -> Camera:
+def pinhole(camera: Camera, rays_wide: int) -> Camera:
     """Return the pinhole camera whose rays are cast: distortion bends few rays out of a cell."""
     wide = min(rays_wide, camera.width_px)
     camera = camera.resized(wide, max(round(wide * camera.height_px / camera.width_px), 1))

@@ -5,6 +5,7 @@ know the others. Truth becomes occupancy by SSCNet's rule in the estimated frame
 error is told apart.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,16 +15,18 @@ import numpy as np
 from world2minecraft.classes import UNKNOWN
 from world2minecraft.evaluate.frame_error import frame_error
 from world2minecraft.evaluate.frames import UsedFrame, used_frames
-from world2minecraft.evaluate.layout import in_room, layout_facts, own_rooms
+from world2minecraft.evaluate.layout import in_room, layout_facts
 from world2minecraft.evaluate.objects import (
     TrueObjects,
     object_counts,
     object_facts,
     true_objects,
 )
+from world2minecraft.evaluate.openings import found_rooms, opening_facts
 from world2minecraft.evaluate.poses import pose_facts
 from world2minecraft.evaluate.reach import CROSSED, Reached, reached_cells
 from world2minecraft.evaluate.truth import Truth, read_truth
+from world2minecraft.evaluate.world import world_facts
 from world2minecraft.exchange.objects import read_objects
 from world2minecraft.exchange.room import read_room
 from world2minecraft.metrics.calibration import count_calibration
@@ -60,15 +63,24 @@ def evaluate_reconstruction(out: Path, truth: Path) -> dict[str, Any]:
     Raises:
         InputError: a file of the run or of the truth is missing or damaged.
     """
-    return score_run(out, see_truth(out, read_truth(truth)))
-
-
-def see_truth(out: Path, truth: Truth) -> TrueRoom:
-    """Carry the truth into the frame of the run in ``out``. Raises InputError."""
+    known = read_truth(truth)
     grid, scan_to_room = read_room(out / "room.npz")
-    frames = used_frames(out, truth)
+    return score_run(out, see_truth(known, used_frames(out, known), scan_to_room, grid.voxel_m))
+
+
+def see_truth(
+    truth: Truth, frames: Sequence[UsedFrame], scan_to_room: np.ndarray, voxel_m: float
+) -> TrueRoom:
+    """Carry the truth into an estimated frame.
+
+    Args:
+        truth: the room.
+        frames: the used ones, whose rays tell which cells can be known.
+        scan_to_room: 4x4 rigid, as the run estimated it.
+        voxel_m: the cells to carry it into.
+    """
     truth_to_room = scan_to_room @ truth.truth_to_scan
-    reached = reached_cells(truth, frames, truth_to_room, grid.voxel_m)
+    reached = reached_cells(truth, frames, truth_to_room, voxel_m)
     x, y, z = reached.flags.shape
     labels = carry_truth(
         truth.labels,
@@ -76,11 +88,11 @@ def see_truth(out: Path, truth: Truth) -> TrueRoom:
         truth.origin_m,
         truth_to_room,
         (x, y, z),
-        reached.low * grid.voxel_m,
-        grid.voxel_m,
+        reached.low * voxel_m,
+        voxel_m,
     )
     objects = true_objects(truth, truth_to_room, reached)
-    return TrueRoom(truth, frames, truth_to_room, reached, labels, objects)
+    return TrueRoom(truth, tuple(frames), truth_to_room, reached, labels, objects)
 
 
 def score_run(out: Path, room: TrueRoom) -> dict[str, Any]:
@@ -92,7 +104,13 @@ def score_run(out: Path, room: TrueRoom) -> dict[str, Any]:
     facts["frame_error"] = frame_error(room.truth_to_room, room.truth.layouts)
     facts["poses"] = pose_facts(out, room.truth, room.frames)
     true_rooms = in_room(room.truth.layouts, room.truth_to_room)
-    facts["layout"] = layout_facts(out, own_rooms(out), true_rooms, room.objects)
+    facts["layout"] = layout_facts(out, grid, true_rooms, room.objects)
+    rooms = found_rooms(out)
+    if rooms is not None:
+        facts["openings"] = opening_facts(
+            rooms, room.truth.layouts, room.truth_to_room, room.reached
+        )
+    facts["world"] = world_facts(out, room.labels, room.reached)
     return {"how": HOW, "headline": headline(facts)} | facts
 
 

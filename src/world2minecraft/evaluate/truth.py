@@ -94,7 +94,7 @@ def _object(row: dict[str, Any]) -> LayoutObject:
 def _layouts(stated: dict[str, Any]) -> tuple[Layout, ...]:
     """Return the rooms; an old truth states the sides of its one room alone."""
     if "layouts" in stated:
-        return tuple(_layout(row) for row in stated["layouts"])
+        return tuple(layout_of(row) for row in stated["layouts"])
     if "size_m" not in stated:
         return ()
     width, depth, height = stated["size_m"]
@@ -102,7 +102,8 @@ def _layouts(stated: dict[str, Any]) -> tuple[Layout, ...]:
     return (Layout(outline, height),)
 
 
-def _layout(row: dict[str, Any]) -> Layout:
+def layout_of(row: dict[str, Any]) -> Layout:
+    """Return the room that a row of ``truth.json`` or ``layout.json`` states, without objects."""
     openings = tuple(
         Opening(o["kind"], o["start_m"], o["end_m"], o["sill_m"], o["head_m"])
         for o in row.get("openings", ())
