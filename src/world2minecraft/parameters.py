@@ -14,6 +14,7 @@ from world2minecraft.fuse import CleanParameters, FuseParameters
 from world2minecraft.label import LABELLERS
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.occupy import PREDICTORS
+from world2minecraft.register import RegisterParameters
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,7 @@ class Parameters:
     mc_version: str = "1.20.1"
     seed: int = 0
     capture: dict[str, str] = field(default_factory=dict)
+    register: RegisterParameters = field(default_factory=RegisterParameters)
     fuse: FuseParameters = field(default_factory=FuseParameters)
     clean: CleanParameters = field(default_factory=CleanParameters)
     find: FindParameters = field(default_factory=FindParameters)

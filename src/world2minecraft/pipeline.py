@@ -18,17 +18,19 @@ from pathlib import Path
 
 from world2minecraft import __version__
 from world2minecraft.exchange.evidence import write_evidence
-from world2minecraft.exchange.scan import write_scan
+from world2minecraft.exchange.poses import read_poses, write_poses
+from world2minecraft.exchange.scan import placed_as_written, read_registration, write_scan
 from world2minecraft.fuse import fuse_views
 from world2minecraft.occupy import predictor
 from world2minecraft.parameters import Parameters
 from world2minecraft.progress import Progress, silent
+from world2minecraft.register import corrected, register, told
 from world2minecraft.run_folder import RunFolder, hash_capture
-from world2minecraft.scan import open_scan, settled
+from world2minecraft.scan import open_scan, realigned, settled
 from world2minecraft.steps import LATER_STEPS
 from world2minecraft.types import Scan
 
-STAGES = ("scan", "fuse", *LATER_STEPS)
+STAGES = ("scan", "register", "fuse", *LATER_STEPS)
 
 
 def reconstruct(
@@ -62,12 +64,21 @@ def reconstruct(
     if run.needs("scan"):
         with run.stage("scan"):
             write_scan(run.path("scan.json"), scan)
+    if run.needs("register"):
+        with run.stage("register"):
+            found = register(scan, chosen.register, progress)
+            scan = realigned(corrected(scan, found.corrections), found.surface)
+            scan = told(scan, found.corrections.facts)
+            write_poses(run.path("poses.npz"), found.corrections)
+            write_scan(run.path("scan.json"), scan, found.corrections.facts)
+    else:
+        scan = registered_before(scan, out)
     if run.needs("fuse"):
         with run.stage("fuse"):
             views = predictor(chosen.predictor).predict(scan)
             write_evidence(run.path("evidence.npz"), fuse_views(views, scan, chosen.fuse, progress))
             scan = settled(scan)
-            write_scan(run.path("scan.json"), scan)
+            write_scan(run.path("scan.json"), scan, read_registration(run.path("scan.json")))
     for stage, step in LATER_STEPS.items():
         if run.needs(stage):
             progress(stage, 0, 1)
@@ -75,6 +86,16 @@ def reconstruct(
                 step(run.folder, chosen)
             progress(stage, 1, 1)
     return scan
+
+
+def registered_before(scan: Scan, out: Path) -> Scan:
+    """Return a scan as an earlier run in ``out`` registered and placed it.
+
+    Raises:
+        InputError: no run got so far there. DamagedFileError: its files cannot be read.
+    """
+    placed = placed_as_written(scan, out / "scan.json")
+    return corrected(placed, read_poses(out / "poses.npz"))
 
 
 def manifest(capture: Path, labels: Path | None, chosen: Parameters) -> dict:

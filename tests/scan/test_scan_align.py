@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from world2minecraft.coordinates import apply, invert_rigid, rotation_about_z
+from world2minecraft.geometry.surface import collect_surface
 from world2minecraft.scan.align import ImplausibleRoomError, align, align_surface
 from world2minecraft.scan.gravity import frame_of_up
-from world2minecraft.scan.surface import Surface, collect_surface, profile
+from world2minecraft.scan.surface import profile
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +82,7 @@ def test_a_room_of_an_impossible_size_is_refused_with_its_size(surfaces, factor,
     cameras = surface.cameras.copy()
     cameras[:, :3, 3] *= factor
     with pytest.raises(ImplausibleRoomError, match=f"would be .*{size}.* plausible: check the"):
-        align_surface(Surface(surface.points_m * factor, surface.normals, cameras))
+        align_surface(replace(surface, points_m=surface.points_m * factor, cameras=cameras))
 
 
 def test_depth_without_surface_is_refused(box_room):

@@ -30,9 +30,7 @@ def run(
     ] = 4.0,
     start: Annotated[
         str | None,
-        typer.Option(
-            "--from", metavar="STAGE", help="scan, fuse, label, find, furnish, build or report."
-        ),
+        typer.Option("--from", metavar="STAGE", help="scan, register, fuse, ... or report."),
     ] = None,
     labels: Annotated[
         Path | None, typer.Option("--labels", help="A folder of 2D label images, one a frame.")
@@ -89,13 +87,14 @@ def make(
     progress: "Progress",
 ) -> dict[str, Any]:
     """Run the pipeline and write its report; return what ``report.json`` holds."""
-    from world2minecraft.pipeline import reconstruct
+    from world2minecraft.pipeline import reconstruct, registered_before
     from world2minecraft.report import write_report
     from world2minecraft.scan import open_scan
 
     if start == "report":
         options = {"labels": labels, "options": chosen.capture}
         scan = open_scan(capture, voxel_m=chosen.voxel_m, progress=progress, **options)
+        scan = registered_before(scan, out)
     else:
         scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
     truth = capture if (capture / "truth.npz").is_file() else None

@@ -1,6 +1,9 @@
 """``scan.json``: how a capture was read and aligned."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -9,8 +12,8 @@ from world2minecraft.files import read_json, write_json
 from world2minecraft.types import Scan
 
 
-def write_scan(path: str | Path, scan: Scan) -> None:
-    """Write everything of a scan but its pictures."""
+def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | None = None) -> None:
+    """Write everything of a scan but its pictures, and what registration found."""
     write_json(
         path,
         {
@@ -22,8 +25,39 @@ def write_scan(path: str | Path, scan: Scan) -> None:
             "scale": scan.scale,
             "scale_sigma": scan.scale_sigma,
             "notes": list(scan.notes),
+            "registration": dict(registration or {}),
         },
     )
+
+
+def read_registration(path: str | Path) -> dict[str, Any]:
+    """Return what registration found, of a ``scan.json``; empty where it holds nothing of it.
+
+    Raises:
+        InputError: the file is missing. DamagedFileError: it is no ``scan.json``.
+    """
+    found = read_json(path)
+    if not isinstance(found, dict) or not isinstance(found.get("registration", {}), dict):
+        raise DamagedFileError(path, "is no scan.json")
+    return found.get("registration", {})
+
+
+def placed_as_written(scan: Scan, path: str | Path) -> Scan:
+    """Return a scan with the place of the room, and the notes, that a ``scan.json`` holds.
+
+    Raises:
+        InputError: the file is missing. DamagedFileError: it holds no place of a room.
+    """
+    try:
+        found = read_json(path)
+        return replace(
+            scan,
+            scan_to_room=np.array(found["scan_to_room"], np.float64),
+            room_size_m=read_room_size(path),
+            notes=tuple(str(note) for note in found["notes"]),
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise DamagedFileError(path, f"holds no place of a room ({error})") from error
 
 
 def read_room_size(path: str | Path) -> np.ndarray:

@@ -5,9 +5,10 @@ views that are read from disk one at a time. ``describe_capture`` tells in a mom
 holds. ``write_plain`` writes our own layout.
 """
 
+from world2minecraft.scan.align import realigned
 from world2minecraft.scan.describing import CaptureSummary, describe_capture
 from world2minecraft.scan.opening import open_scan
 from world2minecraft.scan.plain import write_plain
 from world2minecraft.scan.stream import settled
 
-__all__ = ["CaptureSummary", "describe_capture", "open_scan", "settled", "write_plain"]
+__all__ = ["CaptureSummary", "describe_capture", "open_scan", "realigned", "settled", "write_plain"]

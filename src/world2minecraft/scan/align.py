@@ -7,20 +7,21 @@ in the game), so that the result does not depend on the frame that the capture c
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.geometry.surface import Surface, collect_surface
 from world2minecraft.scan.gravity import Ground, find_ground, frame_of_up
-from world2minecraft.scan.surface import Surface, collect_surface
 from world2minecraft.scan.walls import Box, find_box, find_yaw
-from world2minecraft.types import View
+from world2minecraft.types import Scan, View
 
 SIDE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
 HEIGHT_M = (1.5, 12.0)
 LEAST_POINTS = 500
 DECIMALS = 9
+UNSEEN_NOTES = ("no floor was seen", "no wall was seen", "no ceiling was seen")
 ELBOW_M = (0.3, 0.3, 0.1)  # What a person needs behind and over a hand-held camera.
 
 
@@ -70,6 +71,24 @@ def align_surface(surface: Surface) -> Alignment:
     # Sums in another order, as with other threads, differ in the last bits; files must not.
     scan_to_room = np.round(level_to_room @ scan_to_level, DECIMALS)
     return Alignment(scan_to_room, np.round(size, DECIMALS), _notes(ground, box, size))
+
+
+def realigned(scan: Scan, surface: Surface) -> Scan:
+    """Return a scan whose room is found anew in a better surface of its frame.
+
+    Where that is no plausible room, the scan stays as it is.
+    """
+    try:
+        found = align_surface(surface)
+    except ImplausibleRoomError:
+        return scan
+    notes = tuple(note for note in scan.notes if not note.startswith(UNSEEN_NOTES))
+    return replace(
+        scan,
+        scan_to_room=found.scan_to_room,
+        room_size_m=found.room_size_m,
+        notes=(*notes, *found.notes),
+    )
 
 
 def _turn_to_walls(level: Surface) -> np.ndarray:

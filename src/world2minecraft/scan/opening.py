@@ -10,7 +10,7 @@ from world2minecraft.scan.align import Alignment, ImplausibleRoomError, align
 from world2minecraft.scan.colour_camera import estimate_colour_camera
 from world2minecraft.scan.judged import JudgedCapture, judge_capture, spread_over
 from world2minecraft.scan.options import parse_options
-from world2minecraft.scan.stream import CaptureViews
+from world2minecraft.scan.stream import CaptureViews, without_colour
 from world2minecraft.types import Scan
 
 ALIGNED_FRAMES = 24  # Of the kitchen's 40; more moved its floor by under 2 mm.
@@ -93,12 +93,7 @@ def _with_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
 
 
 def _aligned(judged: JudgedCapture, stream: CaptureViews) -> Alignment:
-    # Colour is not decoded here; the depth camera's pose stays what it is without it.
-    with_depth = [
-        replace(frame, colour_path=None, colour_camera=None, labels_path=None)
-        for frame in stream.frames
-        if frame.depth_path
-    ]
+    with_depth = without_colour(stream.frames)
     try:
         return align(stream.read(spread_over(with_depth, ALIGNED_FRAMES)))
     except ImplausibleRoomError as error:

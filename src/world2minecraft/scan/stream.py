@@ -32,6 +32,10 @@ class CaptureViews:
         """Read the views from the first."""
         return self.read(self.frames)
 
+    def depth_views(self) -> Iterator[View]:
+        """Read the views that have depth, without decoding their colours and labels."""
+        return self.read(without_colour(self.frames))
+
     def read(self, frames: Sequence[FrameFiles]) -> Iterator[View]:
         """Read the views of some frames; those that cannot be decoded are left out and noted."""
         for frame in frames:
@@ -41,6 +45,15 @@ class CaptureViews:
                 self.damaged[frame.name] = str(error)
                 continue
             yield view
+
+
+def without_colour(frames: Sequence[FrameFiles]) -> list[FrameFiles]:
+    """Return the frames that have depth, without colour; the depth camera's pose stays the same."""
+    return [
+        replace(frame, colour_path=None, colour_camera=None, labels_path=None)
+        for frame in frames
+        if frame.depth_path
+    ]
 
 
 def settled(scan: Scan) -> Scan:

@@ -1,49 +1,10 @@
-"""The oriented points that alignment looks at: some of the frames, some of their pixels."""
+"""How much surface lies at each place along an axis."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.coordinates import apply
-from world2minecraft.geometry.normals import normals_of_depth
-from world2minecraft.types import View
-
 CELL_M = 0.10  # Support is counted in distinct patches of this side: many looks at one are one.
-
-
-@dataclass(frozen=True)
-class Surface:
-    """Points, unit normals towards the camera (float64 [N, 3], one frame), and camera poses."""
-
-    points_m: np.ndarray
-    normals: np.ndarray
-    cameras: np.ndarray  # float64 [F, 4, 4], camera to the frame of the points.
-
-    def turned(self, transform: np.ndarray) -> "Surface":
-        """Return the surface in another frame; ``transform`` is rigid."""
-        return Surface(
-            apply(transform, self.points_m),
-            self.normals @ transform[:3, :3].T,
-            transform @ self.cameras,
-        )
-
-
-def collect_surface(views: Iterable[View]) -> Surface:
-    """Gather the oriented points of views in the scan's frame; views without depth give none."""
-    points, normals, cameras = [np.zeros((0, 3))], [np.zeros((0, 3))], []
-    for view in views:
-        if view.depth_m is None or view.depth_camera is None:
-            continue
-        step = max(2, round(view.depth_camera.width_px / 106))  # Every 6th pixel at 640.
-        found = normals_of_depth(view.depth_m, view.depth_camera, step_px=step, reach_px=step)
-        pose = view.depth_camera_to_scan
-        points.append(apply(pose, found.points_m))
-        normals.append(found.normals @ pose[:3, :3].T)
-        cameras.append(pose)
-    return Surface(
-        np.concatenate(points), np.concatenate(normals), np.array(cameras).reshape(-1, 4, 4)
-    )
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.coordinates import rotation_about_z
-from world2minecraft.scan.surface import Surface, profile
+from world2minecraft.geometry.surface import Surface
+from world2minecraft.scan.surface import profile
 
 UPRIGHT = 0.17  # Sine of 10 degrees: how far a wall's normal may lean.
 FACING = 0.94  # Cosine of 20 degrees.

@@ -5,6 +5,7 @@ Arrays are held as read-only views; a stage that changes something makes a new v
 """
 
 from world2minecraft.types.capture import Camera, Scan, View, ViewStream
+from world2minecraft.types.corrections import Corrections
 from world2minecraft.types.edit import Operation
 from world2minecraft.types.evidence import FusedEvidence, GridEvidence, PointEvidence
 from world2minecraft.types.grid import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
@@ -21,6 +22,7 @@ __all__ = [
     "BlockEntity",
     "BlockVolume",
     "Camera",
+    "Corrections",
     "Entity",
     "FusedEvidence",
     "GridEvidence",

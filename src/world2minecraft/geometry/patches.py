@@ -1,0 +1,130 @@
+"""Flat patches of a depth image: what registration and alignment look at instead of pixels.
+
+In: one depth image. Out: a point, a normal and a sigma for each square of pixels that is flat.
+The inverse depth of a plane is linear in a pixel's ray, ``1 / z = a + b x + c y``, so a patch is a
+linear fit whatever its slope; and structured light has about the same noise of inverse depth near
+and far. Squares of four whose common fit is as good as their own become one, since a wider patch
+knows its normal better.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.geometry.lifting import pixel_rays
+from world2minecraft.jit import njit
+from world2minecraft.types import Camera
+
+SQUARES_ACROSS = 64  # 10 px at 640: 6 cm at 3 m.
+LEAST_SHARE = 0.5  # Of a square's pixels that must have depth.
+ROUGH_M, ROUGH_GROWTH = 0.003, 0.0035  # rms of a flat square, 1.5 times the rgbd sensor's noise.
+LEAST_RMS_M = 0.0003  # Millimetre steps of stored depth.
+MAX_SLOPE_SIGMA = 0.12  # 7 degrees: a normal less sure than that says nothing.
+MERGE_F = 3.0  # Nine more parameters fit better by chance; over this they really do.
+MAX_DEPTH_M = 6.0
+
+
+@dataclass(frozen=True, eq=False)
+class Patches:
+    """Flat patches in the camera's frame.
+
+    ``points_m`` and ``normals`` are float64 [N, 3], normals look at the camera; ``sigma_m``
+    float64 [N] says how far off a point is along its normal by the pixels' noise alone.
+    """
+
+    points_m: np.ndarray
+    normals: np.ndarray
+    sigma_m: np.ndarray
+
+
+def patches_of_depth(depth_m: np.ndarray, camera: Camera) -> Patches:
+    """Return the flat patches of one image.
+
+    Args:
+        depth_m: float32 [H, W] z-depth in metres, 0 = hole.
+        camera: the depth camera.
+    """
+    side = max(4, round(camera.width_px / SQUARES_ACROSS))
+    rows = _patches(depth_m, pixel_rays(camera), side)
+    return Patches(rows[:, :3], rows[:, 3:6], rows[:, 6])
+
+
+@njit
+def _moments(depth, rays, top, left, side):
+    """Sums of 1, x, y, xx, xy, yy, d, xd, yd, dd over a square, d the inverse depth."""
+    sums = np.zeros(10)
+    for v in range(top, top + side):
+        for u in range(left, left + side):
+            z = depth[v, u]
+            if z > 0 and z < MAX_DEPTH_M:
+                x, y, d = float(rays[v, u, 0]), float(rays[v, u, 1]), 1.0 / z
+                sums[0] += 1
+                sums[1] += x
+                sums[2] += y
+                sums[3] += x * x
+                sums[4] += x * y
+                sums[5] += y * y
+                sums[6] += d
+                sums[7] += x * d
+                sums[8] += y * d
+                sums[9] += d * d
+    return sums
+
+
+@njit
+def _fit(sums, least, row):
+    """Fit a square; write point, normal and sigma to ``row``; return its squares left, or -1."""
+    n = sums[0]
+    if n < least or n < 8:
+        return -1.0
+    x, y, d = sums[1] / n, sums[2] / n, sums[6] / n
+    xx, xy, yy = sums[3] - n * x * x, sums[4] - n * x * y, sums[5] - n * y * y
+    xd, yd, dd = sums[7] - n * x * d, sums[8] - n * y * d, sums[9] - n * d * d
+    size = xx * yy - xy * xy
+    if size <= 1e-3 * xx * yy:
+        return -1.0
+    b, c = (xd * yy - yd * xy) / size, (yd * xx - xd * xy) / size
+    left = max(dd - b * xd - c * yd, 0.0)
+    z = 1.0 / d
+    left = max(left, (n - 3) * (LEAST_RMS_M / (z * z)) ** 2)
+    sigma_d = np.sqrt(left / (n - 3))
+    rms = sigma_d * z * z
+    slope_sigma = rms / (z * np.sqrt(min(xx, yy)))
+    if rms > ROUGH_M + ROUGH_GROWTH * z * z or slope_sigma > MAX_SLOPE_SIGMA:
+        return -1.0
+    a = d - b * x - c * y
+    length = np.sqrt(a * a + b * b + c * c)
+    row[0], row[1], row[2] = x * z, y * z, z
+    row[3], row[4], row[5] = -b / length, -c / length, -a / length
+    # A step of depth moves the point along its ray; along the normal it counts by their cosine.
+    row[6] = rms / np.sqrt(n) * d / length
+    return left
+
+
+@njit
+def _patches(depth, rays, side):
+    down, across = depth.shape[0] // (2 * side), depth.shape[1] // (2 * side)
+    found = np.empty((4 * down * across, 7))
+    rows, lefts = np.empty((5, 7)), np.empty(4)
+    count = 0
+    least = LEAST_SHARE * side * side
+    for i in range(down):
+        for j in range(across):
+            whole = np.zeros(10)
+            for part in range(4):
+                top, left = (2 * i + part // 2) * side, (2 * j + part % 2) * side
+                sums = _moments(depth, rays, top, left, side)
+                lefts[part] = _fit(sums, least, rows[part])
+                whole += sums
+            if lefts.min() >= 0:
+                left = _fit(whole, least, rows[4])
+                inner = lefts.sum()
+                if left >= 0 and (left - inner) * (whole[0] - 12) <= MERGE_F * 9 * inner:
+                    found[count] = rows[4]
+                    count += 1
+                    continue
+            for part in range(4):
+                if lefts[part] >= 0:
+                    found[count] = rows[part]
+                    count += 1
+    return found[:count].copy()

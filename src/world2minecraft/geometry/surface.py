@@ -1,0 +1,82 @@
+"""The oriented points of a scan: the flat patches of its frames, gathered in one frame."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from world2minecraft.geometry.patches import patches_of_depth
+from world2minecraft.jit import njit
+from world2minecraft.types import View
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Oriented points of several frames.
+
+    ``points_m`` and ``normals`` (unit, towards the camera) float64 [N, 3] and ``cameras`` float64
+    [F, 4, 4] share one frame; ``sigma_m`` float64 [N] is the noise along the normal, ``owner``
+    int32 [N] the index of the camera that saw the point. ``names`` are the frames' names.
+    """
+
+    points_m: np.ndarray
+    normals: np.ndarray
+    cameras: np.ndarray
+    sigma_m: np.ndarray
+    owner: np.ndarray
+    names: tuple[str, ...] = ()
+
+    def turned(self, transform: np.ndarray) -> "Surface":
+        """Return the surface in another frame; ``transform`` is rigid."""
+        return replace(
+            self,
+            points_m=_moved(self.points_m, transform[:3, :3], transform[:3, 3]),
+            normals=_moved(self.normals, transform[:3, :3], np.zeros(3)),
+            cameras=transform @ self.cameras,
+        )
+
+    def chosen(self, which: np.ndarray) -> "Surface":
+        """Return the surface of some of the points, by a mask or by indices."""
+        return replace(
+            self,
+            points_m=self.points_m[which],
+            normals=self.normals[which],
+            sigma_m=self.sigma_m[which],
+            owner=self.owner[which],
+        )
+
+
+def collect_surface(views: Iterable[View]) -> Surface:
+    """Gather the flat patches of views in the scan's frame; views without depth give none."""
+    points, normals, sigmas = [np.zeros((0, 3))], [np.zeros((0, 3))], [np.zeros(0)]
+    cameras, names, counts = [], [], []
+    for view in views:
+        if view.depth_m is None or view.depth_camera is None:
+            continue
+        found = patches_of_depth(view.depth_m, view.depth_camera)
+        pose = view.depth_camera_to_scan
+        points.append(_moved(found.points_m, pose[:3, :3], pose[:3, 3]))
+        normals.append(_moved(found.normals, pose[:3, :3], np.zeros(3)))
+        sigmas.append(found.sigma_m)
+        cameras.append(pose)
+        names.append(view.name)
+        counts.append(len(found.points_m))
+    return Surface(
+        np.concatenate(points),
+        np.concatenate(normals),
+        np.array(cameras).reshape(-1, 4, 4),
+        np.concatenate(sigmas),
+        np.repeat(np.arange(len(counts), dtype=np.int32), counts),
+        tuple(names),
+    )
+
+
+@njit
+def _moved(points, rotation, shift):
+    """Return R p + t for each row; in one order, where a library's product may choose others."""
+    result = np.empty((len(points), 3))
+    for i in range(len(points)):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        for a in range(3):
+            result[i, a] = rotation[a, 0] * x + rotation[a, 1] * y + rotation[a, 2] * z + shift[a]
+    return result

@@ -1,0 +1,70 @@
+"""A scan with its corrections applied, view by view as it is read."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.types import Corrections, Scan, View, ViewStream
+
+
+@dataclass(eq=False, repr=False)
+class CorrectedViews:
+    """Views whose poses and depths are put right as they are read."""
+
+    views: ViewStream
+    changes: dict[str, tuple[np.ndarray, float]]
+
+    def __len__(self) -> int:
+        """The number of views."""
+        return len(self.views)
+
+    def __iter__(self) -> Iterator[View]:
+        """Read the views from the first."""
+        for view in self.views:
+            yield corrected_view(view, self.changes)
+
+    @property
+    def damaged(self) -> dict[str, str]:
+        """The frames that could not be decoded so far, with reasons."""
+        return getattr(self.views, "damaged", {})
+
+
+def corrected(scan: Scan, corrections: Corrections) -> Scan:
+    """Return the scan whose views come with corrected poses and depths."""
+    changes = {
+        name: (change, float(scale))
+        for name, change, scale in zip(
+            corrections.names, corrections.pose_change, corrections.depth_scale, strict=True
+        )
+    }
+    return replace(scan, views=CorrectedViews(scan.views, changes))
+
+
+def told(scan: Scan, facts: Mapping[str, Any]) -> Scan:
+    """Return the scan with a sentence on what registration did among its notes."""
+    if not facts.get("kept"):
+        return scan
+    text = (
+        f"poses were moved to meet each other: by {facts['moved_median_mm']:.1f} mm and "
+        f"{facts['turned_median_deg']:.2f} degrees in the middle of all frames"
+    )
+    if facts["depth_scaled"]:
+        text += f"; depth scales that differed by {facts['depth_scale_spread']:.1%} were evened out"
+    text += (
+        f"; surface kept apart now meets within {facts['misfit_after_mm']:.1f} mm, "
+        f"before {facts['misfit_before_mm']:.1f} mm"
+    )
+    return replace(scan, notes=(*scan.notes, text))
+
+
+def corrected_view(view: View, changes: dict[str, tuple[np.ndarray, float]]) -> View:
+    """Return one view put right; a view that is not among the changes stays as it is."""
+    if view.name not in changes:
+        return view
+    change, scale = changes[view.name]
+    depth_m = view.depth_m
+    if depth_m is not None and scale != 1.0:
+        depth_m = depth_m * np.float32(scale)
+    return replace(view, camera_to_scan=change @ view.camera_to_scan, depth_m=depth_m)
