@@ -81,7 +81,7 @@ def test_growing_the_map_changes_nothing():
     near, far = looking_at_wall(1.0), looking_at_wall(5.5)
     grown = fused(near, far)
     fresh = EvidenceMap(np.eye(4))
-    fresh._reserve(np.array([-100, -100, -100]), np.array([100, 100, 100]))
+    fresh.blocks.reserve_box(np.array([-100, -100, -100]), np.array([100, 100, 100]), 0.08)
     fresh.add(near)
     fresh.add(far)
     whole = fresh.fused()

@@ -44,12 +44,12 @@ def test_a_colour_camera_beside_moves_the_look_up_by_parallax():
     assert set(shift[middle]) == {3}
 
 
-def test_votes_come_from_the_labels_and_unknown_votes_for_nothing():
+def test_labels_are_carried_as_they_are():
     labels = np.full((24, 32), 255, np.uint8)
     labels[:, :16] = 8
     evidence = lift(np.full((24, 32), 2, np.float32), DEPTH, labels=labels)
-    assert evidence.votes.dtype == np.float16
-    assert evidence.votes[:, 8].sum() == 24 * 16 and evidence.votes.sum() == 24 * 16
+    assert evidence.labels.dtype == np.uint8
+    assert np.array_equal(evidence.labels, labels.reshape(-1))
 
 
 def test_weight_is_the_area_of_a_pixel():

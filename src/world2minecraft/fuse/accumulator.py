@@ -3,25 +3,38 @@
 In: PointEvidence or GridEvidence in the scan's frame. Out: FusedEvidence in the room frame. The
 map grows with what is seen, so that a capture is read once and nothing must be known of its size.
 A cell holds log-odds of being occupied: a view that sees a surface in it adds ``hit_log_odds``, a
-ray that crosses it adds ``free_log_odds``; what no ray reached stays 0, unknown.
+ray that crosses it adds ``free_log_odds``; what no ray reached stays 0, unknown. Where surfaces
+were met, their planes are kept too, and ``settle`` decides by them what is solid.
 """
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT
 from world2minecraft.coordinates import apply
 from world2minecraft.errors import CaptureError
+from world2minecraft.fuse.blocks import BLOCK_CELLS, SIDE, Blocks
 from world2minecraft.fuse.grids import grid_gains
-from world2minecraft.fuse.kernels import add_points, to_cells
+from world2minecraft.fuse.kernels import (
+    add_colours,
+    add_hits,
+    add_labels,
+    add_votes,
+    face_normals,
+    number_cells,
+    places_of,
+    sum_cells,
+    to_cells,
+)
 from world2minecraft.fuse.parameters import FuseParameters
+from world2minecraft.fuse.rays import free_rays
+from world2minecraft.fuse.settle import inherit, settle
 from world2minecraft.progress import Progress, silent
 from world2minecraft.types import FusedEvidence, GridEvidence, PointEvidence, Scan
 
 REACH_CELLS = 2  # A nudged point may leave its cell by one.
-GROW_CELLS = 16  # Arrays grow in steps, so that few frames copy them.
-MAX_CELLS = 40_000_000  # 4 GB of working arrays: a house of 40 x 40 x 12 m at 0.08 m.
+ALL_SUB_CELLS = 64
 
 
 class EvidenceMap:
@@ -30,8 +43,8 @@ class EvidenceMap:
     def __init__(self, scan_to_room: np.ndarray, parameters: FuseParameters | None = None):
         self.parameters = parameters or FuseParameters()
         self.scan_to_room = np.asarray(scan_to_room, np.float64)
-        self._low = np.zeros(3, np.int64)  # The room cell that stands at array index (0, 0, 0).
-        self._allocate(np.zeros(3, np.int64))
+        self.blocks = Blocks()
+        self._base = 1  # The next view's number in the cells' marks.
 
     def add(self, evidence: PointEvidence | GridEvidence) -> None:
         """Add what one view says.
@@ -45,105 +58,138 @@ class EvidenceMap:
             self._add_grid(evidence)
 
     def fused(self) -> FusedEvidence:
-        """Return the map, cut to the cells that were seen."""
-        seen = np.argwhere(self._log_odds != 0)
+        """Return the map, settled and cut to the cells that were seen.
+
+        Raises:
+            CaptureError: nothing was seen yet.
+        """
+        values, blocks = self.parameters, self.blocks
+        log_odds, record, low = self._dense()
+        sums = [
+            array[: int(blocks.used[1]) + 1].copy()
+            for array in (blocks.votes, blocks.colour_sum, blocks.offset_sum, blocks.hits)
+        ]
+        log_odds, heir = settle(log_odds, record, blocks.faces, values.voxel_m, self._settle_rules)
+        inherit(record, heir, values.voxel_m, *sums)
+        seen = np.argwhere(log_odds != 0)
         if not len(seen):
             raise CaptureError("capture", "no view gave any evidence; is there depth in it?")
-        low, high = seen.min(axis=0), seen.max(axis=0) + 1
-        box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
-        limit = np.maximum(self._hits[box] / 65535, 1)[..., None]
+        first, last = seen.min(axis=0), seen.max(axis=0) + 1
+        box = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
+        return self._as_evidence(log_odds[box], record[box], low + first, *sums)
+
+    def _as_evidence(self, log_odds, record, low, votes, colour_sum, offset_sum, hits):
+        """Return dense evidence from dense cells and the sums of their records."""
+        scale = np.maximum(hits / 65535, 1)[:, None]
+        votes[0], colour_sum[0], offset_sum[0], hits[0] = 0, 0, 0, 0
         return FusedEvidence(
-            log_odds=self._log_odds[box].astype(np.float16),
-            votes=np.minimum(self._votes[box], 60_000).astype(np.float16),
-            colour_sum=(self._colour_sum[box] / limit).astype(np.float32),
-            offset_sum=(self._offset_sum[box] / limit).astype(np.float32),
-            hits=np.minimum(self._hits[box], 65535).astype(np.uint16),
+            log_odds=log_odds.astype(np.float16),
+            votes=np.minimum(votes, 60_000).astype(np.float16)[record],
+            colour_sum=(colour_sum / scale).astype(np.float32)[record],
+            offset_sum=(offset_sum / scale).astype(np.float32)[record],
+            hits=np.minimum(hits, 65535).astype(np.uint16)[record],
             voxel_m=self.parameters.voxel_m,
-            origin_m=(self._low + low) * self.parameters.voxel_m,
+            origin_m=low * self.parameters.voxel_m,
             scan_to_room=self.scan_to_room,
         )
 
-    def _allocate(self, shape: np.ndarray) -> None:
-        x, y, z = (int(size) for size in shape)
-        self._log_odds = np.zeros((x, y, z), np.float32)
-        self._votes = np.zeros((x, y, z, CLASS_COUNT), np.float32)
-        self._colour_sum = np.zeros((x, y, z, 3), np.float32)
-        self._offset_sum = np.zeros((x, y, z, 3), np.float32)
-        self._hits = np.zeros((x, y, z), np.uint32)
-        self._slots = np.full((x, y, z), -1, np.int32)
-
-    def _reserve(self, low: np.ndarray, high: np.ndarray) -> None:
-        """Grow the arrays so that room cells ``low`` to ``high`` (past the end) fit."""
-        size = np.array(self._log_odds.shape)
-        if (low >= self._low).all() and (high <= self._low + size).all() and size.all():
-            return
-        new_low = np.minimum(low, self._low) if size.all() else low
-        new_low = new_low // GROW_CELLS * GROW_CELLS
-        end = np.maximum(high, self._low + size) if size.all() else high
-        new_size = -(-(end - new_low) // GROW_CELLS) * GROW_CELLS
-        if new_size.astype(np.float64).prod() > MAX_CELLS:
-            extent = " x ".join(f"{side:.0f}" for side in new_size * self.parameters.voxel_m)
-            raise CaptureError("capture", f"spans {extent} m; a larger --voxel makes it fit")
-        shift = np.maximum(self._low - new_low, 0)
-        box = tuple(slice(a, a + b) for a, b in zip(shift, size, strict=True))
-        old = (self._log_odds, self._votes, self._colour_sum, self._offset_sum, self._hits)
-        self._allocate(new_size)
-        new = (self._log_odds, self._votes, self._colour_sum, self._offset_sum, self._hits)
-        for source, target in zip(old, new, strict=True):
-            target[box] = source
-        self._low = new_low
+    def _dense(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return log-odds and record numbers of the box of all blocks, and its lowest cell."""
+        numbers, first = self.blocks.cells_of_blocks()
+        if not len(numbers):
+            return np.zeros((1, 1, 1), np.float32), np.zeros((1, 1, 1), np.int32), np.zeros(3)
+        low = first.min(axis=0)
+        shape = tuple(first.max(axis=0) + SIDE - low)
+        log_odds, record = np.zeros(shape, np.float32), np.zeros(shape, np.int32)
+        for number, start in zip(numbers, first - low, strict=True):
+            box = tuple(slice(a, a + SIDE) for a in start)
+            cells = slice(number * BLOCK_CELLS, (number + 1) * BLOCK_CELLS)
+            log_odds[box] = self.blocks.log_odds[cells].reshape(SIDE, SIDE, SIDE)
+            record[box] = self.blocks.record[cells].reshape(SIDE, SIDE, SIDE)
+        return log_odds, record, low
 
     def _add_points(self, evidence: PointEvidence) -> None:
         if not len(evidence.points_m):
             return
-        voxel_m = self.parameters.voxel_m
-        cells, low, high = to_cells(evidence.points_m, self.scan_to_room[:3] / voxel_m)
+        voxel_m, blocks, rules = self.parameters.voxel_m, self.blocks, self._rules
+        points, low, high = to_cells(evidence.points_m, self.scan_to_room[:3] / voxel_m)
         camera = apply(self.scan_to_room, evidence.camera_m) / voxel_m
-        self._reserve(
+        blocks.reserve_box(
             np.floor(np.minimum(low, camera)).astype(np.int64) - REACH_CELLS,
             np.floor(np.maximum(high, camera)).astype(np.int64) + 1 + REACH_CELLS,
+            voxel_m,
         )
-        add_points(
-            cells,
-            evidence.weight,
-            _NO_COLOUR if evidence.colour is None else evidence.colour,
-            _NO_VOTES if evidence.votes is None else evidence.votes.astype(np.float32),
-            camera,
-            self._low,
-            self._kernel_parameters,
-            self._log_odds,
-            self._votes,
-            self._colour_sum,
-            self._offset_sum,
-            self._hits,
-            self._slots,
+        given = _NO_NORMALS if evidence.normals is None else evidence.normals
+        normals = face_normals(points, given, camera, self.scan_to_room[:3, :3])
+        where = (blocks.low, blocks.table, blocks.used)
+        nudge = self.parameters.nudge_m / voxel_m
+        owner, cells, places = number_cells(
+            points, normals, nudge, *where, blocks.mark, self._base
+        )  # fmt: skip
+        count, area, target, faces = sum_cells(
+            points, normals, evidence.weight, camera, owner, cells, voxel_m
         )
+        blocks.reserve_records(len(cells))
+        taken = add_hits(
+            places, count, area, faces, rules, blocks.log_odds, blocks.record, blocks.used,
+            blocks.hits, blocks.offset_sum, blocks.faces,
+        )  # fmt: skip
+        self._add_attributes(evidence, owner, taken, places)
+        free_rays(
+            camera, target, count, rules, *where, blocks.log_odds, blocks.mark, self._base
+        )  # fmt: skip
+        self._base += len(cells) + 1
+
+    def _add_attributes(self, evidence: PointEvidence, owner, taken, places) -> None:
+        blocks = self.blocks
+        at = (owner, taken, places, blocks.record)
+        if evidence.colour is not None:
+            add_colours(evidence.colour, *at, blocks.colour_sum)
+        if evidence.labels is not None:
+            add_labels(evidence.labels, *at, blocks.votes)
+        if evidence.votes is not None:
+            add_votes(evidence.votes.astype(np.float32), *at, blocks.votes)
 
     def _add_grid(self, evidence: GridEvidence) -> None:
         cells, gains, votes = grid_gains(evidence, self.scan_to_room, self.parameters)
         if not len(cells):
             return
-        self._reserve(cells.min(axis=0), cells.max(axis=0) + 1)
-        at = tuple((cells - self._low).T)
-        limit = self.parameters.limit_log_odds
-        self._log_odds[at] = np.clip(self._log_odds[at] + gains, -limit, limit)
-        self._votes[at] += votes
+        blocks, limit = self.blocks, self.parameters.limit_log_odds
+        blocks.reserve_box(cells.min(axis=0), cells.max(axis=0) + 1, self.parameters.voxel_m)
+        blocks.reserve_records(len(cells))
+        at = places_of(cells, blocks.low, blocks.table, blocks.used)
+        blocks.log_odds[at] = np.clip(blocks.log_odds[at] + gains, -limit, limit)
+        fresh = at[blocks.record[at] == 0]
+        blocks.record[fresh] = blocks.used[1] + 1 + np.arange(len(fresh), dtype=np.int32)
+        blocks.used[1] += len(fresh)
+        blocks.votes[blocks.record[at]] += votes
 
     @property
-    def _kernel_parameters(self) -> np.ndarray:
+    def _rules(self) -> np.ndarray:
+        """What the kernels of a view need: lengths along rays in cells, the rest in metres."""
         values = self.parameters
+        face_m2 = values.voxel_m**2
         return np.array(
             [
                 values.hit_log_odds,
                 values.free_log_odds,
                 values.limit_log_odds,
-                values.nudge_m / values.voxel_m,
-                values.min_share * values.voxel_m**2,
+                values.min_share * face_m2,
                 values.min_points,
+                face_m2,
+                values.sigma_m,
+                values.sigma_growth,
+                values.pose_m,
+                values.pose_growth,
                 values.clear_m / values.voxel_m,
-                values.voxel_m,
             ]
         )
+
+    @property
+    def _settle_rules(self) -> np.ndarray:
+        values = self.parameters
+        least = min(max(math.ceil(values.solid_share * ALL_SUB_CELLS - 1e-9), 1), ALL_SUB_CELLS)
+        return np.array([least, values.merge_m, values.merge_sigmas, values.sure_m])
 
 
 def fuse_views(
@@ -168,5 +214,4 @@ def fuse_views(
     return map_.fused()
 
 
-_NO_COLOUR = np.zeros((0, 3), np.uint8)
-_NO_VOTES = np.zeros((0, CLASS_COUNT), np.float32)
+_NO_NORMALS = np.zeros((0, 3), np.float32)

@@ -1,16 +1,16 @@
-"""The inner loops of fusion: points into cells, and rays through free space.
+"""The inner loops of fusion: the points of one view into cells.
 
-Everything is in cell units of the room: a point at 3.7 lies in cell 3, which stands at index
-``3 - low`` of the map's arrays. Only whole numbers are shifted, so that a map that has grown holds
-the same bits as one that was large from the start. The plain reading of the kernels is in the
+Everything is in cell units of the room: a point at 3.7 lies in cell 3, wherever the map begins, so
+that a map that has grown holds the same bits as one that was large from the start. ``mark`` of a
+cell is ``base`` where a ray of this view crossed it, ``base + 1 + n`` where it is the n-th cell in
+which this view met a surface, and less where neither. The plain reading of the kernels is in the
 tests, which hold them against it.
 """
 
 import numpy as np
 
+from world2minecraft.fuse.blocks import BLOCK_CELLS, FACE_SUMS, FACES, SIDE
 from world2minecraft.jit import njit
-
-UNTOUCHED, FREED = -1, -2
 
 
 @njit
@@ -31,139 +31,195 @@ def to_cells(points_m, scan_to_cells):
 
 
 @njit
-def add_points(
-    points, weight, colour, votes, camera, low, parameters, log_odds, all_votes, colour_sum,
-    offset_sum, hits, slots,
-):  # fmt: skip
-    """Add one view's points to the map's arrays, in place.
+def place_of(i, j, k, low, table, used):
+    """Return where cell (i, j, k) of the room lies in the flat arrays; its block is made."""
+    a, b, c = i // SIDE, j // SIDE, k // SIDE
+    block = table[a - low[0], b - low[1], c - low[2]]
+    if block == 0:
+        used[0] += 1
+        block = used[0]
+        table[a - low[0], b - low[1], c - low[2]] = block
+    inner = ((i - a * SIDE) * SIDE + (j - b * SIDE)) * SIDE + (k - c * SIDE)
+    return block * BLOCK_CELLS + inner
+
+
+@njit
+def places_of(cells, low, table, used):
+    """Return int64 [N]: where cells int64 [N, 3] lie in the flat arrays."""
+    places = np.empty(len(cells), np.int64)
+    for n in range(len(cells)):
+        places[n] = place_of(cells[n, 0], cells[n, 1], cells[n, 2], low, table, used)
+    return places
+
+
+@njit
+def face_normals(points, normals, camera, turn):
+    """Return float32 [N, 3]: unit normals in the room, against the ray where there is none."""
+    result = np.empty((len(points), 3), np.float32)
+    given = len(normals) > 0
+    for n in range(len(points)):
+        if given and (normals[n, 0] != 0 or normals[n, 1] != 0 or normals[n, 2] != 0):
+            for axis in range(3):
+                value = 0.0
+                for other in range(3):
+                    value += turn[axis, other] * normals[n, other]
+                result[n, axis] = value
+            continue
+        length = 1e-6
+        for axis in range(3):
+            length += (points[n, axis] - camera[axis]) ** 2
+        for axis in range(3):
+            result[n, axis] = (camera[axis] - points[n, axis]) / np.sqrt(length)
+    return result
+
+
+@njit
+def number_cells(points, normals, nudge, low, table, used, mark, base):
+    """Number the cells in which a view met a surface.
 
     Args:
         points: float32 [N, 3] in cells of the room.
-        weight: float32 [N], square metres that each point covers.
-        colour: uint8 [N, 3], or [0, 3] for none.
-        votes: float32 [N, 12], or [0, 12] for none.
-        camera: float64 [3] in cells of the room.
-        low: int64 [3], the room cell at index (0, 0, 0) of the arrays.
-        parameters: hit, free, limit log-odds; nudge in cells; least area in square metres; least
-            points; clearance in cells; the cell's size in metres.
-        log_odds: float32 [X, Y, Z], the map, as are the next four.
-        all_votes: float32 [X, Y, Z, 12].
-        colour_sum: float32 [X, Y, Z, 3].
-        offset_sum: float32 [X, Y, Z, 3], metres.
-        hits: uint32 [X, Y, Z].
-        slots: int32 [X, Y, Z], -1 everywhere; left so.
+        normals: float32 [N, 3], towards the camera.
+        nudge: how far behind its point the matter lies, in cells.
+        low: int64 [3], the first block of the table.
+        table: int32 [X, Y, Z], the numbers of the blocks.
+        used: int64 [2], blocks and records in use.
+        mark: int64 [C]; see the module's text.
+        base: the view's number in ``mark``.
+
+    Returns:
+        ``owner`` int32 [N], the number of each point's cell; ``cells`` int64 [M, 3]; ``places``
+        int64 [M], where they lie in the flat arrays.
     """
-    hit, free, limit, nudge, min_area, min_points, clear, voxel_m = parameters
-    cells, count, area, targets = _collect(points, weight, camera, low, nudge, slots)
-    taken = np.zeros(len(cells), np.bool_)
-    for s in range(len(cells)):
-        taken[s] = count[s] >= min_points and area[s] >= min_area
-        if taken[s]:
-            i, j, k = cells[s]
-            log_odds[i, j, k] = min(limit, log_odds[i, j, k] + hit)
-            hits[i, j, k] += count[s]
-            for axis in range(3):
-                mean = targets[s, axis] / count[s] - (cells[s, axis] + low[axis] + 0.5)
-                offset_sum[i, j, k, axis] += mean * count[s] * voxel_m
-    _add_attributes(points, camera, low, nudge, colour, votes, taken, slots, colour_sum, all_votes)
-    freed = np.empty((slots.size, 3), np.int32)
-    freed_count = 0
-    for s in range(len(cells)):
-        if count[s] >= min_points:
-            freed_count = _free_ray(
-                camera, targets[s] / count[s], low, clear, free, limit, log_odds, slots, freed,
-                freed_count,
-            )  # fmt: skip
-    for s in range(len(cells)):
-        slots[cells[s, 0], cells[s, 1], cells[s, 2]] = UNTOUCHED
-    for f in range(freed_count):
-        slots[freed[f, 0], freed[f, 1], freed[f, 2]] = UNTOUCHED
-
-
-@njit
-def _cell_behind(point, camera, low, nudge):
-    """Return the index of the cell of the matter behind a surface point: a nudge along its ray."""
-    x, y, z = point[0] - camera[0], point[1] - camera[1], point[2] - camera[2]
-    share = nudge / max(np.sqrt(x * x + y * y + z * z), 1e-6)
-    return (
-        int(np.floor(point[0] + x * share)) - low[0],
-        int(np.floor(point[1] + y * share)) - low[1],
-        int(np.floor(point[2] + z * share)) - low[2],
-    )
-
-
-@njit
-def _collect(points, weight, camera, low, nudge, slots):
-    """Sum up the points of each touched cell, and number those cells in ``slots``."""
-    cells = np.empty((len(points), 3), np.int32)
-    count = np.zeros(len(points), np.int64)
-    area = np.zeros(len(points), np.float64)
-    targets = np.zeros((len(points), 3), np.float64)
-    used = 0
+    owner = np.empty(len(points), np.int32)
+    cells = np.empty((len(points), 3), np.int64)
+    places = np.empty(len(points), np.int64)
+    count, last = 0, -1
     for n in range(len(points)):
-        i, j, k = _cell_behind(points[n], camera, low, nudge)
-        slot = slots[i, j, k]
-        if slot < 0:
-            slot = used
-            slots[i, j, k] = slot
-            cells[slot] = i, j, k
-            used += 1
-        count[slot] += 1
-        area[slot] += weight[n]
+        i = int(np.floor(points[n, 0] - normals[n, 0] * nudge))
+        j = int(np.floor(points[n, 1] - normals[n, 1] * nudge))
+        k = int(np.floor(points[n, 2] - normals[n, 2] * nudge))
+        # Neighbouring pixels mostly lie in one cell.
+        if last < 0 or cells[last, 0] != i or cells[last, 1] != j or cells[last, 2] != k:
+            place = place_of(i, j, k, low, table, used)
+            if mark[place] <= base:
+                mark[place] = base + 1 + count
+                cells[count] = i, j, k
+                places[count] = place
+                count += 1
+            last = mark[place] - base - 1
+        owner[n] = last
+    return owner, cells[:count], places[:count]
+
+
+@njit
+def sum_cells(points, normals, weight, camera, owner, cells, voxel_m):
+    """Sum up the points of each cell.
+
+    Returns:
+        ``count`` int64 [M]; ``area`` float64 [M], square metres; ``target`` float64 [M, 3], sums
+        of points; ``faces`` float64 [M, 6, 8]: for each side that points face, their count, sums
+        of their offsets from the cell's centre in metres, of normals and of distances in metres.
+    """
+    count = np.zeros(len(cells), np.int64)
+    area = np.zeros(len(cells), np.float64)
+    target = np.zeros((len(cells), 3), np.float64)
+    faces = np.zeros((len(cells), FACES, FACE_SUMS), np.float64)
+    for n in range(len(points)):
+        s = owner[n]
+        count[s] += 1
+        area[s] += weight[n]
+        side = 0
+        for axis in range(1, 3):
+            if abs(normals[n, axis]) > abs(normals[n, side]):
+                side = axis
+        face = faces[s, 2 * side + (1 if normals[n, side] > 0 else 0)]
+        face[0] += 1
+        square = 0.0
         for axis in range(3):
-            targets[slot, axis] += points[n, axis]
-    return cells[:used], count[:used], area[:used], targets[:used]
+            target[s, axis] += points[n, axis]
+            face[1 + axis] += (points[n, axis] - cells[s, axis] - 0.5) * voxel_m
+            face[4 + axis] += normals[n, axis]
+            square += (points[n, axis] - camera[axis]) ** 2
+        face[7] += np.sqrt(square) * voxel_m
+    return count, area, target, faces
 
 
 @njit
-def _add_attributes(points, camera, low, nudge, colour, votes, taken, slots, colour_sum, all_votes):
-    """Add the colours and votes of the points whose cells were taken."""
-    if len(colour) == 0 and len(votes) == 0:
-        return
-    for n in range(len(points)):
-        i, j, k = _cell_behind(points[n], camera, low, nudge)
-        if not taken[slots[i, j, k]]:
-            continue
-        if len(colour):
-            for channel in range(3):
-                colour_sum[i, j, k, channel] += colour[n, channel]
-        if len(votes):
-            for label in range(votes.shape[1]):
-                all_votes[i, j, k, label] += votes[n, label]
+def add_hits(places, count, area, faces, rules, log_odds, record, used, hits, offset_sum, sides):
+    """Raise the cells that a view saw enough of; return which, bool [M].
 
+    Each face of such a cell adds one measurement of its plane, weighed by one over its variance:
+    that of the pose as seen at its distance, and of the mean of its points.
 
-@njit
-def _free_ray(camera, target, low, clear, free, limit, log_odds, slots, freed, freed_count):
-    """Walk from the camera to a surface point; each cell crossed is freed once a view.
-
-    A cell counts as crossed where the middle of the ray's way through it lies nearer than
-    ``clear`` before the point. Cells that the view saw a surface in are left alone.
+    Args:
+        places: int64 [M], as are the results of ``sum_cells`` that follow.
+        count: int64 [M].
+        area: float64 [M].
+        faces: float64 [M, 6, 8].
+        rules: float64; see ``EvidenceMap``.
+        log_odds: float32 [C], as is ``record`` int32.
+        record: int32 [C].
+        used: int64 [2].
+        hits: int64 [R], the records, as are the next two.
+        offset_sum: float32 [R, 3].
+        sides: float32 [R, 6, 8].
     """
-    way = target - camera
-    length = np.sqrt((way * way).sum())
-    end = length - clear
-    if end <= 0:
-        return freed_count
-    way /= length
-    cell, step = np.empty(3, np.int64), np.empty(3, np.int64)
-    at, gap = np.empty(3), np.empty(3)
-    for axis in range(3):
-        cell[axis] = int(np.floor(camera[axis]))
-        step[axis] = 1 if way[axis] > 0 else -1
-        gap[axis] = np.inf if way[axis] == 0 else abs(1.0 / way[axis])
-        edge = cell[axis] + (1 if way[axis] > 0 else 0)
-        at[axis] = np.inf if way[axis] == 0 else (edge - camera[axis]) / way[axis]
-    entry = 0.0
-    while entry < end:
-        axis = 0 if at[0] <= at[1] and at[0] <= at[2] else (1 if at[1] <= at[2] else 2)
-        leave = at[axis]
-        i, j, k = cell[0] - low[0], cell[1] - low[1], cell[2] - low[2]
-        if (entry + leave) / 2 < end and slots[i, j, k] == UNTOUCHED:
-            log_odds[i, j, k] = max(-limit, log_odds[i, j, k] + free)
-            slots[i, j, k] = FREED
-            freed[freed_count] = i, j, k
-            freed_count += 1
-        cell[axis] += step[axis]
-        at[axis] += gap[axis]
-        entry = leave
-    return freed_count
+    hit, limit, least_m2, least, face_m2 = rules[0], rules[2], rules[3], rules[4], rules[5]
+    sigma_m, growth, pose_m, pose_growth = rules[6], rules[7], rules[8], rules[9]
+    taken = np.zeros(len(places), np.bool_)
+    for s in range(len(places)):
+        if count[s] < least or area[s] < least_m2:
+            continue
+        taken[s] = True
+        place = places[s]
+        log_odds[place] = min(limit, log_odds[place] + hit)
+        if record[place] == 0:
+            used[1] += 1
+            record[place] = used[1]
+        row = record[place]
+        hits[row] += count[s]
+        for f in range(FACES):
+            points = faces[s, f, 0]
+            if points == 0:
+                continue
+            for axis in range(3):
+                offset_sum[row, axis] += faces[s, f, 1 + axis]
+            z = faces[s, f, 7] / points
+            sigma = sigma_m + growth * (z - 0.4) ** 2
+            pose = pose_m + pose_growth * z
+            share = min(area[s] * points / count[s] / face_m2, 1.0)
+            w = share / (pose * pose + sigma * sigma / points)
+            sides[row, f, 0] += w
+            for m in range(1, 7):
+                sides[row, f, m] += w * faces[s, f, m] / points
+            sides[row, f, 7] += w * sigma
+    return taken
+
+
+@njit
+def add_colours(colour, owner, taken, places, record, colour_sum):
+    """Add the colours uint8 [N, 3] of the points whose cells were taken."""
+    for n in range(len(colour)):
+        if taken[owner[n]]:
+            row = record[places[owner[n]]]
+            for channel in range(3):
+                colour_sum[row, channel] += colour[n, channel]
+
+
+@njit
+def add_labels(labels, owner, taken, places, record, votes):
+    """Add one vote for each point's label, uint8 [N]; 0 and what is no class vote for nothing."""
+    for n in range(len(labels)):
+        if taken[owner[n]] and 0 < labels[n] < votes.shape[1]:
+            votes[record[places[owner[n]]], labels[n]] += 1
+
+
+@njit
+def add_votes(shares, owner, taken, places, record, votes):
+    """Add the votes float32 [N, 12] of the points whose cells were taken."""
+    for n in range(len(shares)):
+        if taken[owner[n]]:
+            row = record[places[owner[n]]]
+            for label in range(shares.shape[1]):
+                votes[row, label] += shares[n, label]

@@ -1,4 +1,4 @@
-"""Depth as evidence: each pixel with depth is a point of the surface, with colour and votes.
+"""Depth as evidence: each pixel with depth is a point of the surface, with colour and label.
 
 Where colour and depth are two cameras, a depth point takes the colour and the label of the pixel
 that it projects to; a point that the colour camera does not see has the nearest edge pixel's.
@@ -9,9 +9,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT
 from world2minecraft.coordinates import apply, invert_rigid
 from world2minecraft.geometry.lifting import lift_depth, pixel_rays, project
+from world2minecraft.occupy.facing import facing_of_depth
 from world2minecraft.types import Camera, PointEvidence, Scan, View
 
 MAX_DEPTH_M = 6.0  # Consumer depth cameras err by over 6 cm beyond; a room rarely needs more.
@@ -38,19 +38,20 @@ class DepthPredictor:
         camera_to_scan = view.depth_camera_to_scan
         points_m, pixels = lift_depth(near_m, camera, camera_to_scan)
         depths = near_m.reshape(-1)[pixels]
-        colour, votes = _look_up(view, points_m, pixels)
+        colour, labels = _look_up(view, points_m, pixels)
         return PointEvidence(
             view=view.name,
             camera_m=camera_to_scan[:3, 3],
             points_m=points_m,
             weight=depths * depths / np.float32(camera.fx_px * camera.fy_px),
             colour=colour,
-            votes=votes,
+            normals=facing_of_depth(near_m, camera, camera_to_scan, pixels),
+            labels=labels,
         )
 
 
 def _look_up(view: View, points_m: np.ndarray, pixels: np.ndarray):
-    """Return the colours and the votes of a view's points, or None for what it lacks."""
+    """Return the colours and the labels of a view's points, or None for what it lacks."""
     if view.colour is None or view.colour_camera is None:
         return None, None
     if np.array_equal(view.depth_to_colour, np.eye(4)):
@@ -59,7 +60,7 @@ def _look_up(view: View, points_m: np.ndarray, pixels: np.ndarray):
         in_camera_m = apply(invert_rigid(view.camera_to_scan), points_m.astype(np.float64))
         chosen = _nearest_pixels(project(in_camera_m, view.colour_camera), view.colour_camera)
     colour = view.colour.reshape(-1, 3)[chosen]
-    return colour, None if view.labels is None else _ONE_HOT[view.labels.reshape(-1)[chosen]]
+    return colour, None if view.labels is None else view.labels.reshape(-1)[chosen]
 
 
 @lru_cache(maxsize=8)
@@ -78,13 +79,3 @@ def _nearest_pixels(at_px: np.ndarray, camera: Camera) -> np.ndarray:
     u = np.clip(np.floor(at_px[:, 0]), 0, camera.width_px - 1)
     v = np.clip(np.floor(at_px[:, 1]), 0, camera.height_px - 1)
     return (v * camera.width_px + u).astype(np.int32)
-
-
-def _one_hot_rows() -> np.ndarray:
-    """Return float16 [256, 12]: the vote of each label value; unknown and empty vote for none."""
-    rows = np.zeros((256, CLASS_COUNT), np.float16)
-    rows[np.arange(1, CLASS_COUNT), np.arange(1, CLASS_COUNT)] = 1
-    return rows
-
-
-_ONE_HOT = _one_hot_rows()

@@ -14,7 +14,9 @@ class PointEvidence:
 
     ``weight`` is the area in square metres that the point's pixel covers, square to its ray:
     ``z^2 / (fx fy)``. Fusion divides its sum in a cell by the cell's face to learn how much of
-    the cell the view really saw.
+    the cell the view really saw. ``normals`` are unit vectors towards the camera, (0, 0, 0) where
+    none is known; without them surfaces are taken to face the camera. ``labels`` are a shorter
+    form of ``votes``: one whole vote for one class.
     """
 
     view: str
@@ -23,6 +25,8 @@ class PointEvidence:
     weight: np.ndarray  # float32 [N]
     colour: np.ndarray | None = None  # uint8 [N, 3]
     votes: np.ndarray | None = None  # float16 [N, 12]
+    normals: np.ndarray | None = None  # float32 [N, 3], scan frame
+    labels: np.ndarray | None = None  # uint8 [N], class ids; 0 and 255 vote for nothing
 
     def __post_init__(self):
         put = object.__setattr__
@@ -35,6 +39,10 @@ class PointEvidence:
         if self.votes is not None:
             shape = (count, CLASS_COUNT)
             put(self, "votes", checks.array("votes", self.votes, np.float16, shape))
+        if self.normals is not None:
+            put(self, "normals", checks.array("normals", self.normals, np.float32, (count, 3)))
+        if self.labels is not None:
+            put(self, "labels", checks.array("labels", self.labels, np.uint8, (count,)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,90 @@
+"""The map's memory: blocks of cells where rays passed, records where surfaces were met.
+
+A cell (i, j, k) of the room lies in block (i // 8, j // 8, k // 8). ``table`` gives the number of
+each block, 0 for none; block n holds the cells from ``n * 512`` of the flat cell arrays. A cell in
+which a surface was met has a record: its number stands in ``record``, 0 for none. So memory grows
+with the space that was seen, and the many sums with the surface in it.
+"""
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.errors import CaptureError
+
+SIDE = 8  # 0.64 m at the paper's cell: half of a room's blocks hold no surface.
+BLOCK_CELLS = SIDE**3
+FACES = 6  # A surface that faces -x, +x, -y, +y, -z or +z most.
+FACE_SUMS = 8  # Weight; weighted offset [3], normal [3] and depth sigma.
+MAX_CELLS = 120_000_000  # 1.4 GB: a house of 60 x 60 x 17 m at 0.08 m, all of it seen.
+MAX_TABLE = 16_000_000
+
+
+class Blocks:
+    """Cells and records that grow. Numbers begin at 1, so that fresh memory means nothing yet."""
+
+    def __init__(self):
+        self.low = np.zeros(3, np.int64)  # The block that stands at table[0, 0, 0].
+        self.table = np.zeros((0, 0, 0), np.int32)
+        self.used = np.zeros(2, np.int64)  # Blocks and records in use; kernels count them up.
+        self.log_odds = np.zeros(0, np.float32)
+        self.record = np.zeros(0, np.int32)
+        self.mark = np.zeros(0, np.int64)  # Which view touched a cell last; see kernels.py.
+        self.votes = np.zeros((0, CLASS_COUNT), np.float32)
+        self.colour_sum = np.zeros((0, 3), np.float32)
+        self.offset_sum = np.zeros((0, 3), np.float32)
+        self.hits = np.zeros(0, np.int64)
+        self.faces = np.zeros((0, FACES, FACE_SUMS), np.float32)
+
+    def reserve_box(self, low: np.ndarray, high: np.ndarray, voxel_m: float) -> None:
+        """Make room for all blocks of the cells from ``low`` to ``high`` (past the end).
+
+        Raises:
+            CaptureError: the capture spans more than the map may hold.
+        """
+        first, last = low // SIDE, -(-high // SIDE)
+        self._widen(first, last, voxel_m)
+        box = tuple(slice(a, b) for a, b in zip(first - self.low, last - self.low, strict=True))
+        missing = int((self.table[box] == 0).sum())
+        cells = (int(self.used[0]) + missing + 1) * BLOCK_CELLS
+        if int(self.used[0]) * BLOCK_CELLS > MAX_CELLS:
+            raise CaptureError(
+                "capture", "fills more cells than fit; a larger --voxel makes it fit"
+            )
+        for name in ("log_odds", "record", "mark"):
+            setattr(self, name, _grown(getattr(self, name), cells))
+
+    def reserve_records(self, count: int) -> None:
+        """Make room for so many more records."""
+        needed = int(self.used[1]) + count + 1
+        for name in ("votes", "colour_sum", "offset_sum", "hits", "faces"):
+            setattr(self, name, _grown(getattr(self, name), needed))
+
+    def cells_of_blocks(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the numbers of the blocks in use, int64 [B], and their first cells [B, 3]."""
+        at = np.argwhere(self.table)
+        return self.table[tuple(at.T)].astype(np.int64), (at + self.low) * SIDE
+
+    def _widen(self, first: np.ndarray, last: np.ndarray, voxel_m: float) -> None:
+        size = np.array(self.table.shape)
+        if size.all():
+            first, last = np.minimum(first, self.low), np.maximum(last, self.low + size)
+        wanted = last - first
+        if (wanted == size).all() and size.all():
+            return
+        if wanted.astype(np.float64).prod() > MAX_TABLE:
+            extent = " x ".join(f"{side * SIDE * voxel_m:.0f}" for side in wanted)
+            raise CaptureError("capture", f"spans {extent} m; a larger --voxel makes it fit")
+        table = np.zeros(tuple(int(side) for side in wanted), np.int32)
+        shift = self.low - first
+        if size.all():
+            table[tuple(slice(a, a + b) for a, b in zip(shift, size, strict=True))] = self.table
+        self.table, self.low = table, first.astype(np.int64)
+
+
+def _grown(values: np.ndarray, count: int) -> np.ndarray:
+    """Return the array with at least ``count`` rows, half as many more where it must grow."""
+    if len(values) >= count:
+        return values
+    grown = np.zeros((max(count, len(values) * 3 // 2), *values.shape[1:]), values.dtype)
+    grown[: len(values)] = values
+    return grown
