@@ -40,7 +40,9 @@ def shape_of_cells(
     ]
     if shift:
         edges = _best_phase(mask, edges)
-    edges[2] = np.maximum(edges[2], lattice.ground)  # What dips into the floor stands on it.
+    edges[2] = np.maximum(
+        edges[2], lattice.ground_under(float(edges[2][0]))
+    )  # What dips into the floor stands on it.
     low = np.array([int(np.floor(axis[0])) for axis in edges])
     high = np.array([int(np.ceil(axis[-1])) for axis in edges])
     high = np.maximum(high, low + 1)

@@ -19,8 +19,8 @@ def put_cells_exactly(
     coloured: np.ndarray,
     palette: Palette,
     parameters: BuildParameters,
-) -> np.ndarray:
-    """Set every occupied cell as one block; return the footprint, bool [X, Y] of the lattice.
+) -> tuple[np.ndarray, ...]:
+    """Set every occupied cell as one block; return each storey's footprint, bool [X, Y].
 
     The floor's unseen holes are closed with invisible barriers, which carry class 0: one can walk
     on them, and the occupied blocks are the occupied cells and no others.
@@ -44,10 +44,13 @@ def put_cells_exactly(
     canvas.states[inside] = states
     canvas.semantic[inside] = np.where(occupied, grid.labels, 0)
     canvas.instance[inside] = np.where(occupied, grid.instance, 0)
-    footprint = np.zeros(canvas.states.shape[:2], bool)
-    footprint[inside[:2]] = _footprint(grid)
-    _close_floor(canvas, footprint)
-    return footprint
+    footprints = []
+    for ground in canvas.lattice.grounds:
+        footprint = np.zeros(canvas.states.shape[:2], bool)
+        footprint[inside[:2]] = _footprint(grid, ground - start[2])
+        footprints.append(footprint)
+    _close_floor(canvas, footprints[0])
+    return tuple(footprints)
 
 
 def _start(grid: OccupancyGrid, lattice: Lattice) -> tuple[int, int, int]:
@@ -57,9 +60,12 @@ def _start(grid: OccupancyGrid, lattice: Lattice) -> tuple[int, int, int]:
     return x, y, z
 
 
-def _footprint(grid: OccupancyGrid) -> np.ndarray:
-    """Return the columns in which one stands: seen free or furnished low down, and no wall."""
-    low = int(np.clip(np.rint(-grid.origin_m[2] / grid.voxel_m), 0, grid.shape[2] - 1))
+def _footprint(grid: OccupancyGrid, ground: int) -> np.ndarray:
+    """Return the columns in which one stands: seen free or furnished low down, and no wall.
+
+    ``ground`` is the first layer of cells above a storey's floor.
+    """
+    low = int(np.clip(ground, 0, grid.shape[2] - 1))
     high = low + max(2, int(STANDING_M / grid.voxel_m))
     labels, source = grid.labels[:, :, low:high], grid.source[:, :, low:high]
     stood = (((labels == 0) & (source != UNSEEN)) | ((labels > WINDOW) & (labels != 255))).any(2)

@@ -59,7 +59,8 @@ def idiom_box(
     bottom = middle[2] - placement.size_m[2] * lattice.blocks_per_metre / 2
     low = np.floor(np.array([*(middle[:2] - size[:2] / 2), bottom]) + 0.5).astype(int)
     most = np.maximum(np.array(lattice.shape) - size, 0)
-    return np.clip(low, [0, 0, lattice.ground], np.maximum(most, [0, 0, lattice.ground])), size
+    least = [0, 0, lattice.ground_under(float(bottom))]
+    return np.clip(low, least, np.maximum(most, least)), size
 
 
 def put_idiom(

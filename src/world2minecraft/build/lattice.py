@@ -14,6 +14,7 @@ from world2minecraft.types import OccupancyGrid
 
 MAX_BLOCKS = 1 << 27  # A 40 x 40 x 5 m hall at 12.5 blocks a metre has 16 million.
 FLOOR_LAYER = ROOM_CORNER_BLOCK[1] - 1
+UNDER_FLOOR = 0.75  # Blocks by which a bottom may dip below the floor that it stands on.
 MARGIN = 2  # The shell and the invisible edge stand outside the room.
 
 
@@ -23,13 +24,15 @@ class Lattice:
 
     ``corner`` is the world position of the block at index (0, ny - 1, 0): the least x, y and z
     in block axes. ``shape`` counts blocks along room x, y, z. A room point p lies at lattice
-    coordinate ``p * blocks_per_metre + offset``.
+    coordinate ``p * blocks_per_metre + offset``. ``upper`` holds the first layer above the floor
+    of each upper storey, rising.
     """
 
     corner: tuple[int, int, int]
     shape: tuple[int, int, int]
     corner_m: np.ndarray
     blocks_per_metre: float
+    upper: tuple[int, ...] = ()
 
     @property
     def offset(self) -> np.ndarray:
@@ -42,6 +45,24 @@ class Lattice:
     def ground(self) -> int:
         """The index along z of the first layer above the floor."""
         return ROOM_CORNER_BLOCK[1] - self.corner[1]
+
+    @property
+    def grounds(self) -> tuple[int, ...]:
+        """The first layer above the floor of each storey, from the ground up."""
+        return (self.ground, *self.upper)
+
+    @property
+    def storeys(self) -> tuple[tuple[int, int], ...]:
+        """For each storey its first layer above the floor, and the one past its last."""
+        tops = (*(ground - 1 for ground in self.upper), self.shape[2])
+        return tuple(zip(self.grounds, tops, strict=True))
+
+    def ground_under(self, height: float) -> int:
+        """Return the ground on which something stands whose bottom is at a lattice height."""
+        return max(
+            (ground for ground in self.upper if ground <= height + UNDER_FLOOR),
+            default=self.ground,
+        )
 
     def coordinates_of(self, points_m: np.ndarray) -> np.ndarray:
         """Return the lattice coordinates, float64 [..., 3], of room points in metres."""

@@ -17,26 +17,32 @@ SPACING = 8  # Blocks between lights: half way, at the floor, the light is still
 _TRANSPARENT = ("glass", "_pane", "barrier", "light")
 
 
-def put_lights(canvas: Canvas, footprint: np.ndarray) -> None:
-    """Light a canvas in place.
+def put_lights(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> None:
+    """Light a canvas in place, storey by storey.
 
     Args:
         canvas: its finished blocks.
-        footprint: bool [X, Y], the columns within the room.
+        footprints: bool [X, Y] for each storey, the columns within its rooms.
     """
-    ground = canvas.lattice.ground
     clear = passes_light(canvas.palette)[canvas.states]
     air = canvas.mask_of(AIR)
-    spots = air & footprint[:, :, None]
     chosen = np.zeros(air.shape, bool)
+    for (ground, end), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
+        _light_storey(canvas, chosen, air, clear, footprint, ground, end)
+    canvas.states[chosen] = canvas.id_of(LIGHT)
+
+
+def _light_storey(canvas, chosen, air, clear, footprint, ground, end) -> None:
+    """Choose, in place, the lights of one storey: its first layer over the floor and its end."""
+    spots = air & footprint[:, :, None]
     offset = SPACING // 2
-    top = _top_of(canvas)
+    top = min(_top_of(canvas, ground), end - 1)
+    held = chosen.copy()
     for z in {ground + ABOVE_FLOOR, *range(ground + ABOVE_FLOOR + SPACING, top, SPACING)}:
         chosen[offset::SPACING, offset::SPACING, min(z, top)] = True
-    chosen &= spots
+    chosen &= spots | held
     walkable = walkable_cells(canvas.states, canvas.palette, footprint, ground)
     _light_the_dark(chosen, walkable, air, clear, ground)
-    canvas.states[chosen] = canvas.id_of(LIGHT)
 
 
 def _light_the_dark(chosen, walkable, air, clear, ground) -> None:
@@ -55,10 +61,10 @@ def _light_the_dark(chosen, walkable, air, clear, ground) -> None:
                 chosen[x, y, z] = True
 
 
-def _top_of(canvas: Canvas) -> int:
+def _top_of(canvas: Canvas, ground: int) -> int:
     """Return the highest layer under the highest visible block, at least that over the floor."""
     layers = np.flatnonzero((canvas.semantic > 0).any((0, 1)))
-    least = canvas.lattice.ground + ABOVE_FLOOR
+    least = ground + ABOVE_FLOOR
     return min(max(int(layers.max()) - 1 if len(layers) else 0, least), canvas.states.shape[2] - 1)
 
 

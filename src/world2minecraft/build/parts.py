@@ -35,7 +35,7 @@ def design_of(placement: Placement, parts: Sequence[Part], lattice: Lattice) -> 
     count = np.maximum(np.floor(sizes[:2] + 0.5), 1).astype(int)
     middle = lattice.coordinates_of(placement.center_m)
     bottom = _half(middle[2] - sizes[2] / 2)
-    ground = float(lattice.ground)
+    ground = float(lattice.ground_under(bottom))
     bottom = ground if bottom < ground + 1 else bottom
     top = max(_half(middle[2] + sizes[2] / 2), bottom + 0.5)
     base = int(np.floor(bottom))

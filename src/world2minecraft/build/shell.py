@@ -96,10 +96,10 @@ def _patches(mask: np.ndarray, numbers: np.ndarray):
 
 def _name_foundations(canvas: Canvas) -> None:
     """Count the floor's blocks under walls as wall: so the floor's class is what one sees."""
-    ground = canvas.lattice.ground
-    above = np.isin(canvas.semantic[:, :, ground:], (WALL, WINDOW)).any(2)
-    below = canvas.semantic[:, :, ground - 1]
-    below[above & (below == FLOOR)] = WALL
+    for ground, top in canvas.lattice.storeys:
+        above = np.isin(canvas.semantic[:, :, ground:top], (WALL, WINDOW)).any(2)
+        below = canvas.semantic[:, :, ground - 1]
+        below[above & (below == FLOOR)] = WALL
 
 
 def _put_windows(canvas: Canvas, windows: np.ndarray, palette: Palette) -> None:
@@ -114,17 +114,21 @@ def _put_windows(canvas: Canvas, windows: np.ndarray, palette: Palette) -> None:
     canvas.put(windows & ~panes, canvas.id_of(palette.glass), WINDOW)
 
 
-def put_edge(canvas: Canvas, footprint: np.ndarray) -> None:
+def put_edge(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> None:
     """Stand invisible barriers where the floor ends and no wall was seen.
 
     Args:
         canvas: the finished shell and objects.
-        footprint: bool [X, Y], the columns within the room.
+        footprints: bool [X, Y] for each storey, the columns within its rooms. What lies within
+            the storey below is a stairwell, and stays open.
     """
-    ground = canvas.lattice.ground
-    ring = grown(footprint, (1, 1)) & ~footprint
     layers = np.flatnonzero((canvas.semantic > 0).any((0, 1)))
-    top = max(int(layers.max()) if len(layers) else 0, ground + 1)
-    open_cells = canvas.states[:, :, ground : top + 1] == 0
-    open_cells &= ring[:, :, None]
-    canvas.states[:, :, ground : top + 1][open_cells] = canvas.id_of(BARRIER)
+    highest = int(layers.max()) if len(layers) else 0
+    below = np.zeros_like(footprints[0])
+    for (ground, end), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
+        ring = grown(footprint, (1, 1)) & ~footprint & ~below
+        below = footprint
+        top = min(max(highest, ground + 1), end - 1)
+        open_cells = canvas.states[:, :, ground : top + 1] == 0
+        open_cells &= ring[:, :, None]
+        canvas.states[:, :, ground : top + 1][open_cells] = canvas.id_of(BARRIER)

@@ -10,7 +10,15 @@ import numpy as np
 
 from world2minecraft.build.faces import blocks_behind, find_faces, see_through, straighten, vote
 from world2minecraft.build.lattice import Lattice, face_shares, overlaps, volume_shares
-from world2minecraft.build.morphology import beside, closed, grown, nearest_of, without_holes
+from world2minecraft.build.morphology import (
+    beside,
+    closed,
+    grown,
+    nearest_of,
+    parts_of,
+    shrunk,
+    without_holes,
+)
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.classes import SemanticClass
 from world2minecraft.types import UNSEEN, OccupancyGrid
@@ -23,6 +31,9 @@ CEILING, FLOOR, WALL, WINDOW = (
 OPEN_SHARE = 0.35
 STANDING_M = 1.0  # Free space up to here shows that one can stand on the floor under it.
 FOOTPRINT_SHARE = 0.25
+OPEN_FLOOR = 0.5  # A block of an upper floor of which more was seen free is no floor.
+FLOORED_SHARE = 0.3  # Of an upper room's plan; furniture and shade hide much of it.
+STAIRWELL_M = 0.7  # A narrower hole in an upper floor was left by noise.
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,35 +48,62 @@ class Shell:
     windows: np.ndarray
     ceiling: np.ndarray
     patches: np.ndarray
-    footprint: np.ndarray  # bool [X, Y]: where one stands within the room
+    footprints: tuple[np.ndarray, ...]  # bool [X, Y] a storey: where one stands in its rooms
     cells: np.ndarray
     blocks: np.ndarray
 
 
 def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParameters) -> Shell:
-    """Return the shell of a room; see docs/building.md for its rules."""
+    """Return the shell of a room or a house; see docs/building.md for its rules.
+
+    Walls are found over all storeys at once, so that they stand over one another; the rest is
+    found storey by storey.
+    """
     free = (grid.labels == 0) & (grid.source != UNSEEN)
     open_share = volume_shares(free, grid, lattice)
     coloured: list[tuple[np.ndarray, np.ndarray]] = []
     patches = np.zeros(lattice.shape, np.int32)
     walls = _walls(grid, free, open_share, lattice, parameters, patches, coloured)
     ceiling = _ceiling(grid, free, lattice, parameters, coloured)
-    footprint = _footprint(grid, open_share, walls, lattice)
-    floor = _floor(grid, footprint, walls, lattice, coloured)
-    walls = _up_and_down(walls, ceiling, open_share, lattice, parameters)
+    footprints: list[np.ndarray] = []
+    floor = np.zeros(lattice.shape, bool)
+    for ground, top in lattice.storeys:
+        open_floor = open_share[:, :, ground - 1] >= OPEN_FLOOR
+        open_floor &= ground > lattice.ground  # The lowest floor has no stairwell.
+        footprint = _footprint(grid, open_share, walls, lattice, (ground, top), open_floor)
+        _floor(grid, footprint, walls, lattice, (ground, top), open_floor, floor, coloured)
+        _up_and_down(walls, ceiling, open_share, lattice, (ground, top), parameters)
+        footprints.append(footprint)
+        if ground > lattice.ground:
+            _one_slab(ceiling, floor, ground - 1)
     windows = _windows(grid, walls, free, lattice, parameters)
-    patches[ceiling], patches[floor] = patches.max() + 1, patches.max() + 2
+    _number_levels(patches, ceiling, floor, lattice)
     patches = _grow_patches(patches, walls)
     return Shell(
         floor=floor,
         walls=walls & ~windows,
         windows=windows,
-        ceiling=ceiling & ~walls,
+        ceiling=ceiling & ~walls & ~floor,
         patches=patches,
-        footprint=footprint,
+        footprints=tuple(footprints),
         cells=np.concatenate([cells for cells, _ in coloured]),
         blocks=np.concatenate([blocks for _, blocks in coloured]),
     )
+
+
+def _one_slab(ceiling: np.ndarray, floor: np.ndarray, layer: int) -> None:
+    """Leave out, in place, what of a ceiling lies in or over the floor that it carries."""
+    under = floor[:, :, layer]
+    for z in (layer, layer + 1):
+        ceiling[:, :, z] &= ~under
+
+
+def _number_levels(patches, ceiling, floor, lattice) -> None:
+    """Number, in place, each storey's ceiling and floor as surfaces of their own."""
+    for ground, top in lattice.storeys:
+        for mask, start in ((ceiling, ground), (floor, ground - 1)):
+            part = mask[:, :, start:top]
+            patches[:, :, start:top][part] = patches.max() + 1
 
 
 def _walls(grid, free, open_share, lattice, parameters, patches, coloured) -> np.ndarray:
@@ -118,20 +156,23 @@ def _with_corners(walls: np.ndarray, open_share: np.ndarray) -> np.ndarray:
     return walls | (along_x & along_y & (open_share < 0.05))
 
 
-def _up_and_down(walls, ceiling, open_share, lattice, parameters) -> np.ndarray:
-    """Continue walls to the floor, over their own unseen gaps, and to the ceiling when near."""
-    shut = open_share < OPEN_SHARE
-    ground = lattice.ground
-    above = np.flip(np.maximum.accumulate(np.flip(walls, 2), axis=2), 2)
-    result = walls.copy()
-    result[:, :, ground:] |= (above & shut)[:, :, ground:]
-    if not ceiling.any():
-        return result
-    level = int(np.median(np.argwhere(ceiling)[:, 2]))
+def _up_and_down(walls, ceiling, open_share, lattice, storey, parameters) -> None:
+    """Continue walls, in place, to their floor, over unseen gaps, and to a ceiling that is near.
+
+    ``storey`` is its first layer above the floor and the one past its last.
+    """
+    ground, top = storey
+    own = walls[:, :, ground:top]
+    shut = open_share[:, :, ground:top] < OPEN_SHARE
+    above = np.flip(np.maximum.accumulate(np.flip(own, 2), axis=2), 2)
+    own |= above & shut
+    held = np.argwhere(ceiling[:, :, ground : top + 2])
+    if not len(held):
+        return
+    level = min(int(np.median(held[:, 2])), own.shape[2] - 1)
     reach = max(1, round(parameters.gap_m * lattice.blocks_per_metre))
-    for z in range(max(ground, level - reach), level + 1):
-        result[:, :, z] |= result[:, :, z - 1] & shut[:, :, z]
-    return result
+    for z in range(max(1, level - reach), level + 1):
+        own[:, :, z] |= own[:, :, z - 1] & shut[:, :, z]
 
 
 def _ceiling(grid, free, lattice, parameters, coloured) -> np.ndarray:
@@ -153,35 +194,67 @@ def _ceiling(grid, free, lattice, parameters, coloured) -> np.ndarray:
     return ceiling
 
 
-def _footprint(grid, open_share, walls, lattice) -> np.ndarray:
-    """Return the columns, bool [X, Y], in which one stands inside the room."""
-    ground = lattice.ground
-    top = ground + max(1, round(STANDING_M * lattice.blocks_per_metre))
+def _footprint(grid, open_share, walls, lattice, storey, open_floor) -> np.ndarray:
+    """Return the columns, bool [X, Y], in which one stands inside a storey's rooms.
+
+    ``open_floor`` bool [X, Y] are those where the floor itself was seen through: a stairwell.
+    """
+    ground, end = storey
+    top = min(ground + max(1, round(STANDING_M * lattice.blocks_per_metre)), end)
     labels = grid.labels
     things = (labels == FLOOR) | ((labels > WINDOW) & (labels != 255))
     cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
-    below_m = STANDING_M - grid.origin_m[2]
-    low = things[:, :, : max(1, round(below_m / grid.voxel_m))].any(2).astype(np.float32)
+    edges = lattice.edges_of(grid, 2)
+    first, last = np.searchsorted((edges[:-1] + edges[1:]) / 2, [ground - 1.0, float(top)])
+    first = 0 if ground == lattice.ground else first
+    low = things[:, :, first : max(last, first + 1)].any(2).astype(np.float32)
     stood = cover[0] @ low @ cover[1].T >= FOOTPRINT_SHARE
     stood |= (open_share[:, :, ground:top] >= 0.5).any(2)
     stood &= ~walls[:, :, ground:top].any(2)
-    return without_holes(closed(stood, (1, 1)))
+    whole = without_holes(closed(stood & ~open_floor, (1, 1))) & ~_wide(open_floor, lattice)
+    return whole if ground == lattice.ground else _carried_by_floor(whole, grid, lattice, ground)
 
 
-def _floor(grid, footprint, walls, lattice, coloured) -> np.ndarray:
-    """Return the floor: one flat layer under the footprint, its walls and its open rim."""
-    ground = lattice.ground
-    plan = grown(footprint, (1, 1))
-    floor = np.zeros(lattice.shape, bool)
-    floor[:, :, ground - 1] = plan | walls[:, :, ground:].any(2)
+def _carried_by_floor(plan: np.ndarray, grid, lattice, ground: int) -> np.ndarray:
+    """Return the parts of an upper storey's plan, bool [X, Y], under which floor was seen.
+
+    What was seen free outside, over the roof of a lower part of the house, is no room.
+    """
+    edges = lattice.edges_of(grid, 2)
+    middles = (edges[:-1] + edges[1:]) / 2
+    near = (middles > ground - 1.5) & (middles < ground + 0.5)
+    floor = (grid.labels[:, :, near] == FLOOR).any(2).astype(np.float32)
+    cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
+    seen = (cover[0] @ floor @ cover[1].T >= FOOTPRINT_SHARE) & plan
+    parts, sizes = parts_of(plan)
+    share = np.bincount(parts[seen], minlength=len(sizes)) / np.maximum(sizes, 1)
+    return plan & (share[parts] >= FLOORED_SHARE)
+
+
+def _wide(mask: np.ndarray, lattice: Lattice) -> np.ndarray:
+    """Return what of a plan, bool [X, Y], is as wide as a stairwell; the rest are holes."""
+    reach = max(0, round(STAIRWELL_M * lattice.blocks_per_metre / 2) - 1)
+    core = mask.copy()
+    for _ in range(reach):
+        core = shrunk(core)
+    return grown(core, (reach, reach)) & mask
+
+
+def _floor(grid, footprint, walls, lattice, storey, open_floor, floor, coloured) -> None:
+    """Set, in place, a storey's floor: one flat layer under its rooms, walls and open rim."""
+    ground, top = storey
+    plan = grown(footprint, (1, 1)) | walls[:, :, ground:top].any(2)
+    floor[:, :, ground - 1] |= plan & ~_wide(open_floor, lattice)
     cells = np.argwhere(grid.labels == FLOOR)
+    height = lattice.edges_of(grid, 2)[cells[:, 2]]
+    nearest = np.abs(height[:, None] - np.array(lattice.grounds)).argmin(axis=1)
+    cells = cells[np.array(lattice.grounds)[nearest] == ground]
     blocks = np.empty_like(cells)
     for axis in (0, 1):
         edges = lattice.edges_of(grid, axis)
         blocks[:, axis] = np.floor((edges[:-1] + edges[1:]) / 2)[cells[:, axis]]
     blocks[:, 2] = ground - 1
     coloured.append((cells, blocks))
-    return floor
 
 
 def _windows(grid, walls, free, lattice, parameters) -> np.ndarray:

@@ -14,6 +14,7 @@ from world2minecraft.build.objects import ObjectBuilder
 from world2minecraft.build.palettes import Palette, load_palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.shell import put_edge, put_shell
+from world2minecraft.build.storeys import with_storeys
 from world2minecraft.build.structure import build_shell
 from world2minecraft.classes import OBJECT_CLASSES
 from world2minecraft.errors import UsageError
@@ -48,20 +49,20 @@ def build_volume(
     if not 0 < blocks_per_metre < 1e4:
         raise UsageError(f"blocks_per_metre must be above 0, not {blocks_per_metre}; try 4")
     corner = grid_corner_m(grid) if corner_m is None else snapped_corner_m(grid, corner_m)
-    canvas = Canvas(lattice_over(grid, corner, blocks_per_metre))
+    canvas = Canvas(with_storeys(lattice_over(grid, corner, blocks_per_metre), grid))
     palette = load_palette(chosen.palette)
     colours = cell_colours(grid, chosen.expose, chosen.saturation)
     coloured = seen_colours(grid)
     source = (grid, colours, coloured, palette, chosen)
     if is_exact(grid, blocks_per_metre):
-        footprint = put_cells_exactly(canvas, *source)
+        footprints = put_cells_exactly(canvas, *source)
     else:
-        footprint = _put_room(canvas, placements, *source)
+        footprints = _put_room(canvas, placements, *source)
     connect(canvas)
     if chosen.edge == "barrier":
-        put_edge(canvas, footprint)
+        put_edge(canvas, footprints)
     if chosen.lights:
-        put_lights(canvas, footprint)
+        put_lights(canvas, footprints)
     return canvas.volume()
 
 
@@ -73,15 +74,15 @@ def _put_room(
     coloured: np.ndarray,
     palette: Palette,
     parameters: BuildParameters,
-) -> np.ndarray:
-    """Set shell and objects; return the footprint, bool [X, Y]."""
+) -> tuple[np.ndarray, ...]:
+    """Set shell and objects; return each storey's footprint, bool [X, Y]."""
     shell = build_shell(grid, canvas.lattice, parameters)
     put_shell(canvas, shell, colours, coloured, palette, parameters)
     things = coloured & np.isin(grid.labels, OBJECT_CLASSES)
     painted = colours.copy()
     painted[things] = one_paint(colours[things])
     ObjectBuilder(canvas, grid, painted, coloured, palette, parameters).put_all(placements)
-    return shell.footprint
+    return shell.footprints
 
 
 def grid_corner_m(grid: OccupancyGrid) -> np.ndarray:
