@@ -27,7 +27,7 @@ from world2minecraft.minecraft.colours import colours_of
 from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct
 from world2minecraft.report.scene import read_built
-from world2minecraft.rooms import KINDS, Room, generate_room, scan_room
+from world2minecraft.rooms import BASE_KINDS, Room, generate_room, scan_room
 from world2minecraft.rooms.capture import room_to_scan
 from world2minecraft.types import BlockVolume
 
@@ -127,7 +127,7 @@ def main() -> None:
     table = Table("room", "thing", "true", "built", "blocks", "agrees")
     found: list[Thing] = []
     wall_kinds: list[int] = []
-    for kind in sorted(KINDS):
+    for kind in sorted(BASE_KINDS):
         for seed in chosen.seeds:
             room = generate_room(seed, kind=kind)
             out = base / f"{kind}_{seed}"

@@ -17,7 +17,7 @@ from rich.table import Table
 from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct
 from world2minecraft.report import write_report
-from world2minecraft.rooms import KINDS, generate_room, scan_room
+from world2minecraft.rooms import BASE_KINDS, generate_room, scan_room
 
 LABEL_ERROR = 0.1
 COLUMNS = (
@@ -62,7 +62,7 @@ def main() -> None:
     rows: dict[str, list[dict[str, float]]] = {"geometric": [], "votes": []}
     table = Table("room", "labels", *COLUMNS)
     for seed in range(chosen.first, chosen.first + chosen.rooms):
-        kind = sorted(KINDS)[seed % len(KINDS)]
+        kind = sorted(BASE_KINDS)[seed % len(BASE_KINDS)]
         capture = base / f"capture{seed}"
         scan_room(
             generate_room(seed, kind=kind), capture, frames=chosen.frames, seed=seed,

@@ -5,6 +5,7 @@ import numpy as np
 from world2minecraft.rooms.house_gaps import Gap, house_gaps
 from world2minecraft.rooms.house_paint import paint_house
 from world2minecraft.rooms.house_plan import Cell, HousePlan, plan_house
+from world2minecraft.rooms.house_rooms import furnish_cells
 from world2minecraft.rooms.place import Item
 from world2minecraft.rooms.room import Room, layout_object
 from world2minecraft.rooms.style import choose_style
@@ -31,8 +32,8 @@ def generate_house(seed: int, *, rooms: int = 5, storeys: int = 1, clutter: floa
     plan = plan_house(rooms, storeys, rng)
     gaps = house_gaps(plan, rng)
     styles = [choose_style(rng) for _ in plan.cells]
-    items: list[list[Item]] = [[] for _ in plan.cells]
-    canvas = paint_house(plan, gaps, styles, items, rng)
+    items, rugs = furnish_cells(plan, gaps, styles, (seed, rooms, storeys, 1))
+    canvas = paint_house(plan, gaps, styles, items, rugs, rng)
     return Room(
         kind="house",
         seed=seed,

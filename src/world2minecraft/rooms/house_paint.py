@@ -9,6 +9,8 @@ from world2minecraft.rooms.house_plan import WALL_M, Cell, HousePlan
 from world2minecraft.rooms.model import shade
 from world2minecraft.rooms.openings import Hole
 from world2minecraft.rooms.place import Item
+from world2minecraft.rooms.relations import Rug
+from world2minecraft.rooms.stairs import stairwell
 from world2minecraft.rooms.style import WHITE, Style
 from world2minecraft.rooms.voxels import (
     SHELL,
@@ -17,6 +19,7 @@ from world2minecraft.rooms.voxels import (
     floor_colours,
     paint_hole,
     paint_item,
+    paint_rug,
 )
 
 CEILING_COLOUR = (244, 243, 239)
@@ -28,6 +31,7 @@ def paint_house(
     gaps: tuple[Gap, ...],
     styles: list[Style],
     items: list[list[Item]],
+    rugs: list[tuple[Rug, ...]],
     rng: np.random.Generator,
 ) -> Canvas:
     """Paint a house.
@@ -37,6 +41,7 @@ def paint_house(
         gaps: the openings in its walls.
         styles: the colours of each cell.
         items: what stands in each cell, in the frame of the house.
+        rugs: what lies on the floor of each cell, in the frame of the house.
         rng: draws the grain of floors and furniture.
     """
     canvas = Canvas(plan.size_m)
@@ -44,6 +49,11 @@ def paint_house(
         _paint_cell(canvas, plan, cell, style, rng)
     for gap in gaps:
         _paint_gap(canvas, plan, gap)
+    if plan.flight:
+        canvas.fill(canvas.cells(stairwell(plan, plan.flight)), 0, 0, 0)
+    for cell, flat in zip(plan.cells, rugs, strict=True):
+        for rug in flat:
+            paint_rug(canvas, rug, cell.rect, cell.storey * plan.pitch_m)
     number = 0
     for held in items:
         for item in held:
@@ -94,4 +104,14 @@ def _paint_gap(canvas: Canvas, plan: HousePlan, gap: Gap) -> None:
         return
     x0, y0, x1, y1 = gap.wall.rect(gap.first_m, gap.last_m, -WALL_M, 0.0)
     a, b, c = canvas.cells((x0, y0, floor_z + gap.sill_m, x1, y1, floor_z + gap.head_m))
+    frame = _grown_slices(a, b, c, gap.wall.turn % 2)
+    canvas.colour[frame][canvas.labels[frame] == int(SemanticClass.WALL)] = WHITE
     canvas.fill((a, b, c), 0, 0, 0)
+
+
+def _grown_slices(a: slice, b: slice, c: slice, across: int) -> tuple[slice, slice, slice]:
+    """Return the voxels of a gap with a frame of 6 cm around it; at the floor there is none."""
+    sides = [a, b]
+    run = sides[1 - across]
+    sides[1 - across] = slice(run.start - 3, run.stop + 3)
+    return sides[0], sides[1], slice(c.start, c.stop + 3)

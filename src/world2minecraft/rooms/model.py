@@ -4,7 +4,7 @@ A model stands in its own frame: the origin in the middle of its footprint, z = 
 its front looks along +x. Sizes are multiples of 2 cm, so that boxes fall on whole voxels.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 Colour = tuple[int, int, int]
@@ -14,11 +14,34 @@ STEP_M = 0.02
 
 @dataclass(frozen=True)
 class Part:
-    """One box: ``box_m`` is x0 y0 z0 x1 y1 z1, and ``grain`` how its colour varies."""
+    """One box: ``box_m`` is x0 y0 z0 x1 y1 z1, and ``grain`` how its colour varies.
+
+    A ``ball`` is the ellipsoid in its box, a ``drum`` the cylinder in it along ``axis``.
+    """
 
     box_m: tuple[float, float, float, float, float, float]
     colour: Colour
     grain: Grain = "plain"
+    form: Literal["box", "ball", "drum"] = "box"
+    axis: int = 2
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A round bar from one place to another: legs that splay, strings, frames."""
+
+    start_m: tuple[float, float, float]
+    end_m: tuple[float, float, float]
+    radius_m: float
+    colour: Colour
+    grain: Grain = "plain"
+
+    @property
+    def box_m(self) -> tuple[float, float, float, float, float, float]:
+        """The box around it."""
+        low = tuple(min(p) - self.radius_m for p in zip(self.start_m, self.end_m, strict=True))
+        high = tuple(max(p) + self.radius_m for p in zip(self.start_m, self.end_m, strict=True))
+        return low[0], low[1], low[2], high[0], high[1], high[2]
 
 
 @dataclass(frozen=True)
@@ -28,7 +51,19 @@ class Model:
     name: str
     class_id: int
     size_m: tuple[float, float, float]
-    parts: tuple[Part, ...]
+    parts: tuple[Part | Bar, ...]
+
+
+def moved(part: Part | Bar, shift: tuple[float, ...]) -> Part | Bar:
+    """Return a part moved in its model's frame by ``shift``, x y z in metres."""
+
+    def put(point: tuple[float, ...]) -> tuple[float, float, float]:
+        x, y, z = (value + off for value, off in zip(point, shift, strict=True))
+        return x, y, z
+
+    if isinstance(part, Bar):
+        return replace(part, start_m=put(part.start_m), end_m=put(part.end_m))
+    return replace(part, box_m=(*put(part.box_m[:3]), *put(part.box_m[3:])))
 
 
 def whole(length_m: float) -> float:

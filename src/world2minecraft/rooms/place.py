@@ -12,7 +12,7 @@ import numpy as np
 
 from world2minecraft.coordinates import apply, rotation_about_z
 from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.rooms.ground import TOUCH_M, Box, Ground, grown
+from world2minecraft.rooms.ground import TOUCH_M, Box, Ground, Rect, grown
 from world2minecraft.rooms.model import STEP_M, Model
 
 TRIES = 40
@@ -57,6 +57,7 @@ class Plan:
         self.ground, self.size_m, self.rng = ground, ground.size_m, rng
         self.items: list[Item] = []
         self.reserved: list[Box] = []
+        self.pits: list[Rect] = []  # Holes in the floor: nobody walks there.
 
     def wall_length(self, wall: int) -> float:
         """The length of a wall."""
@@ -187,27 +188,41 @@ def snapped(item: Item) -> Item:
     )
 
 
-def ways_are_clear(plan: Plan, door_m: tuple[float, float], body_m: float = 0.24) -> bool:
-    """Tell whether a person who comes in at the door reaches most of the free floor.
+def ways_are_clear(plan: Plan, *doors_m: tuple[float, float], body_m: float = 0.24) -> bool:
+    """Tell whether a person who comes in at a door reaches most of the free floor.
 
-    The floor is looked at in squares of 10 cm, furniture grown by ``body_m``, half a person.
+    The floor is looked at in squares of 10 cm, furniture grown by ``body_m``, half a person. All
+    doors must lead to the same floor.
     """
-    step = 0.1
-    nx, ny = (int(side / step) for side in plan.size_m[:2])
-    x, y = np.meshgrid((np.arange(nx) + 0.5) * step, (np.arange(ny) + 0.5) * step, indexing="ij")
+    x, y, free = _free_floor(plan, body_m)
+    parts, _ = connected_parts(free, corners=False)
+    if not parts.any():
+        return False
+    starts = set()
+    for door_m in doors_m:
+        distance = np.where(free, np.hypot(x - door_m[0], y - door_m[1]), np.inf)
+        starts.add(int(parts.reshape(-1)[int(distance.argmin())]))
+        if distance.min() >= 1.0:
+            return False
+    reached = int(np.isin(parts, sorted(starts)).sum())
+    return len(starts) == 1 and reached >= 0.75 * free.sum() and reached * SQUARE_M**2 > 1.2
+
+
+SQUARE_M = 0.1
+
+
+def _free_floor(plan: Plan, body_m: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the x and y of squares of 10 cm, and where a body fits, each [X, Y]."""
+    nx, ny = (int(side / SQUARE_M) for side in plan.size_m[:2])
+    rows, columns = (np.arange(nx) + 0.5) * SQUARE_M, (np.arange(ny) + 0.5) * SQUARE_M
+    x, y = np.meshgrid(rows, columns, indexing="ij")
     free = (x > body_m) & (x < plan.size_m[0] - body_m)
     free &= (y > body_m) & (y < plan.size_m[1] - body_m)
     if plan.ground.blocks or plan.ground.cuts or plan.ground.roofs:
         low = plan.ground.built(x, y) | (plan.ground.ceiling_m(x, y) < 1.8)
         free &= ~grown(low, 2)
-    for item in plan.items:
-        x0, y0, z0, x1, y1, z1 = item.box_m
+    pits = [(a, b, 0.0, c, d, 1.0) for a, b, c, d in plan.pits]
+    for x0, y0, z0, x1, y1, z1 in [*(item.box_m for item in plan.items), *pits]:
         if z0 < 1.9 and z1 > 0.05:
             free &= ~((x > x0 - body_m) & (x < x1 + body_m) & (y > y0 - body_m) & (y < y1 + body_m))
-    parts, _ = connected_parts(free, corners=False)
-    if not parts.any():
-        return False
-    distance = np.where(free, np.hypot(x - door_m[0], y - door_m[1]), np.inf)
-    start = parts.reshape(-1)[int(distance.argmin())]
-    reached = int((parts == start).sum())
-    return bool(distance.min() < 1.0 and reached >= 0.75 * free.sum() and reached * step**2 > 1.2)
+    return x, y, free

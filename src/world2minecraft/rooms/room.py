@@ -112,7 +112,7 @@ def _try_room(
     for hole in holes:
         voxels.paint_hole(canvas, hole, plan.ground.walls[hole.wall])
     for rug in rugs:
-        voxels.paint_rug(canvas, rug)
+        voxels.paint_rug(canvas, rug, (0.0, 0.0, *plan.size_m[:2]))
     for number, item in enumerate(items, start=1):
         voxels.paint_item(canvas, item, number, rng)
     return Room(

@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
-from world2minecraft.rooms.ground import Ground, Wall
-from world2minecraft.rooms.kinds import Rug
-from world2minecraft.rooms.model import STEP_M, Colour, Part, shade
+from world2minecraft.rooms.ground import Ground, Rect, Wall
+from world2minecraft.rooms.model import STEP_M, Bar, Colour, Part, shade
 from world2minecraft.rooms.openings import RECESS_M, Hole
 from world2minecraft.rooms.place import Item
+from world2minecraft.rooms.relations import Rug
+from world2minecraft.rooms.solids import is_plain, solid_cells
 from world2minecraft.rooms.style import WHITE, Style
 
 VOXEL_M = STEP_M
@@ -117,12 +118,12 @@ def _tiles(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> np
     return _toned((212, 206, 196), checker * tones * joint)
 
 
-def paint_rug(canvas: Canvas, rug: Rug) -> None:
-    """Colour the floor under a flat rug; it stays floor."""
+def paint_rug(canvas: Canvas, rug: Rug, within: Rect, floor_z_m: float = 0.0) -> None:
+    """Colour the floor under a flat rug, 10 cm off the sides of ``within``; it stays floor."""
     x0, y0, x1, y1, colour = rug
-    width, depth = (side * VOXEL_M for side in canvas.inner[:2])
-    box = (max(x0, 0.1), max(y0, 0.1), -VOXEL_M, min(x1, width - 0.1), min(y1, depth - 0.1), 0.0)
-    a, b, c = canvas.cells(box)
+    low = (max(x0, within[0] + 0.1), max(y0, within[1] + 0.1))
+    high = (min(x1, within[2] - 0.1), min(y1, within[3] - 0.1))
+    a, b, c = canvas.cells((*low, floor_z_m - VOXEL_M, *high, floor_z_m))
     light = shade(colour, 1.25)
     canvas.colour[a, b, c] = colour
     canvas.colour[a.start + 4 : a.stop - 4, b.start + 4 : b.stop - 4, c] = light
@@ -130,15 +131,29 @@ def paint_rug(canvas: Canvas, rug: Rug) -> None:
 
 
 def paint_item(canvas: Canvas, item: Item, instance: int, rng: np.random.Generator) -> None:
-    """Paint the parts of an item, turned into place by quarters."""
+    """Paint the parts of an item where it stands."""
     for part in item.model.parts:
+        if not is_plain(item, part):
+            _paint_solid(canvas, item, part, instance, rng)
+            continue
         cells = canvas.cells(_turned_box(item, part))
         shape = tuple(side.stop - side.start for side in cells)
         tone = _grain(part, shape, rng)
         canvas.fill(cells, item.model.class_id, instance, _toned(part.colour, tone))
 
 
-def _turned_box(item: Item, part: Part) -> tuple[float, ...]:
+def _paint_solid(
+    canvas: Canvas, item: Item, part: Part | Bar, instance: int, rng: np.random.Generator
+) -> None:
+    first, filled = solid_cells(item, part)
+    start = first + SHELL
+    cells = tuple(slice(a, a + n) for a, n in zip(start.tolist(), filled.shape, strict=True))
+    canvas.labels[cells][filled] = item.model.class_id
+    canvas.instance[cells][filled] = instance
+    canvas.colour[cells][filled] = _toned(part.colour, _grain(part, filled.shape, rng))[filled]
+
+
+def _turned_box(item: Item, part: Part | Bar) -> tuple[float, ...]:
     x0, y0, z0, x1, y1, z1 = part.box_m
     ax, ay = item.point(x0, y0)
     bx, by = item.point(x1, y1)
@@ -147,7 +162,7 @@ def _turned_box(item: Item, part: Part) -> tuple[float, ...]:
     )  # fmt: skip
 
 
-def _grain(part: Part, shape: tuple[int, ...], rng: np.random.Generator) -> np.ndarray:
+def _grain(part: Part | Bar, shape: tuple[int, ...], rng: np.random.Generator) -> np.ndarray:
     """Return the tone of each voxel of a part: streaks along wood, specks in cloth."""
     if part.grain == "wood" and _is_bare_wood(part.colour):
         along = int(np.argmax(shape))
