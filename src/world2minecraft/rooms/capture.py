@@ -126,21 +126,14 @@ def write_truth(
             "depth_scale": np.array([frame.depth_scale for frame in frames], np.float64),
         },
     )
-    layouts = layouts_of(room)
-    objects = [item for layout in layouts for item in layout.objects]
     truth = {
         "kind": room.kind,
         "seed": room.seed,
         "size_m": _rounded(room.size_m),
-        "objects": [_stated_object(n, item) for n, item in enumerate(objects, start=1)],
-        "layouts": [_stated_layout(layout) for layout in layouts],
+        "objects": [_stated_object(n, item) for n, item in enumerate(room.objects, start=1)],
+        "layouts": [_stated_layout(layout) for layout in room.layouts],
     }
     write_json(Path(folder) / "truth.json", truth)
-
-
-def layouts_of(room: Room) -> tuple[Layout, ...]:
-    """Return the layouts of a room or a house, one a room."""
-    return getattr(room, "layouts", (room.layout,))
 
 
 def _stated_object(number: int, item: LayoutObject) -> dict[str, Any]:

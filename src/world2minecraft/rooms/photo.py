@@ -1,8 +1,9 @@
 """A photo of a generated room: what its colours look like in soft room light.
 
 One pass over the pixels gives colour, z-depth, voxel and the cosine between ray and surface. The
-light is a lamp under the ceiling plus what the walls throw back, dimmed where matter is near
-(a blurred grid of solid cells), and a fine grain, so that no surface is one flat tone.
+light is a lamp under the ceiling of each room (``lamps``) plus what the walls throw back, dimmed
+where matter is near (a blurred grid of solid cells), and a fine grain, so that no surface is one
+flat tone. It belongs to the spot, not to the camera: a surface has one colour from everywhere.
 """
 
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from world2minecraft.jit import njit
 from world2minecraft.render import RayScene, prepare_voxels
 from world2minecraft.render.shade import TILE, bundle_start
 from world2minecraft.render.trace import NO_FACE, trace
+from world2minecraft.rooms.lamps import hang_lamps, nearest_lamps
 from world2minecraft.rooms.room import Room
 from world2minecraft.types import Camera
 
@@ -39,7 +41,8 @@ class PhotoScene:
     scene: RayScene
     colour: np.ndarray  # uint8 [X, Y, Z, 3]
     solid: np.ndarray  # float32, the blurred share of solid voxels
-    lamp: np.ndarray  # float64 [3], in voxels
+    lamps: np.ndarray  # float64 [L, 3], in voxels, one a layout
+    lamp_of: np.ndarray  # uint8 [X, Y, Z] of coarse cells, the lamp that lights each
 
 
 def prepare_photos(room: Room) -> PhotoScene:
@@ -49,12 +52,12 @@ def prepare_photos(room: Room) -> PhotoScene:
     padded = np.pad(filled, padding, constant_values=True)
     shape = [value for side in padded.shape for value in (side // COARSE, COARSE)]
     coarse = padded.reshape(shape).mean(axis=(1, 3, 5), dtype=np.float32)
-    lamp_m = np.array([*(room.size_m[:2] / 2), room.size_m[2] - 0.35])
     return PhotoScene(
         scene=prepare_voxels(room.labels, room.voxel_m, room.origin_m),
         colour=room.colour,
         solid=ndimage.gaussian_filter(coarse, BLUR_CELLS, mode="nearest"),
-        lamp=(lamp_m - room.origin_m) / room.voxel_m,
+        lamps=(hang_lamps(room) - room.origin_m) / room.voxel_m,
+        lamp_of=nearest_lamps(room, coarse.shape, COARSE * room.voxel_m),
     )
 
 
@@ -72,14 +75,15 @@ def take_photo(scene: PhotoScene, camera: Camera, camera_to_room: np.ndarray) ->
     ray_scene = scene.scene
     _expose(
         ray_scene.cells, ray_scene.states, ray_scene.box_start, ray_scene.boxes, scene.colour,
-        scene.solid, scene.lamp, pose, rays, *photo,
+        scene.solid, scene.lamps, scene.lamp_of, pose, rays, *photo,
     )  # fmt: skip
     return photo
 
 
 @njit
 def _expose(
-    cells, states, box_start, boxes, colours, solid, lamp, pose, rays, image, depth, index, cosine
+    cells, states, box_start, boxes, colours, solid, lamps, lamp_of, pose, rays,
+    image, depth, index, cosine,
 ):  # fmt: skip
     height, width = depth.shape
     ny, nz = cells.shape[1], cells.shape[2]
@@ -105,30 +109,31 @@ def _expose(
                     along = dx if face < 2 else (dy if face < 4 else dz)
                     cosine[v, u] = abs(along) / (scale * np.sqrt(x * x + y * y + 1))
                     px, py, pz = pose[0, 3] + t * dx, pose[1, 3] + t * dy, pose[2, 3] + t * dz
-                    light = _light(solid, lamp, px, py, pz, face) * _grain(px, py, pz)
+                    light = _light(solid, lamps, lamp_of, px, py, pz, face) * _grain(px, py, pz)
                     light *= 1.0 - 0.10 * ((u / width - 0.5) ** 2 + (v / height - 0.5) ** 2)
                     for n in range(3):
                         image[v, u, n] = np.uint8(min(255.0, colours[i, j, k, n] * light))
 
 
 @njit
-def _light(solid, lamp, px, py, pz, face):
+def _light(solid, lamps, lamp_of, px, py, pz, face):
     """Return the light on a face at a point, about 1 in the open."""
     sign = 1.0 if face % 2 == 1 else -1.0
     axis = face // 2
+    off = sign * NEAR_VOXELS
+    ox = px + (off if axis == 0 else 0.0)
+    oy = py + (off if axis == 1 else 0.0)
+    oz = pz + (off if axis == 2 else 0.0)
+    i = min(max(int(ox / COARSE), 0), lamp_of.shape[0] - 1)
+    j = min(max(int(oy / COARSE), 0), lamp_of.shape[1] - 1)
+    k = min(max(int(oz / COARSE), 0), lamp_of.shape[2] - 1)
+    lamp = lamps[lamp_of[i, j, k]]
     lx, ly, lz = lamp[0] - px, lamp[1] - py, lamp[2] - pz
     toward = (lx if axis == 0 else (ly if axis == 1 else lz)) * sign
     far = np.sqrt(lx * lx + ly * ly + lz * lz) + 20.0
     direct = max(0.0, toward / far) / (1.0 + (far / 160.0) ** 2)
     base = 0.74 if axis == 0 else (0.80 if axis == 1 else (0.84 if sign > 0 else 0.72))
-    off = sign * NEAR_VOXELS
-    crowd = _blurred(
-        solid,
-        px + (off if axis == 0 else 0.0),
-        py + (off if axis == 1 else 0.0),
-        pz + (off if axis == 2 else 0.0),
-    )
-    return (base + 0.42 * direct) * (1.08 - 0.62 * crowd)
+    return (base + 0.42 * direct) * (1.08 - 0.62 * _blurred(solid, ox, oy, oz))
 
 
 @njit
