@@ -11,9 +11,9 @@ from world2minecraft.register.solve import Observations, Step, solve
 from world2minecraft.register.surfels import Surfels, find_surfels
 
 # The gap that parts two surfaces and the residual beyond which a patch is no look at its surfel
-# narrow from pass to pass; a depth scale that is 5 % off moves a wall at 3 m by 15 cm.
-GAPS_M = (0.15, 0.06, 0.04)
-WIDTHS_M = (0.05, 0.02, 0.01)
+# narrow from pass to pass: a depth scale that is 10 % off moves a wall at 3 m by 30 cm.
+GAPS_M = (0.30, 0.10, 0.05, 0.04)
+WIDTHS_M = (0.12, 0.04, 0.015, 0.01)
 FIRST_CELLS = 2.0  # The first pass's cells are wider by this, for the same reason.
 SAME_WAY = 0.9  # Cosine of 26 degrees between a patch and its surfel.
 FIRST_BEND_M = 0.003  # What the depth of patches is off for other reasons than their pixels' noise.
