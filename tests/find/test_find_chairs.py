@@ -9,6 +9,7 @@ from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import turn_grid
 from world2minecraft.find.chairs import join_backs, part_chairs
 from world2minecraft.furniture import cells_of, template
+from world2minecraft.types import OccupancyGrid
 
 SHAPE = (44, 40, 20)
 
@@ -24,9 +25,21 @@ def _room(*pieces):
     return labels
 
 
+def _grid(labels):
+    return OccupancyGrid(
+        labels=labels,
+        confidence=np.full(labels.shape, 0.5, np.float16),
+        colour=np.zeros((*labels.shape, 3), np.uint8),
+        source=(labels != 255).astype(np.uint8),
+        instance=np.zeros(labels.shape, np.uint16),
+        voxel_m=0.08,
+        origin_m=np.array([0.0, 0.0, -0.08]),
+    )
+
+
 def _parted(labels):
     owners = (labels == SemanticClass.CHAIR).astype(np.int32)
-    return part_chairs(owners, labels, 0.08, 1)
+    return part_chairs(owners, _grid(labels))
 
 
 @pytest.mark.parametrize(("first", "second"), [(0, 0), (0, 2), (1, 1), (3, 1), (0, 1)])
@@ -74,13 +87,13 @@ def _seat_and_back(gap):
 
 def test_a_back_joins_the_seat_beside_it_and_none_farther_off():
     labels, owners = _seat_and_back(0)
-    np.testing.assert_array_equal(join_backs(owners, labels, 0.08, 1), owners > 0)
+    np.testing.assert_array_equal(join_backs(owners, _grid(labels)), owners > 0)
     labels, owners = _seat_and_back(4)
-    np.testing.assert_array_equal(join_backs(owners, labels, 0.08, 1), owners)
+    np.testing.assert_array_equal(join_backs(owners, _grid(labels)), owners)
 
 
 def test_a_seat_takes_one_back_alone():
     labels, owners = _seat_and_back(0)
     labels[10:16, 8:10, 8:11] = SemanticClass.CHAIR
     owners[10:16, 8:10, 8:11] = 3
-    assert len(np.unique(join_backs(owners, labels, 0.08, 1))) == 3
+    assert len(np.unique(join_backs(owners, _grid(labels)))) == 3

@@ -1,4 +1,4 @@
-"""What always stands on the floor has a box that reaches it, however little of it was seen."""
+"""A box reaches what holds the object: floor, table or ceiling, however little of it was seen."""
 
 import numpy as np
 import pytest
@@ -34,9 +34,47 @@ def test_a_table_top_without_legs_is_a_table_of_full_height(class_id):
     assert len(found.cells) == 16 * 12 * 2
 
 
-def test_a_thing_and_a_hung_cupboard_stay_where_they_are():
-    for class_id in (SemanticClass.OBJS, SemanticClass.FURN, SemanticClass.TVS):
+def test_a_screen_and_a_hung_cupboard_stay_where_they_are():
+    for class_id in (SemanticClass.FURN, SemanticClass.TVS):
         np.testing.assert_allclose(_found(class_id).size_m[2], 0.16)
+
+
+def _lamp(first, *, beside=None, below=0, ceiling=False):
+    """Return the box's bottom and top, in cells above the floor, of a shade in the air."""
+    labels = np.zeros((36, 30, 28), np.uint8)
+    labels[:, :, 0] = SemanticClass.FLOOR
+    labels[:, :, 27] = SemanticClass.CEILING if ceiling else 0
+    labels[10:15, 10:15, 1:below] = SemanticClass.TABLE
+    if beside is not None:
+        labels[15:17, :, :] = beside
+    labels[10:15, 10:15, first : first + 3] = SemanticClass.OBJS
+    grid = OccupancyGrid(
+        labels=labels,
+        confidence=np.full(labels.shape, 0.5, np.float16),
+        colour=np.zeros((*labels.shape, 3), np.uint8),
+        source=np.ones(labels.shape, np.uint8),
+        instance=np.zeros(labels.shape, np.uint16),
+        voxel_m=0.08,
+        origin_m=np.array([0.0, 0.0, -0.08]),
+    )
+    (lamp,) = (one for one in find_objects(grid).instances if one.class_id == SemanticClass.OBJS)
+    ends = lamp.center_m[2] + np.array([-0.5, 0.5]) * lamp.size_m[2]
+    return np.round(ends / 0.08).astype(int).tolist()
+
+
+def test_a_shade_low_in_the_air_stands_on_an_unseen_post():
+    assert _lamp(12) == [0, 14]
+
+
+def test_a_shade_high_in_the_air_or_over_a_table_hangs_from_the_ceiling():
+    assert _lamp(20, ceiling=True) == [19, 26]
+    assert _lamp(14, below=8, ceiling=True) == [13, 26]
+    assert _lamp(20) == [19, 22]
+
+
+def test_what_lies_on_a_table_or_hangs_on_a_wall_reaches_no_farther():
+    assert _lamp(8, below=8) == [7, 10]
+    assert _lamp(20, beside=SemanticClass.WALL, ceiling=True) == [19, 22]
 
 
 def test_what_begins_above_a_metre_stands_on_something_else():

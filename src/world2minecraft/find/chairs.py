@@ -4,8 +4,11 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.find.heap import floor_below
+from world2minecraft.find.owned import cells_by_owner
 from world2minecraft.furniture import template
 from world2minecraft.furniture.seating import AGAINST, OWN, SeatFit, fit_seat, look_at
+from world2minecraft.types import OccupancyGrid
 
 WIDE_M = 0.85  # A chair turned by half a quarter is this wide; an easy chair may be wider.
 EASY_WIDE_M = 1.2
@@ -21,45 +24,46 @@ BESIDE_CELLS = 1
 PAD = 10  # Cells around the heap: a chair's depth and some more.
 
 
-def part_chairs(owners: np.ndarray, labels: np.ndarray, voxel_m: float, floor: int) -> np.ndarray:
+def part_chairs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which chairs that touch have numbers of their own."""
-    chairs = labels == SemanticClass.CHAIR
-    tables = (labels == SemanticClass.TABLE).any(axis=2)
+    tables = (grid.labels == SemanticClass.TABLE).any(axis=2)
     result = owners.copy()
     fresh = int(owners.max(initial=0))
-    for number in np.unique(owners[chairs & (owners > 0)]):
-        cells = np.argwhere((owners == number) & chairs)
-        if np.ptp(cells[:, :2], axis=0).max() + 1 <= WIDE_M / voxel_m:
+    for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.CHAIR):
+        if np.ptp(cells[:, :2], axis=0).max() + 1 <= WIDE_M / grid.voxel_m:
             continue
-        part = _parts(cells, labels, tables, voxel_m, floor)
+        part = _parts(cells, grid.labels, tables, grid.voxel_m, floor_below(cells, grid))
         moved = part > 0
         result[tuple(cells[moved].T)] = fresh + part[moved]
         fresh += int(part.max())
     return result
 
 
-def join_backs(owners: np.ndarray, labels: np.ndarray, voxel_m: float, floor: int) -> np.ndarray:
+def join_backs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return owners in which a back without a seat joins a seat without a back beside it.
 
     A scan sees the back of a chair at a table over the table's edge and its seat under it. Both
     together must not be wider than one chair.
     """
-    chairs = labels == SemanticClass.CHAIR
     result = owners.copy()
-    boxes = {}
-    for number in np.unique(owners[chairs & (owners > 0)]).tolist():
-        cells = np.argwhere((owners == number) & chairs)
-        boxes[number] = cells.min(axis=0), cells.max(axis=0) + 1
-    seat, back = floor + SEAT_M / voxel_m, floor + BACK_M / voxel_m
-    seats = [n for n, (_, high) in boxes.items() if high[2] <= back]
-    for number in [n for n, (low, _) in boxes.items() if low[2] >= seat]:
-        apart = {one: _apart(boxes[one], boxes[number]) for one in seats if one != number}
+    pieces = {}
+    seats, backs = [], []
+    for number, cells in cells_by_owner(owners, grid.labels, SemanticClass.CHAIR):
+        floor = floor_below(cells, grid)
+        box = cells.min(axis=0), cells.max(axis=0) + 1
+        pieces[number] = cells, box
+        if box[1][2] <= floor + BACK_M / grid.voxel_m:
+            seats.append(number)
+        if box[0][2] >= floor + SEAT_M / grid.voxel_m:
+            backs.append(number)
+    for number in backs:
+        apart = {n: _apart(pieces[n][1], pieces[number][1]) for n in seats if n != number}
         near = {one: gap for one, gap in apart.items() if gap is not None}
-        wide = {one: _width(boxes[one], boxes[number]) for one in near}
-        fitting = [one for one in near if wide[one] <= WIDE_M / voxel_m]
+        wide = {one: _width(pieces[one][1], pieces[number][1]) for one in near}
+        fitting = [one for one in near if wide[one] <= WIDE_M / grid.voxel_m]
         if fitting:
             chosen = min(fitting, key=lambda one: (near[one], wide[one], one))
-            result[(owners == number) & chairs] = chosen
+            result[tuple(pieces[number][0].T)] = chosen
             seats.remove(chosen)
     return result
 

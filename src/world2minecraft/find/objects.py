@@ -4,14 +4,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import cell_centers_m
 from world2minecraft.errors import UsageError
 from world2minecraft.find.chairs import join_backs, part_chairs
 from world2minecraft.find.clusters import cluster_candidates
 from world2minecraft.find.density import candidate_cells, density_map, object_cells
 from world2minecraft.find.growth import grow
+from world2minecraft.find.hosts import part_by_hosts
 from world2minecraft.find.parameters import FindParameters
+from world2minecraft.find.reach import layers_reached
 from world2minecraft.find.rejoin import rejoin
 from world2minecraft.find.rows import part_rows
 from world2minecraft.find.stacks import join_stacked
@@ -19,8 +20,6 @@ from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.types import ObjectInstance, OccupancyGrid
 
 MAX_OBJECTS = 65535
-STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
-STANDS_BELOW_M = 1.0  # What begins higher stands on something else; a chair's back does not.
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,11 +67,10 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
             min_cells=chosen.min_cells,
             join_radius=chosen.join_radius,
         )
-        floor = max(int(np.floor(-grid.origin_m[2] / grid.voxel_m + 0.5)), 0)
-        owners = part_chairs(owners, grid.labels, grid.voxel_m, floor)
-        owners = join_backs(owners, grid.labels, grid.voxel_m, floor)
-        owners = part_rows(owners, grid.labels, grid.voxel_m)
-    instances = _instances(grid, owners, reach_down=not chosen.paper_compat)
+        owners = join_backs(part_chairs(owners, grid), grid)
+        owners = part_rows(owners, grid)
+        owners = part_by_hosts(owners, grid)
+    instances = _instances(grid, owners, reach=not chosen.paper_compat)
     marked = np.zeros(grid.shape, np.uint16)
     for instance in instances:
         marked[tuple(instance.cells.T)] = instance.id
@@ -82,7 +80,7 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
 
 
 def _instances(
-    grid: OccupancyGrid, owners: np.ndarray, *, reach_down: bool
+    grid: OccupancyGrid, owners: np.ndarray, *, reach: bool
 ) -> tuple[ObjectInstance, ...]:
     cells = np.argwhere(owners).astype(np.int32)
     numbers = owners[tuple(cells.T)]
@@ -93,7 +91,7 @@ def _instances(
         raise UsageError(f"{len(groups):,} objects are too many; raise find.min_cells")
     around = surroundings(grid.labels)
     return tuple(
-        _instance(number, grid, group, around, reach_down)
+        _instance(number, grid, group, around, reach)
         for number, group in enumerate(sorted(groups, key=lambda g: _rank(grid, g)), start=1)
     )
 
@@ -104,17 +102,15 @@ def _rank(grid: OccupancyGrid, cells: np.ndarray) -> tuple[int, ...]:
     return (int(grid.labels[first]), *(int(value) for value in middle), *first)
 
 
-def _box_m(grid: OccupancyGrid, cells: np.ndarray, class_id: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the low corner and the size, both float64 [3], of an object's box in metres.
-
-    What always stands on the floor reaches down to it, whatever was seen of its lower part: of a
-    chair at a table often only the back is seen, and a table's legs are taken for a chair's.
-    """
-    low = cell_centers_m(cells.min(axis=0), grid.origin_m, grid.voxel_m) - grid.voxel_m / 2
-    high = low + (np.ptp(cells, axis=0) + 1) * grid.voxel_m
-    if class_id in STANDING and 0 < low[2] <= STANDS_BELOW_M:
-        low[2] = 0.0
-    return low, high - low
+def _box_m(
+    grid: OccupancyGrid, cells: np.ndarray, class_id: int, reach: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the low corner and the size, both float64 [3], of an object's box in metres."""
+    first, last = cells.min(axis=0), cells.max(axis=0) + 1
+    if reach:
+        first[2], last[2] = layers_reached(cells, grid, class_id)
+    low = cell_centers_m(first, grid.origin_m, grid.voxel_m) - grid.voxel_m / 2
+    return low, (last - first) * grid.voxel_m
 
 
 def _instance(
@@ -122,11 +118,11 @@ def _instance(
     grid: OccupancyGrid,
     cells: np.ndarray,
     around: Surroundings,
-    reach_down: bool,
+    reach: bool,
 ) -> ObjectInstance:
     class_id = int(grid.labels[tuple(cells[0])])
     front = facing(cells, class_id, around)
-    low, size = _box_m(grid, cells, class_id if reach_down else 0)
+    low, size = _box_m(grid, cells, class_id, reach)
     own_axes = size[[1, 0, 2]] if front.quarter_turns % 2 else size
     votes = float(grid.confidence[tuple(cells.T)].astype(np.float64).mean())
     return ObjectInstance(
