@@ -3,7 +3,7 @@
 import pytest
 
 from world2minecraft.errors import UnknownNameError, UsageError
-from world2minecraft.parameters import Parameters, parameter_keys, with_settings
+from world2minecraft.parameters import Parameters, parameter_keys, with_method, with_settings
 
 
 def test_every_key_can_be_set_to_its_own_value():
@@ -25,6 +25,15 @@ def test_settings_reach_their_stage():
     assert changed.fuse.min_points == 5 and changed.find.cluster_radius == 3.5
     assert changed.build.ceiling is False and changed.clean.hole_m == 0.2
     assert Parameters().fuse.min_points == 2, "the defaults stay"
+
+
+def test_the_papers_method_stops_where_the_paper_stops_and_settings_still_change_it():
+    assert with_method(Parameters(), "best") == Parameters()
+    paper = with_method(Parameters(), "paper")
+    assert paper.find.paper_compat and paper.furnish.paper_compat and paper.register.passes == 0
+    assert not with_settings(paper, ["furnish.paper_compat=no"]).furnish.paper_compat
+    with pytest.raises(UnknownNameError, match="did you mean 'paper'"):
+        with_method(Parameters(), "papers")
 
 
 def test_the_voxel_is_said_once():

@@ -65,6 +65,30 @@ def check_name(kind: str, name: str, known: tuple[str, ...]) -> None:
         raise UnknownNameError(kind, name, known)
 
 
+METHODS = ("best", "paper")
+
+
+def with_method(parameters: Parameters, method: str) -> Parameters:
+    """Return the parameters with one of ``METHODS`` chosen: where the two differ, as docs say.
+
+    ``best`` leaves them as they are. ``paper`` stops where the paper stops: no refinement of poses
+    and depth, each cluster of DBSCAN an object, templates by IoU over all cells and turns. What
+    the paper leaves open (k, tau, eta, fusion, labels) is the same in both.
+
+    Raises:
+        UnknownNameError: there is no such method.
+    """
+    check_name("method", method, METHODS)
+    if method == "best":
+        return parameters
+    return replace(
+        parameters,
+        register=replace(parameters.register, passes=0),
+        find=replace(parameters.find, paper_compat=True),
+        furnish=replace(parameters.furnish, paper_compat=True),
+    )
+
+
 def with_settings(parameters: Parameters, settings: list[str]) -> Parameters:
     """Return the parameters with ``key=value`` settings applied, such as ``find.cluster_radius=3``.
 

@@ -14,6 +14,7 @@ w2m reconstruct my_scan --out OUT                         the whole way
 w2m reconstruct my_scan --out OUT --blocks-per-metre 2    smaller, coarser
 w2m reconstruct my_scan --out OUT --labels my_labels      with 2D label images
 w2m reconstruct my_scan --out OUT --from build            build again, all before kept
+w2m reconstruct my_scan --out OUT --method paper          the paper's steps alone
 w2m reconstruct my_scan --out OUT --set find.cluster_radius=3
 """
 
@@ -36,6 +37,9 @@ def run(
         Path | None, typer.Option("--labels", help="A folder of 2D label images, one a frame.")
     ] = None,
     labeller: Annotated[str, typer.Option("--labeller", help="auto, votes or geometric.")] = "auto",
+    method: Annotated[
+        str, typer.Option("--method", help="best, or paper: its steps and no others.")
+    ] = "best",
     mc_version: Annotated[
         str, typer.Option("--mc-version", help="The game version to write for.")
     ] = "1.20.1",
@@ -56,22 +60,21 @@ def run(
         start: the stage to begin at.
         labels: 2D label images.
         labeller: how cells are labelled.
+        method: how objects and poses are found.
         mc_version: the game version.
         settings: further parameters.
     """
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
-    from world2minecraft.parameters import Parameters, with_settings
+    from world2minecraft.parameters import Parameters, with_method, with_settings
 
-    chosen = with_settings(
-        Parameters(
-            voxel_m=voxel,
-            blocks_per_metre=blocks_per_metre,
-            labeller=labeller,
-            mc_version=mc_version,
-        ),
-        settings or [],
+    plain = Parameters(
+        voxel_m=voxel,
+        blocks_per_metre=blocks_per_metre,
+        labeller=labeller,
+        mc_version=mc_version,
     )
+    chosen = with_settings(with_method(plain, method), settings or [])
     compiling_note()
     with shown() as progress:
         facts = make(capture, out, chosen, start, labels, progress)
