@@ -15,8 +15,8 @@ from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.stands import STEP_M, Stands, find_stands
 from world2minecraft.types import Layout, Opening
 
-STOPS_PER_M2 = 0.9  # Of free floor; two at least, so that a place is seen from two sides.
-STOPS = (2, 9)
+STOPS_PER_M2 = 1.2  # Of free floor; four at least, so that a place is seen from several sides.
+STOPS = (4, 9)
 STAY_M = 0.6  # A stop takes as long as a walk of this length: one sweeps there.
 JUMP_M = 0.6  # Twice the longest step.
 SMOOTH_M = 0.5  # Nobody walks in steps of a grid.
