@@ -3,13 +3,15 @@
 ``python -m benchmarks.check_faithful [--split tune] [--difficulty noise ...] [--trials N]
 [--labels both] [--stages] [--keep DIR] [--json FILE] [--verbose]``
 
-One table for each labeller, with a row for each difficulty (means over its trials, sums for
-counts) and the targets under it. With ``--keep`` what is there already is not made again, so that
-a run that was cut off goes on. Seeds of ``--split test`` are for the last word alone: nobody tunes
+One table for each labeller, with a row for each difficulty (means over its trials) and the targets
+under it; ``clean`` are the trials of ``noise`` without noise and jitter. With ``--keep`` what is
+there already is not made again, so that a run that was cut off goes on; begin a new folder once
+rooms or stages have changed. Seeds of ``--split test`` are for the last word alone: nobody tunes
 on them.
 """
 
 import argparse
+import shutil
 import sys
 import tempfile
 import time
@@ -20,8 +22,9 @@ from typing import Any
 
 from rich.console import Console
 
-from benchmarks.faithful_table import rows_table, verdicts
+from benchmarks.faithful_table import rows_table, stages_table, verdicts
 from world2minecraft.evaluate import evaluate_reconstruction
+from world2minecraft.evaluate.stages import allowed_cells, stage_losses
 from world2minecraft.files import read_json, write_json
 from world2minecraft.parameters import Parameters, with_settings
 from world2minecraft.pipeline import reconstruct
@@ -46,23 +49,45 @@ def run_trial(
     trial: Trial, base: Path, labellers: Sequence[str], settings: Sequence[str], stages: bool
 ) -> list[dict[str, Any]]:
     """Make what is missing of a trial; return one row of facts for each labeller."""
-    capture = base / trial.name / "capture"
+    folder = base / trial.name
+    capture = folder / "capture"
+    begun = time.perf_counter()
     if not (capture / "truth.json").is_file():
         write_trial(trial, capture)
     rows = []
     for labeller in labellers:
-        out = base / trial.name / labeller
-        path = base / trial.name / f"{labeller}.json"
+        path = folder / f"{labeller}.json"
         facts = read_json(path) if path.is_file() else {}
         if not facts:
-            chosen = with_settings(Parameters(labeller=labeller), list(settings))
-            begun = time.perf_counter()
-            reconstruct(capture, out, chosen)
-            facts = evaluate_reconstruction(out, capture)
+            facts = _made(folder, labeller, settings)
+        if stages and "stages" not in facts:
+            facts["stages"] = stage_losses(folder / labeller, capture)
+        if "seconds" not in facts:
             facts["seconds"] = round(time.perf_counter() - begun, 1)
-            write_json(path, facts)
+        begun = time.perf_counter()
+        write_json(path, facts)
         rows.append({"trial": trial.name, "labels": labeller, "difficulty": group(trial), **facts})
     return rows
+
+
+def _made(folder: Path, labeller: str, settings: Sequence[str]) -> dict[str, Any]:
+    """Reconstruct a trial with a labeller and score it.
+
+    What comes before labels is the same for both labellers, and taken from the first.
+    """
+    capture, out, other = folder / "capture", folder / labeller, folder / LABELLERS[0]
+    chosen = with_settings(Parameters(labeller=labeller), list(settings))
+    if labeller != LABELLERS[0] and (folder / f"{LABELLERS[0]}.json").is_file():
+        shutil.copytree(other, out, dirs_exist_ok=True)
+        reconstruct(capture, out, chosen, start="label")
+    else:
+        reconstruct(capture, out, chosen)
+    facts = evaluate_reconstruction(out, capture)
+    if labeller == LABELLERS[0]:
+        allowed = allowed_cells(out, capture)["occupancy"]["miou"]
+        facts["allowed_miou"] = allowed
+        facts["share_of_allowed"] = facts["occupancy"]["miou"] / allowed if allowed else 1.0
+    return facts
 
 
 def group(trial: Trial) -> str:
@@ -86,7 +111,8 @@ def main(words: Sequence[str]) -> int:
     else:
         for job in jobs:
             rows += run_trial(*job)
-            print(f"{job[0].name}: {rows[-1]['seconds']:.0f} s", file=sys.stderr)
+            seconds = sum(row["seconds"] for row in rows[-len(labellers) :])
+            print(f"{job[0].name}: {seconds:.0f} s", file=sys.stderr, flush=True)
     minutes = (time.perf_counter() - begun) / 60
     console = Console(width=None if sys.stdout.isatty() else 190)
     for labeller in labellers:
@@ -94,6 +120,8 @@ def main(words: Sequence[str]) -> int:
         console.print(rows_table(f"{labeller}, split {chosen.split}", mine, chosen.verbose))
         for line in verdicts(labeller, mine):
             console.print(line)
+        if chosen.stages:
+            console.print(stages_table(f"{labeller}, what is left to lose", mine))
     console.print(f"{len(todo)} trials in {minutes:.1f} minutes, kept in {base}")
     if chosen.json:
         write_json(chosen.json, rows)

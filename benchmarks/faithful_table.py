@@ -51,6 +51,13 @@ COLUMNS = (
 )
 
 
+_NAMES = ("R", "IoU", "mIoU", "F1", "turned", "collide", "integrity")
+STAGE_COLUMNS = (
+    *(column for column in COLUMNS if column.name in _NAMES),
+    Column("in the world", lambda row: row["world"].get("right_class", math.nan)),
+)
+
+
 @dataclass(frozen=True)
 class Target:
     """A line of the issue: a figure of some trials must be at least, or at most, a limit."""
@@ -94,6 +101,19 @@ def rows_table(title: str, rows: Sequence[Row], verbose: bool = False) -> Table:
             for row in mine:
                 table.add_row(row["trial"], *(_text(column, [row]) for column in COLUMNS))
         table.add_row(f"[bold]{name} ({len(mine)})", *(_text(c, mine) for c in COLUMNS))
+    return table
+
+
+def stages_table(title: str, rows: Sequence[Row]) -> Table:
+    """Return the means of the scores with truth put in after each stage."""
+    table = Table(title=title, box=None, pad_edge=False, header_style="bold")
+    for name in ("difficulty", "truth after", *(column.name for column in STAGE_COLUMNS)):
+        table.add_column(name, justify="left" if name in ("difficulty", "truth after") else "right")
+    for group in dict.fromkeys(row["difficulty"] for row in rows):
+        mine = [row for row in rows if row["difficulty"] == group]
+        for stage in ("none", *mine[0]["stages"]):
+            those = mine if stage == "none" else [row["stages"][stage] for row in mine]
+            table.add_row(group, stage, *(_text(column, those) for column in STAGE_COLUMNS))
     return table
 
 

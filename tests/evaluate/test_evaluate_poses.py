@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.coordinates import look_at, rotation_about_z
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.evaluate.poses import pose_error, read_corrected, scale_error
+from world2minecraft.evaluate.poses import pose_error, scale_error
 
 EYES = np.array([[1.0, 2, 1.5], [3, 1, 1.4], [2, 3, 1.6], [0.5, 0.5, 1.2]])
 TRUE = [look_at(eye, np.array([2.0, 2.0, 1.0])) for eye in EYES]
@@ -35,15 +34,3 @@ def test_depth_scales_are_told_in_per_cent():
     error = scale_error([1.03, 0.97])
     assert error["scale_rms_percent"] == pytest.approx(3)
     assert error["scale_mean_percent"] == pytest.approx(0)
-
-
-def test_corrections_of_another_kind_are_named(tmp_path):
-    assert read_corrected(tmp_path) is None
-    np.savez(
-        tmp_path / "poses.npz",
-        names=np.array(["a", "b"]),
-        pose_change=np.eye(4)[None],
-        depth_scale=np.ones(2),
-    )
-    with pytest.raises(DamagedFileError, match=r"poses\.npz: must hold a change and a scale"):
-        read_corrected(tmp_path)

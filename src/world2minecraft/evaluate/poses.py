@@ -1,50 +1,16 @@
-"""How far the cameras' poses and the depths' scales are off, as stated and as corrected.
-
-``poses.npz`` of a run, where it has one, holds ``names``, ``pose_change`` float64 [F, 4, 4] (to
-be put before the stated pose) and ``depth_scale`` float64 [F] (to be multiplied by).
-"""
+"""How far the cameras' poses and the depths' scales are off, as stated and as corrected."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from world2minecraft.coordinates import invert_rigid
-from world2minecraft.errors import DamagedFileError
 from world2minecraft.evaluate.frames import UsedFrame
 from world2minecraft.evaluate.truth import Truth
-from world2minecraft.files import read_npz
-
-
-@dataclass(frozen=True, eq=False)
-class Corrected:
-    """What a run made of each frame's pose and depth, by name."""
-
-    pose_change: dict[str, np.ndarray]
-    depth_scale: dict[str, float]
-
-
-def read_corrected(out: Path) -> Corrected | None:
-    """Return the corrections of a run; None where it made none.
-
-    Raises:
-        DamagedFileError: ``poses.npz`` holds something else.
-    """
-    path = out / "poses.npz"
-    if not path.is_file():
-        return None
-    arrays = read_npz(path, ("names", "pose_change", "depth_scale"))
-    names = [str(name) for name in arrays["names"]]
-    changes, scales = arrays["pose_change"], arrays["depth_scale"]
-    if changes.shape != (len(names), 4, 4) or scales.shape != (len(names),):
-        raise DamagedFileError(path, "must hold a change and a scale for each of its names")
-    return Corrected(
-        dict(zip(names, changes.astype(np.float64), strict=True)),
-        dict(zip(names, scales.astype(np.float64).tolist(), strict=True)),
-    )
+from world2minecraft.exchange.poses import read_poses
 
 
 def pose_facts(out: Path, truth: Truth, frames: Sequence[UsedFrame]) -> dict[str, Any]:
@@ -55,10 +21,12 @@ def pose_facts(out: Path, truth: Truth, frames: Sequence[UsedFrame]) -> dict[str
     stated = [frame.camera_to_scan for frame in frames]
     scales = [(truth.depth_scale or {}).get(frame.name, 1.0) for frame in frames]
     facts = {"stated": pose_error(stated, true) | scale_error(scales)}
-    corrected = read_corrected(out)
-    if corrected is not None:
-        changes = [corrected.pose_change.get(frame.name, np.eye(4)) for frame in frames]
-        given = [corrected.depth_scale.get(frame.name, 1.0) for frame in frames]
+    if (out / "poses.npz").is_file():
+        found = read_poses(out / "poses.npz")
+        change_of = dict(zip(found.names, found.pose_change, strict=True))
+        scale_of = dict(zip(found.names, found.depth_scale.tolist(), strict=True))
+        changes = [change_of.get(frame.name, np.eye(4)) for frame in frames]
+        given = [scale_of.get(frame.name, 1.0) for frame in frames]
         moved = [change @ pose for change, pose in zip(changes, stated, strict=True)]
         left = [scale * own for scale, own in zip(scales, given, strict=True)]
         facts["corrected"] = pose_error(moved, true) | scale_error(left)
