@@ -118,7 +118,7 @@ def stages_table(title: str, rows: Sequence[Row]) -> Table:
 
 
 def verdicts(labeller: str, rows: Sequence[Row]) -> list[str]:
-    """Return a line for each target of the issue: the figure, the limit, met or missed."""
+    """Return a line for each target: the limit, the mean and the worst, met or missed."""
     lines = []
     for target in TARGETS:
         if target.labels not in ("", labeller):
@@ -128,9 +128,9 @@ def verdicts(labeller: str, rows: Sequence[Row]) -> list[str]:
         texts = []
         for name in groups:
             if target.difficulty in ("", name) and (target.difficulty or name != "clean"):
-                value = mean(column, [row for row in rows if row["difficulty"] == name])
-                if not math.isnan(value):
-                    texts.append(f"{name} {value:.{column.digits}f} {_verdict(target, value)}")
+                mine = [row for row in rows if row["difficulty"] == name]
+                if not math.isnan(mean(column, mine)):
+                    texts.append(f"{name} {_judged(target, column, mine)}")
         if texts:
             sign = ">=" if target.at_least else "<="
             lines.append(f"{target.column} {sign} {target.limit:g}: {', '.join(texts)}")
@@ -148,6 +148,10 @@ def _text(column: Column, rows: Sequence[Row]) -> str:
     return "-" if math.isnan(value) else f"{value:.{column.digits}f}"
 
 
-def _verdict(target: Target, value: float) -> str:
+def _judged(target: Target, column: Column, rows: Sequence[Row]) -> str:
+    """Return the mean, the worst trial's figure, and whether the mean meets the target."""
+    values = [value for row in rows if not math.isnan(value := column.read(row))]
+    value, worst = mean(column, rows), min(values) if target.at_least else max(values)
     met = value >= target.limit if target.at_least else value <= target.limit
-    return "[green]met[/]" if met else "[red]missed[/]"
+    verdict = "[green]met[/]" if met else "[red]missed[/]"
+    return f"{value:.{column.digits}f} (worst {worst:.{column.digits}f}) {verdict}"
