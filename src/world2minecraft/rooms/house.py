@@ -32,7 +32,7 @@ def generate_house(seed: int, *, rooms: int = 5, storeys: int = 1, clutter: floa
     plan = plan_house(rooms, storeys, rng)
     gaps = house_gaps(plan, rng)
     styles = [choose_style(rng) for _ in plan.cells]
-    items, rugs = furnish_cells(plan, gaps, styles, (seed, rooms, storeys, 1))
+    items, rugs = furnish_cells(plan, gaps, styles, clutter, (seed, rooms, storeys, 1))
     canvas = paint_house(plan, gaps, styles, items, rugs, rng)
     return Room(
         kind="house",

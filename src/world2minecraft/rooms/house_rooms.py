@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from world2minecraft.rooms.clutter import scatter
 from world2minecraft.rooms.decor import door
+from world2minecraft.rooms.galley import furnish_galley
 from world2minecraft.rooms.ground import Ground
 from world2minecraft.rooms.house_gaps import Gap
 from world2minecraft.rooms.house_plan import Cell, HousePlan
@@ -75,7 +77,11 @@ class Turned:
 
 
 def furnish_cells(
-    plan: HousePlan, gaps: tuple[Gap, ...], styles: list[Style], seed: tuple[int, ...]
+    plan: HousePlan,
+    gaps: tuple[Gap, ...],
+    styles: list[Style],
+    clutter: float,
+    seed: tuple[int, ...],
 ) -> tuple[list[list[Item]], list[tuple[Rug, ...]]]:
     """Return what stands and what lies in each cell, in the frame of the house."""
     items, rugs = [], []
@@ -84,7 +90,7 @@ def furnish_cells(
         leaves = [len(gap.cells) == 2 and gap.cells[0] == number for gap, _ in own]
         leaves = [leaf and gap.kind == "door" for leaf, (gap, _) in zip(leaves, own, strict=True)]
         holes = [hole for _, hole in own]
-        held, flat = _furnish(plan, cell, holes, leaves, styles[number], (*seed, number))
+        held, flat = _furnish(plan, cell, holes, leaves, styles[number], clutter, (*seed, number))
         front = [hole for gap, hole in own if gap.kind == "door" and len(gap.cells) == 1]
         bare = Turned(cell, 0)
         held += [
@@ -102,12 +108,14 @@ def _furnish(
     holes: list[Hole],
     leaves: list[bool],
     style: Style,
+    clutter: float,
     seed: tuple[int, ...],
 ) -> tuple[list[Item], tuple[Rug, ...]]:
     """Return what stands in a room; after many tries that fail, the bare room."""
     floor_z = cell.storey * plan.pitch_m
     for attempt in range(ATTEMPTS):
-        tried = _try_cell(plan, cell, holes, leaves, style, np.random.default_rng([*seed, attempt]))
+        rng = np.random.default_rng([*seed, attempt])
+        tried = _try_cell(plan, cell, holes, leaves, style, clutter, rng)
         if tried is not None:
             frame, room, rugs = tried
             held = [frame.item(item, floor_z) for item in room.items]
@@ -122,16 +130,19 @@ def _try_cell(
     holes: list[Hole],
     leaves: list[bool],
     style: Style,
+    clutter: float,
     rng: np.random.Generator,
 ) -> tuple[Turned, Plan, tuple[Rug, ...]] | None:
     """Furnish a room once; None where the recipe does not fit or blocks a way."""
     frame, room = _opened(plan, cell, holes, leaves, style, rng)
-    rugs = KINDS[cell.kind].furnish(room, style)
+    recipe = furnish_galley if cell.kind == "kitchen" else KINDS[cell.kind].furnish
+    rugs = recipe(room, style)
     inner = [frame.hole(hole) for hole in holes]
     steps = [_step_in(room, hole) for hole in inner if hole.kind != "window"]
     if rugs is None or not ways_are_clear(room, *steps):
         return None
     hang_curtains(room, tuple(inner), style.curtain)
+    scatter(room, clutter, rng, steps)
     return frame, room, rugs
 
 

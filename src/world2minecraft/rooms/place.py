@@ -12,6 +12,7 @@ import numpy as np
 
 from world2minecraft.coordinates import apply, rotation_about_z
 from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.metrics.layout import overlap_depth_m
 from world2minecraft.rooms.ground import TOUCH_M, Box, Ground, Rect, grown
 from world2minecraft.rooms.model import STEP_M, Model
 
@@ -39,6 +40,16 @@ class Item:
             self.x_m + half_x, self.y_m + half_y, self.z_m + h,
         )  # fmt: skip
 
+    @property
+    def center_m(self) -> np.ndarray:
+        """The middle of the box around it, float64 [3]."""
+        return np.array([self.x_m, self.y_m, self.z_m + self.model.size_m[2] / 2])
+
+    @property
+    def size_m(self) -> tuple[float, float, float]:
+        """The size of its model."""
+        return self.model.size_m
+
     def point(self, front_m: float, left_m: float) -> tuple[float, float]:
         """Return the place in the room of a point of the item's own frame."""
         turned = apply(rotation_about_z(self.yaw_deg), np.array([front_m, left_m, 0.0]))
@@ -48,6 +59,15 @@ class Item:
 def overlap(a: Box, b: Box) -> bool:
     """Tell whether two boxes share more than a face."""
     return all(a[n] < b[n + 3] - TOUCH_M and b[n] < a[n + 3] - TOUCH_M for n in range(3))
+
+
+def meet(a: Item, b: Item) -> bool:
+    """Tell whether two items share more than a face, as they are turned."""
+    if not overlap(a.box_m, b.box_m):
+        return False
+    if a.yaw_deg % 90 == 0 and b.yaw_deg % 90 == 0:
+        return True
+    return overlap_depth_m(a, b) > TOUCH_M
 
 
 class Plan:
@@ -74,12 +94,23 @@ class Plan:
         x, y = side.point(along_m, model.size_m[0] / 2 + gap_m)
         return snapped(Item(model, x, y, z_m, 90.0 * side.turn))
 
-    def fits(self, item: Item, *, may_block: bool = False) -> bool:
-        """Tell whether an item lies in the room and meets nothing (nor a reserved place)."""
+    def fits(self, item: Item, *, may_block: bool = False, among: list[Item] | None = None) -> bool:
+        """Tell whether an item lies in the room and meets nothing (nor a reserved place).
+
+        Args:
+            item: what is asked about.
+            may_block: whether reserved places may be taken.
+            among: the items that it must not meet; all for None.
+        """
         box = item.box_m
         inside = self.ground.holds(box)
-        others = [other.box_m for other in self.items] + ([] if may_block else self.reserved)
-        return inside and not any(overlap(box, other) for other in others)
+        others = self.items if among is None else among
+        kept = [] if may_block else self.reserved
+        return (
+            inside
+            and not any(overlap(box, other) for other in kept)
+            and not any(meet(item, other) for other in others)
+        )
 
     def add(self, item: Item | None, *, may_block: bool = False) -> Item | None:
         """Put an item in if it fits; return it, or None."""

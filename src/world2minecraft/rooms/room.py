@@ -6,6 +6,7 @@ import numpy as np
 
 from world2minecraft.errors import UnknownNameError, World2MinecraftError
 from world2minecraft.rooms import voxels
+from world2minecraft.rooms.clutter import scatter
 from world2minecraft.rooms.kinds import BASE_KINDS, KINDS, random_size
 from world2minecraft.rooms.openings import (
     Hole,
@@ -105,6 +106,7 @@ def _try_room(
     if rugs is None or not ways_are_clear(plan, door_step_m(plan, holes[0])):
         return None
     hang_curtains(plan, holes, style.curtain)
+    scatter(plan, clutter, np.random.default_rng([seed, 1 << 21]), [door_step_m(plan, holes[0])])
     items = [*plan.items, door_item(plan, holes[0], WHITE)]
     canvas = voxels.Canvas(plan.size_m)
     voxels.paint_shell(canvas, style, recipe.floor, rng)
