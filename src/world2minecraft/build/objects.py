@@ -7,6 +7,7 @@ import numpy as np
 
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.cells import shape_of_cells, without_crumbs
+from world2minecraft.build.fitting import best_step
 from world2minecraft.build.halves import FULL, slab_states
 from world2minecraft.build.hues import default_colour, spread
 from world2minecraft.build.idioms import Thing, idiom_box, put_idiom
@@ -26,6 +27,8 @@ from world2minecraft.minecraft.colours import colours_of
 from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
 
 CELLS = "cells"
+PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glare are not.
+LAST = {int(SemanticClass.CHAIR): 1, int(SemanticClass.TVS): 2, int(SemanticClass.OBJS): 3}
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 
@@ -41,10 +44,12 @@ class ObjectBuilder:
         coloured: np.ndarray,
         palette: Palette,
         parameters: BuildParameters,
+        footprints: Sequence[np.ndarray],
     ):
         free = (grid.labels == 0) & (grid.source != UNSEEN)
         self.exposed = beside(free)  # What lies inside an object says nothing of how it looks.
         self.open_share = volume_shares(free, grid, canvas.lattice)
+        self.within = _within(canvas, footprints)
         self.canvas, self.grid, self.palette = canvas, grid, palette
         self.colours, self.coloured = colours, coloured
         self.parameters = parameters
@@ -129,6 +134,11 @@ class ObjectBuilder:
         if _is_flush(halves > 0, window):
             halves = np.where((halves > 0) & window.wall, FULL, halves * window.free)
         else:
+            if number and class_id in LAST:  # Crumbs of furniture stay where they are.
+                step = self._step(shape.halves > 0, shape.low)
+                shape = shape._replace(low=shape.low + step, blocks=shape.blocks + step)
+                window = self._window(shape.low, shape.halves.shape)
+                halves = shape.halves[window.box]
             halves = without_crumbs(halves * window.free, window.held)
         thing = Thing(class_id, number)
         self._put_halves(window.low, halves, Hues(hues, shape.blocks), thing)
@@ -155,6 +165,7 @@ class ObjectBuilder:
             limit = self.parameters.chair_contradicted
         if self._contradicted(design, window) > limit:
             return False
+        design = design._replace(low=design.low + self._step(design.halves > 0, design.low))
         self._plate_over(design, thing.instance)
         window = self._window(design.low, design.halves.shape)
         hues = self._stretched(cells, placement, design.low, design.halves.shape)
@@ -175,6 +186,12 @@ class ObjectBuilder:
             for x, y in np.argwhere(design.halves[:, :, level] > 0) + design.low[:2]:
                 columns[x, y] = True
             self._put_plate(top, columns, number)
+
+    def _step(self, filled: np.ndarray, low: np.ndarray) -> np.ndarray:
+        """Return the step of at most a block, int64 [3], that keeps most of a thing whole."""
+        free = (self.canvas.states == 0) & self.within
+        stands = int(low[2]) == self.lattice.ground_under(float(low[2]))
+        return best_step(filled, low, free, self.open_share > OPEN, stands)
 
     def _contradicted(self, design: Design, window: "Window") -> float:
         """Return the share of a design's blocks that were seen free and nearly nothing else."""
@@ -219,7 +236,7 @@ class ObjectBuilder:
         inside = tuple(slice(int(a), int(b)) for a, b in zip(start, stop, strict=True))
         around = tuple(slice(int(a) - 1, int(b) + 1) for a, b in zip(start, stop, strict=True))
         stands = self.canvas.states[around] > 0
-        free = ~stands[1:-1, 1:-1, 1:-1]
+        free = ~stands[1:-1, 1:-1, 1:-1] & self.within[inside]
         wall = self.canvas.semantic[inside] == SemanticClass.WALL
         return Window(box, start, free, wall, beside(stands)[1:-1, 1:-1, 1:-1])
 
@@ -264,7 +281,7 @@ class ObjectBuilder:
             thing.class_id,
             self.palette,
             self.parameters,
-            self.parameters.object_colours,
+            PAINTS.get(thing.class_id, self.parameters.object_colours),
         )
         margin = self.parameters.slab_margin
         states[filled] = slab_states(states[filled], halves[filled], self.palette.slabs, margin)
@@ -299,5 +316,18 @@ def _is_flush(filled: np.ndarray, window: Window) -> bool:
     return bool((filled & window.wall).sum() > 0.5 * filled.sum())
 
 
+def _within(canvas: Canvas, footprints: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the blocks, bool [X, Y, Z], over the footprint of their storey or under its walls."""
+    within = np.zeros(canvas.states.shape, bool)
+    walls = canvas.semantic == SemanticClass.WALL
+    for (ground, top), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
+        columns = footprint | walls[:, :, ground:top].any(axis=2)
+        within[:, :, ground:top] = columns[:, :, None]
+    return within
+
+
 def _order(placement: Placement) -> tuple:
-    return placement.object_id, placement.center_m.tolist(), placement.template
+    """Large furniture first, then chairs, then what stands on things; templates before cells."""
+    rank = LAST.get(placement.class_id, 0)
+    own = placement.template == CELLS
+    return rank, own, placement.object_id, placement.center_m.tolist(), placement.template

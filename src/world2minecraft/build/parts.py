@@ -42,7 +42,9 @@ def design_of(placement: Placement, parts: Sequence[Part], lattice: Lattice) -> 
     height = int(np.ceil(top)) - base
     owner = np.zeros((count[0], count[1], 2 * height), np.int16)
     posts = np.zeros(owner.shape, bool)
-    order = sorted(range(len(parts)), key=lambda i: -_volume(parts[i].box_m))
+    # Posts first: a leg that is rounded up to the plate it carries must not pierce its corner.
+    thin = [_is_post(one.box_m * lattice.blocks_per_metre) for one in parts]
+    order = sorted(range(len(parts)), key=lambda i: (not thin[i], -_volume(parts[i].box_m)))
     scale = np.array([*(count / sizes[:2]), (top - bottom) / sizes[2]])
     for index in order:
         box = parts[index].box_m.reshape(2, 3) * lattice.blocks_per_metre
@@ -52,13 +54,18 @@ def design_of(placement: Placement, parts: Sequence[Part], lattice: Lattice) -> 
         lower = 2 * (bottom - base)
         spans.append(_span(2 * box[0, 2] + lower, 2 * box[1, 2] + lower, 2 * height))
         where = tuple(slice(*span) for span in spans)
-        wide = box[1] - box[0]
         owner[where] = index + 1
-        posts[where] = bool((wide[:2] < POST).all() and wide[2] > 1)
+        posts[where] = _is_post(box.ravel())
     for index in order:
         if parts[index].role == "seat":
             _rest_on_posts(index + 1, owner, posts)
     return _turned(owner, posts, middle, base, count, placement.quarter_turns)
+
+
+def _is_post(box: np.ndarray) -> bool:
+    """Whether a box, float64 [6] in blocks, is upright and thinner than a post both ways."""
+    wide = box[3:] - box[:3]
+    return bool((wide[:2] < POST).all() and wide[2] > 1)
 
 
 def _rest_on_posts(seat: int, owner: np.ndarray, posts: np.ndarray) -> None:

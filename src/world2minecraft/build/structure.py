@@ -32,6 +32,7 @@ OPEN_SHARE = 0.35
 STANDING_M = 1.0  # Free space up to here shows that one can stand on the floor under it.
 FOOTPRINT_SHARE = 0.25
 OPEN_FLOOR = 0.5  # A block of an upper floor of which more was seen free is no floor.
+LEVEL_SHARE = 0.2  # Of a wall's columns that reach a height, to draw the others up to it.
 FLOORED_SHARE = 0.3  # Of an upper room's plan; furniture and shade hide much of it.
 STAIRWELL_M = 0.7  # A narrower hole in an upper floor was left by noise.
 
@@ -73,6 +74,7 @@ def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParamete
         footprint = _footprint(grid, open_share, walls, lattice, (ground, top), open_floor)
         _floor(grid, footprint, walls, lattice, (ground, top), open_floor, floor, coloured)
         _up_and_down(walls, ceiling, open_share, lattice, (ground, top), parameters)
+        _level_tops(walls, patches, open_share, (ground, top))
         footprints.append(footprint)
         if ground > lattice.ground:
             _one_slab(ceiling, floor, ground - 1)
@@ -173,6 +175,23 @@ def _up_and_down(walls, ceiling, open_share, lattice, storey, parameters) -> Non
     reach = max(1, round(parameters.gap_m * lattice.blocks_per_metre))
     for z in range(max(1, level - reach), level + 1):
         own[:, :, z] |= own[:, :, z - 1] & shut[:, :, z]
+
+
+def _level_tops(walls, patches, open_share, storey) -> None:
+    """Raise, in place, the columns of each wall to the height that much of it reaches.
+
+    Where a scan looks down, walls end at a ragged line; what was seen free stays open.
+    """
+    ground, top = storey
+    own, shut = walls[:, :, ground:top], open_share[:, :, ground:top] < OPEN_SHARE
+    numbers = np.where(own, patches[:, :, ground:top], 0)
+    heights = np.arange(1, own.shape[2] + 1)
+    for number in np.unique(numbers[numbers > 0]).tolist():
+        tops = ((numbers == number) * heights).max(axis=2)
+        columns = tops > 0
+        level = int(np.quantile(tops[columns], 1 - LEVEL_SHARE, method="higher"))
+        for z in range(int(tops[columns].min()), level):
+            own[:, :, z] |= own[:, :, z - 1] & shut[:, :, z] & columns
 
 
 def _ceiling(grid, free, lattice, parameters, coloured) -> np.ndarray:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
+from world2minecraft.build.carrying import carry_floaters
 from world2minecraft.build.connect import connect
 from world2minecraft.build.exact import put_cells_exactly
 from world2minecraft.build.hues import cell_colours, one_paint, seen_colours
@@ -81,7 +82,9 @@ def _put_room(
     things = coloured & np.isin(grid.labels, OBJECT_CLASSES)
     painted = colours.copy()
     painted[things] = one_paint(colours[things])
-    ObjectBuilder(canvas, grid, painted, coloured, palette, parameters).put_all(placements)
+    builder = ObjectBuilder(canvas, grid, painted, coloured, palette, parameters, shell.footprints)
+    builder.put_all(placements)
+    carry_floaters(canvas)
     return shell.footprints
 
 

@@ -163,8 +163,8 @@ def kept_objects(
 ) -> list[int]:
     """Return the indices of objects that blocks still show in their place, as their class.
 
-    An object is kept where at least ``least_share`` of its cells lie in, or within one cell of, a
-    block of its own number and class.
+    An object is kept where at least ``least_share`` of its cells lie in, or within one block of, a
+    block of its own number and class: what stands on a table goes up to the next free block.
 
     Args:
         volume: what was built.
@@ -173,13 +173,14 @@ def kept_objects(
         least_share: how many of its cells are enough. Half: a template leaves out what is noise.
     """
     room_to_block = invert(volume.block_to_room)
+    reach_m = max(grid.voxel_m, 1 / volume.blocks_per_metre)
     shape = np.array(volume.states.shape)
     kept = []
     for index, one in enumerate(instances):
         centers_m = grid.origin_m + (one.cells + 0.5) * grid.voxel_m
         shown = np.zeros(len(centers_m), bool)
         for step in np.vstack([np.zeros((1, 3)), np.eye(3), -np.eye(3)]):
-            points = apply(room_to_block, centers_m + step * grid.voxel_m) - volume.corner
+            points = apply(room_to_block, centers_m + step * reach_m) - volume.corner
             blocks = np.floor(points + 1e-9).astype(np.int64)
             inside = ((blocks >= 0) & (blocks < shape)).all(axis=1)
             at = tuple(np.clip(blocks, 0, shape - 1).T)

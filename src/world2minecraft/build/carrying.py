@@ -1,0 +1,92 @@
+"""What hangs in the air is joined to what carries it, or dropped where it is a crumb.
+
+A scan loses thin things: the cord of a lamp, the bracket of a shelf, the foot of a screen. In the
+game such things would float.
+"""
+
+import numpy as np
+
+from world2minecraft.build.canvas import Canvas
+from world2minecraft.classes import OBJECT_CLASSES, STRUCTURE_CLASSES
+from world2minecraft.geometry.parts import connected_parts
+
+REACH_M = 1.25  # A cord or a bracket is no longer than this.
+CRUMB_BLOCKS = 2  # A smaller piece beside an object that stands is noise.
+CORD = "minecraft:chain[axis=y,waterlogged=false]"
+# Down first: what stands on something seldom hangs; of equal gaps the first wins.
+WAYS = ((0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1))
+
+
+def carry_floaters(canvas: Canvas) -> None:
+    """Join floating parts of objects to what carries them, in place, or take them away.
+
+    Parts touch by faces, edges or corners. A part is joined by the shortest straight way to
+    something carried: upward by a chain, else by more of its own block. One that has nothing
+    within reach goes down to whatever lies under it.
+    """
+    solid = np.isin(canvas.semantic, (*OBJECT_CLASSES, *STRUCTURE_CLASSES))
+    parts, count = connected_parts(solid)
+    structure = np.isin(canvas.semantic, STRUCTURE_CLASSES)
+    carried = np.zeros(count + 1, bool)
+    carried[np.unique(parts[structure])] = True
+    carried[0] = False
+    for number in np.flatnonzero(~carried[1:]) + 1:
+        blocks = np.argwhere(parts == number)
+        stands = carried[parts]
+        if _is_crumb(canvas, blocks, stands) or not _join(canvas, blocks, stands, parts):
+            canvas.put(tuple(blocks.T), 0, 0)
+            continue
+        carried[number] = True
+
+
+def _is_crumb(canvas: Canvas, blocks: np.ndarray, stands: np.ndarray) -> bool:
+    """Whether a part is small, and of no object or of one that stands elsewhere."""
+    if len(blocks) > CRUMB_BLOCKS:
+        return False
+    numbers = np.unique(canvas.instance[tuple(blocks.T)])
+    return bool((numbers == 0).all() or np.isin(numbers, canvas.instance[stands]).all())
+
+
+def _join(canvas: Canvas, blocks: np.ndarray, stands: np.ndarray, parts: np.ndarray) -> bool:
+    """Fill the shortest way from a part to something carried; False where there is none."""
+    reach = max(1, round(REACH_M * canvas.lattice.blocks_per_metre))
+    found = _shortest(blocks, stands, parts, reach) or _shortest(
+        blocks, stands, parts, stands.shape[2], WAYS[:1]
+    )
+    if found is None:
+        return False
+    start, way, gap = found
+    at = tuple(start.tolist())
+    state = canvas.id_of(CORD) if way == WAYS[-1] else int(canvas.states[at])
+    for step in range(1, gap + 1):
+        place = tuple((start + np.array(way) * step).tolist())
+        canvas.put(place, state, int(canvas.semantic[at]), int(canvas.instance[at]))
+        parts[place] = parts[at]
+    return True
+
+
+def _shortest(
+    blocks: np.ndarray,
+    stands: np.ndarray,
+    parts: np.ndarray,
+    reach: int,
+    ways: tuple[tuple[int, int, int], ...] = WAYS,
+) -> tuple[np.ndarray, tuple[int, int, int], int] | None:
+    """Return the block to start from, the way and the number of blocks between, or None."""
+    shape = np.array(stands.shape)
+    middle = blocks.mean(axis=0)
+    best: tuple[tuple[float, ...], np.ndarray, tuple[int, int, int], int] | None = None
+    for order, way in enumerate(ways):
+        for start in blocks:
+            for gap in range(1, reach + 1):
+                place = start + np.array(way) * (gap + 1)
+                between = start + np.array(way) * gap
+                if (place < 0).any() or (place >= shape).any() or parts[tuple(between)]:
+                    break
+                if stands[tuple(place)]:
+                    off = float(np.abs(start - middle).sum())
+                    key = (float(gap), float(order), off)
+                    if best is None or key < best[0]:
+                        best = key, start, way, gap
+                    break
+    return None if best is None else best[1:]

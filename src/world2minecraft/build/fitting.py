@@ -1,0 +1,42 @@
+"""Where on the lattice a thing goes whole: moved by a block where others stand in its place.
+
+Boxes that touch in metres may share a layer of blocks once each is snapped to the lattice. What
+comes later then loses a side, or all of itself where it is small; a step of one block keeps it
+whole.
+"""
+
+import numpy as np
+
+STEP_COST = 0.25  # Share of its blocks that a thing gives up before it is moved.
+LIFT_COST = 0.6  # The same before it is lifted: a book that sinks into a table still lies on it.
+OPEN_COST = 0.5  # A block in space that was seen free counts half as much as a taken one.
+SIDEWAYS = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))
+UP = ((0, 0, 1),)
+
+
+def best_step(
+    filled: np.ndarray, low: np.ndarray, free: np.ndarray, opened: np.ndarray, stands: bool
+) -> np.ndarray:
+    """Return the step, int64 [3], after which least of a thing's blocks are taken.
+
+    Args:
+        filled: bool [X, Y, Z], the blocks of the thing.
+        low: int [3], where it begins.
+        free: bool, the blocks of the whole lattice that nothing takes.
+        opened: bool of that shape, the blocks that were seen free.
+        stands: whether it stands on a floor; what does not may be lifted onto what it lies on.
+    """
+    cells = np.argwhere(filled) + low
+    steps = ((0, 0, 0), *(() if stands else UP), *SIDEWAYS)
+    costs = []
+    for step in steps:
+        cost = LIFT_COST if step in UP else STEP_COST if any(step) else 0.0
+        moved = cells + step
+        inside = ((moved >= 0) & (moved < free.shape)).all(axis=1)
+        at = tuple(np.clip(moved, 0, np.array(free.shape) - 1).T)
+        taken = ~(free[at] & inside)
+        lost = taken.mean() if len(cells) else 0.0
+        if step not in UP:
+            lost += OPEN_COST * (opened[at] & ~taken).mean() if len(cells) else 0.0
+        costs.append(round(float(lost) + cost, 9))
+    return np.array(steps[int(np.argmin(costs))], np.int64)
