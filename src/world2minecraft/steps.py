@@ -11,6 +11,7 @@ import numpy as np
 from world2minecraft.build import build_volume, write_build
 from world2minecraft.exchange.centers import write_centers
 from world2minecraft.exchange.evidence import read_evidence
+from world2minecraft.exchange.layout import write_layouts
 from world2minecraft.exchange.objects import (
     read_objects,
     read_placements,
@@ -24,20 +25,32 @@ from world2minecraft.exchange.rooms import read_rooms
 from world2minecraft.exchange.scan import read_room_size
 from world2minecraft.find import find_objects
 from world2minecraft.furnish import furnish
-from world2minecraft.fuse import close_structure, read_out, remove_floaters
-from world2minecraft.label import labeller
+from world2minecraft.fuse import (
+    calibrate,
+    close_structure,
+    confidence_table,
+    read_out,
+    remove_floaters,
+)
+from world2minecraft.label import find_structure, labeller
 from world2minecraft.parameters import Parameters
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 
 def label_stage(folder: Path, chosen: Parameters) -> None:
-    """``evidence.npz`` -> ``room.npz``: what each cell is, cleaned."""
+    """``evidence.npz`` -> ``room.npz``, what each cell is, cleaned; ``layout.json``, the rooms."""
     evidence = read_evidence(folder / "evidence.npz")
     grid = remove_floaters(read_out(evidence), chosen.clean)
+    write_layouts(folder / "layout.json", find_structure(grid, evidence))
+    write_room(folder / "room.npz", labelled(grid, evidence, chosen), evidence.scan_to_room)
+
+
+def labelled(grid: OccupancyGrid, evidence: FusedEvidence, chosen: Parameters) -> OccupancyGrid:
+    """Return the cleaned read-out with a class and a calibrated confidence for each cell."""
     voted = bool(evidence.votes.any())
     name = ("votes" if voted else "geometric") if chosen.labeller == "auto" else chosen.labeller
     grid = close_structure(labeller(name).label(grid, evidence), chosen.clean)
-    write_room(folder / "room.npz", grid, evidence.scan_to_room)
+    return calibrate(grid, evidence, confidence_table(name))
 
 
 def find_stage(folder: Path, chosen: Parameters) -> None:

@@ -1,15 +1,19 @@
 """Stage 4: what each occupied cell is.
 
 A labeller takes the grid and the evidence behind it and gives the grid back with a class and a
-confidence for each occupied cell. Evidence wins: observed cells stay occupied, but for the spill
-of the floor, which is carried down. ``LABELLERS`` holds the built-in ones; others join through the
-entry point group ``world2minecraft.labeller``.
+confidence for each occupied cell. Evidence wins: observed cells stay occupied, but for those of
+floors, ceilings and walls, which are pulled into the one layer that holds their plane's matter.
+``find_structure`` gives the rooms that these planes form. ``LABELLERS`` holds the built-in ones;
+others join through the entry point group ``world2minecraft.labeller``.
 """
 
 from typing import Protocol
 
+from world2minecraft.label.layouts import find_structure
 from world2minecraft.registry import Registry
 from world2minecraft.types import FusedEvidence, OccupancyGrid
+
+__all__ = ["LABELLERS", "Labeller", "find_structure", "labeller"]
 
 LABELLERS = Registry(
     "labeller",

@@ -10,13 +10,12 @@ import numpy as np
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.label.furniture import label_furniture
-from world2minecraft.label.horizontal import find_ceiling, find_floor
-from world2minecraft.label.openings import read_wall
 from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.screens import label_screens
+from world2minecraft.label.storeys import find_storeys
 from world2minecraft.label.straighten import Straightening
+from world2minecraft.label.structure import structure_of
 from world2minecraft.label.surface import surface_of
-from world2minecraft.label.walls import find_walls
 from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 # How far a class may be trusted: the share of its cells that were right on generated rooms, objects
@@ -50,23 +49,27 @@ class GeometricLabeller:
             ValueError: grid and evidence do not lie on the same cells.
         """
         surface = surface_of(grid, evidence)
-        structure = self.parameters.structure
-        floor = find_floor(surface, structure)
-        ceiling, ceiling_m = find_ceiling(surface, structure)
-        wall, walls = find_walls(surface, ceiling, ceiling_m, structure)
-        rest = surface.occupied & ~(floor.cells | floor.spill | ceiling | wall)
         labels = np.array(grid.labels)
         labels[surface.occupied] = SemanticClass.OBJS
-        runs = [run for run, _ in walls]
-        rest &= ~label_screens(surface, rest, runs, labels, self.parameters.pieces)
-        label_furniture(surface, rest, wall, labels, self.parameters)
         straight = Straightening(surface)
-        for _, relief in walls:
-            straight.add(relief, *read_wall(surface, relief, structure))
-        if ceiling_m is not None:
-            straight.add_level(ceiling, 1, SemanticClass.CEILING)
-        straight.add_level(floor.cells | floor.spill, -1, SemanticClass.FLOOR, 0.0)
+        for storey in find_storeys(surface, self.parameters.structure):
+            part = straight.storey(storey)
+            self._label_storey(part, storey.part(labels))
         return _trusted(straight.applied(grid, labels)), straight.origin
+
+    def _label_storey(self, straight: Straightening, labels: np.ndarray) -> None:
+        """Write the classes of a storey to ``labels`` [X, Y, Z] and pull its planes straight."""
+        surface = straight.surface
+        structure = structure_of(surface, self.parameters.structure)
+        rest, floor = structure.rest, structure.floor
+        runs = [wall.run for wall in structure.walls]
+        rest &= ~label_screens(surface, rest, runs, labels, self.parameters.pieces)
+        label_furniture(surface, rest, structure.wall, labels, self.parameters)
+        for wall in structure.walls:
+            straight.add(wall.relief, wall.face.classes, wall.face.depth_m)
+        if structure.ceiling_m is not None:
+            straight.add_level(structure.ceiling, 1, SemanticClass.CEILING)
+        straight.add_level(floor.cells | floor.spill, -1, SemanticClass.FLOOR, 0.0)
 
 
 def _trusted(grid: OccupancyGrid) -> OccupancyGrid:

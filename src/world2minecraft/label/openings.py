@@ -1,8 +1,13 @@
-"""Windows and doors: flat parts of a wall that lie back from its plane.
+"""Windows, doors and doorways: what is cut into a wall.
 
-Glass gives depth seldom, and then lies some centimetres behind the wall. What stands back so and
-begins above the floor is a window; what reaches down to the floor is a door leaf, class objs.
+Glass gives depth seldom, and then lies some centimetres behind the wall; a door leaf lies as deep.
+What stands back so and begins above the floor is a window; what reaches down to the floor is a
+door leaf, class objs. Where rays went through the wall there is an opening too: a window without
+glass, or a doorway down to the floor.
 """
+
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from scipy import ndimage
@@ -14,47 +19,155 @@ from world2minecraft.label.parameters import StructureParameters, within
 from world2minecraft.label.relief import Relief
 from world2minecraft.label.surface import Surface
 
+Kind = Literal["window", "door", "doorway"]
+CLASS_OF_KIND = {"window": SemanticClass.WINDOW, "door": SemanticClass.OBJS}
 
-def read_wall(
-    surface: Surface, relief: Relief, parameters: StructureParameters
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return what each place of a wall is, and how deep it lies.
 
-    Returns:
-        ``classes`` uint8 [A, B]: wall, window, or objs for the leaf of a door; ``depth_m`` float
-        [A, B] along the relief's axis 0, that of the whole plane or of the whole opening.
-    """
+@dataclass(frozen=True)
+class Gap:
+    """An opening of a wall, in metres along the wall and up from the floor."""
+
+    kind: Kind
+    along_m: tuple[float, float]
+    height_m: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class WallFace:
+    """What each place of a wall is, seen face on."""
+
+    classes: np.ndarray  # uint8 [A, B]: wall, window, or objs for the leaf of a door
+    depth_m: np.ndarray  # float [A, B]: how deep it lies, along the relief's axis 0
+    gaps: tuple[Gap, ...]
+
+
+def read_wall(surface: Surface, relief: Relief, parameters: StructureParameters) -> WallFace:
+    """Return what the places of a wall are, and the openings in it."""
+    face = _Face(surface, relief, parameters)
     low, high = parameters.opening_depth_m
-    classes = np.full(relief.weight.shape, SemanticClass.WALL, np.uint8)
-    depth_m = relief.plane_m.copy()
-    gap = relief.gap_m
-    recessed = relief.seen & (gap >= low) & (gap <= high)
-    plane = relief.seen & (np.abs(gap) < low)
-    parts, count = connected_parts(opened(recessed))
-    bottom_m = surface.origin_m[2] + relief.box[2].start * surface.voxel_m
-    for number, box in enumerate(ndimage.find_objects(parts, count), 1):
-        part = parts == number
-        kind = _kind(part[box], bottom_m + box[1].start * surface.voxel_m, surface, parameters)
-        if kind is None or _framed(part, plane) < parameters.frame_share:
-            continue
-        whole = grown(part) & recessed
-        classes[whole] = kind
-        depth_m[whole] += np.median(gap[whole])
-    return classes, depth_m
+    face.cut(relief.seen & _between(relief.gap_m, low, high))
+    face.cut_leaves()
+    face.hang(relief.seen & _between(relief.gap_m, *parameters.hung_m))
+    face.pass_through(_passed(surface, relief))
+    return WallFace(face.classes, face.depth_m, tuple(face.gaps))
+
+
+class _Face:
+    """A wall that is being read: each step looks at the places that none before has claimed."""
+
+    def __init__(self, surface: Surface, relief: Relief, parameters: StructureParameters):
+        self.surface, self.relief, self.parameters = surface, relief, parameters
+        self.classes = np.full(relief.weight.shape, SemanticClass.WALL, np.uint8)
+        self.depth_m = relief.plane_m.copy()
+        self.plane = relief.seen & (np.abs(relief.gap_m) < parameters.opening_depth_m[0])
+        self.gaps: list[Gap] = []
+
+    def cut(self, recessed: np.ndarray) -> None:
+        """Claim the windows and the leaves of doors that lie well behind the face."""
+        for part in _parts(opened(recessed)):
+            kind = _kind(part, self._metres(part), self.surface.voxel_m, self.parameters)
+            if kind is None or _framed(part, self.plane) < self.parameters.frame_share:
+                continue
+            depth = float(np.median(self.relief.gap_m[part]))
+            # The rim of an opening is a mean of both depths.
+            whole = part | (grown(part) & self.relief.seen & (self.relief.gap_m >= depth / 2))
+            self._claim(whole, CLASS_OF_KIND[kind], depth)
+            self._add_gap(kind, whole)
+
+    def cut_leaves(self) -> None:
+        """Claim the leaves of doors that lie hardly behind the face, and differ in colour."""
+        relief, parameters = self.relief, self.parameters
+        gap = ndimage.median_filter(relief.gap_m, 3)
+        inside = relief.seen & (self.classes == SemanticClass.WALL)
+        leaf = inside & (gap >= parameters.leaf_depth_m) & (gap < parameters.opening_depth_m[0])
+        for part in _parts(opened(leaf)):
+            along, height = self._metres(part)
+            wide = within(along[1] - along[0], parameters.leaf_width_m)
+            high = within(height[1], parameters.leaf_height_m) and height[0] <= 0.4
+            if wide and high and part.sum() >= 0.6 * _box_cells(part):
+                self._claim(part, SemanticClass.OBJS, float(np.median(relief.gap_m[part])))
+                self._add_gap("door", part)
+
+    def hang(self, raised: np.ndarray) -> None:
+        """Claim what hangs flat on the wall: pictures, boards, mirrors."""
+        for part in _parts(opened(raised & (self.classes == SemanticClass.WALL))):
+            flat = part.sum() >= 0.6 * _box_cells(part)
+            if flat and part.sum() * self.surface.voxel_m**2 >= self.parameters.hung_area_m2:
+                depth = float(np.median(self.relief.gap_m[part]))
+                rim = grown(part) & self.relief.seen & (self.relief.gap_m <= depth / 2)
+                self._claim(part | rim, SemanticClass.OBJS, depth)
+
+    def pass_through(self, passed: np.ndarray) -> None:
+        """Note the openings that rays went through."""
+        for part in _parts(opened(passed)):
+            kind = _kind(part, self._metres(part), self.surface.voxel_m, self.parameters)
+            if kind is not None and _framed(part, self.plane) >= self.parameters.frame_share:
+                self._add_gap("doorway" if kind == "door" else kind, part)
+
+    def _claim(self, places: np.ndarray, kind: SemanticClass, gap_m: float) -> None:
+        self.classes[places] = kind
+        self.depth_m[places] = self.relief.plane_m[places] + gap_m
+
+    def _add_gap(self, kind: Kind, part: np.ndarray) -> None:
+        along, height = self._metres(part)
+        low = 0.0 if kind != "window" else height[0]
+        self.gaps.append(Gap(kind, along, (low, height[1])))
+
+    def _metres(self, part: np.ndarray) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Return where a part begins and ends along the wall, and above the floor."""
+        relief, voxel_m = self.relief, self.surface.voxel_m
+        corner = self.surface.origin_m[1 - relief.axis] + relief.box[1].start * voxel_m
+        bottom = self.surface.origin_m[2] + relief.box[2].start * voxel_m
+        a, b = np.nonzero(part)
+        along = (float(corner + a.min() * voxel_m), float(corner + (a.max() + 1) * voxel_m))
+        low, high = bottom + b.min() * voxel_m, bottom + (b.max() + 1) * voxel_m
+        return along, (float(max(low, 0.0)), float(high))
+
+
+def _parts(mask: np.ndarray) -> list[np.ndarray]:
+    parts, count = connected_parts(mask)
+    return [parts == number for number in range(1, count + 1)]
+
+
+def _box_cells(part: np.ndarray) -> int:
+    """Return how many places the box around a part has."""
+    a, b = np.nonzero(part)
+    return int((np.ptp(a) + 1) * (np.ptp(b) + 1))
+
+
+def _between(values: np.ndarray, low: float, high: float) -> np.ndarray:
+    """Return where values lie within bounds, both included."""
+    return (values >= low) & (values <= high)
+
+
+def _passed(surface: Surface, relief: Relief) -> np.ndarray:
+    """Return bool [A, B]: rays went through the wall here, and it was not seen."""
+    free = relief.of(surface.free)
+    edge_m = relief.edge_m(surface)
+    layer = np.floor((relief.plane_m - edge_m) / surface.voxel_m).astype(int)
+    layers = np.arange(free.shape[0])[:, None, None]
+    through = [(free & (layers == layer + step)).any(axis=0) for step in (0, 1)]
+    return through[0] & through[1] & ~relief.seen
 
 
 def _kind(
-    part: np.ndarray, bottom_m: float, surface: Surface, parameters: StructureParameters
-) -> SemanticClass | None:
-    """Return what a recessed part, seen face on, is; None where it is too small or ragged."""
-    width, height = np.array(part.shape) * surface.voxel_m
-    if part.sum() * surface.voxel_m**2 < parameters.opening_area_m2 or part.mean() < 0.5:
+    part: np.ndarray,
+    metres: tuple[tuple[float, float], tuple[float, float]],
+    voxel_m: float,
+    parameters: StructureParameters,
+) -> Literal["window", "door"] | None:
+    """Return what a part, seen face on, is; None where it is too small or ragged."""
+    (left, right), (bottom, top) = metres
+    width, height = right - left, top - bottom
+    if part.sum() * voxel_m**2 < parameters.opening_area_m2:
+        return None
+    if part.sum() < 0.5 * _box_cells(part):
         return None
     sized = within(width, parameters.window_size_m) and height >= parameters.window_size_m[0]
-    if sized and bottom_m >= parameters.window_sill_m:
-        return SemanticClass.WINDOW
+    if sized and bottom >= parameters.window_sill_m:
+        return "window"
     leaf = within(width, parameters.door_width_m) and height >= parameters.door_height_m
-    return SemanticClass.OBJS if leaf else None
+    return "door" if leaf else None
 
 
 def _framed(part: np.ndarray, plane: np.ndarray) -> float:

@@ -17,6 +17,9 @@ class StructureParameters:
     spill_m: a floor point may read this high: three sigma of the sensor model at 3 m.
     ceiling_min_m: nothing lower is a ceiling; doors are 2 m high.
     ceiling_area_m2: less may be the underside of a cupboard or a lamp.
+    storey_m: floors of two storeys are this far apart at least; a cellar is lower than a room.
+    standing_m: over a floor is so much free space; over a wardrobe is not.
+    floor_area_m2: the least seen part of another storey's floor; no bed or table is as large.
     plane_gate_m: a cell's mean surface point lies this near its plane: three sigma of the sensor
         model at 3 m, and less than the depth of a cupboard or of a hung screen.
     wall_area_m2: the least seen part of a wall: 0.5 m of it up to eye height, half hidden.
@@ -35,6 +38,10 @@ class StructureParameters:
     opening_depth_m: how far windows and door leaves lie behind the face of their wall: from the
         sensor's noise up to the depth that a wall's cells may have.
     opening_area_m2: a small window.
+    leaf_depth_m, leaf_width_m, leaf_height_m: a closed door whose leaf lies hardly behind the
+        wall: deeper than the noise of a wall's relief, as wide and as high as doors are.
+    hung_m, hung_area_m2: how far before a wall, as negative depth, flat things hang, and the
+        least of them; the noise of a wall's relief is 3 to 5 mm.
     window_sill_m, window_size_m, door_width_m, door_height_m: catalogue; a window begins above
         its sill, a door below.
     frame_share: of the ring around an opening this share is wall; curtains hide the rest. Trial.
@@ -43,6 +50,9 @@ class StructureParameters:
     spill_m: float = 0.05
     ceiling_min_m: float = 1.9
     ceiling_area_m2: float = 1.0
+    storey_m: float = 2.0
+    standing_m: float = 1.5
+    floor_area_m2: float = 2.5
     plane_gate_m: float = 0.05
     wall_area_m2: float = 0.6
     wall_top_m: float = 1.3
@@ -59,6 +69,11 @@ class StructureParameters:
     full_share: float = 0.4
     opening_depth_m: Range = (0.035, 0.16)
     opening_area_m2: float = 0.25
+    leaf_depth_m: float = 0.008
+    leaf_width_m: Range = (0.6, 1.15)
+    leaf_height_m: Range = (1.75, 2.3)
+    hung_m: Range = (-0.07, -0.015)
+    hung_area_m2: float = 0.05
     window_sill_m: float = 0.3
     window_size_m: Range = (0.35, 4.0)
     door_width_m: Range = (0.55, 1.9)

@@ -38,6 +38,12 @@ class Relief:
         """How far behind the fitted plane each place lies, float [A, B]."""
         return self.depth_m - self.plane_m
 
+    def edge_m(self, surface: Surface) -> float:
+        """Return where along axis 0 the first layer of the box begins."""
+        cells = np.array([0, surface.occupied.shape[self.axis]])
+        ends = surface.origin_m[self.axis] + cells * surface.voxel_m
+        return float(min(self.sign * ends)) + self.box[0].start * surface.voxel_m
+
     def of(self, values: np.ndarray) -> np.ndarray:
         """Return the view [N, A, B] of an array [X, Y, Z] that this relief is about."""
         return turned(values, self.axis, self.sign)[self.box]

@@ -4,12 +4,14 @@ Noise scatters a wall over two layers. Only cells of the plane itself move, and 
 stands before it stays. A cell that was moved takes its colour and confidence with it.
 """
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
 
 from world2minecraft.classes import UNKNOWN, SemanticClass
 from world2minecraft.label.relief import SOLID_M, Relief, relief_of
+from world2minecraft.label.storeys import Storey
 from world2minecraft.label.surface import Surface, turned
 from world2minecraft.types import COMPLETED, UNSEEN, OccupancyGrid
 
@@ -23,6 +25,14 @@ class Straightening:
         self.labels = np.zeros(shape, np.uint8)  # The class of each cell that is of a plane.
         self.origin = np.arange(np.prod(shape)).reshape(shape)  # Where its surface was seen.
         self.before, self.behind = np.zeros((2, *shape), bool)  # Cells that a plane has left.
+
+    def storey(self, storey: Storey) -> "Straightening":
+        """Return the part that is about one storey; what is added to it counts in the whole."""
+        part = copy(self)
+        part.surface = storey.surface(self.surface)
+        for name in ("labels", "origin", "before", "behind"):
+            setattr(part, name, storey.part(getattr(self, name)))
+        return part
 
     def add(self, relief: Relief, classes: np.ndarray, depth_m: np.ndarray) -> None:
         """Pull a plane straight.
@@ -83,10 +93,5 @@ class Straightening:
 
     def _layer(self, relief: Relief, depth_m: np.ndarray) -> np.ndarray:
         """Return the layer of the relief's box in which a surface at a depth has its matter."""
-        surface, axis = self.surface, relief.axis
-        ends = surface.origin_m[axis] + np.array([0, surface.occupied.shape[axis]]) * (
-            surface.voxel_m
-        )
-        edge = min(relief.sign * ends)
-        layer = np.floor((depth_m + SOLID_M - edge) / surface.voxel_m + 1e-9).astype(int)
-        return layer - relief.box[0].start
+        inside_m = depth_m + SOLID_M - relief.edge_m(self.surface)
+        return np.floor(inside_m / self.surface.voxel_m + 1e-9).astype(int)

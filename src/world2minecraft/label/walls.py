@@ -18,6 +18,8 @@ from world2minecraft.label.relief import Relief, relief_of
 from world2minecraft.label.surface import Surface, turned
 
 DIRECTIONS = ((0, 1), (0, -1), (1, 1), (1, -1))  # The axis a wall is square to, the way out.
+HIGH_M = 100.0  # Over everything.
+OPEN_SHARE = 0.5  # No wall is passed over by rays along half of its length.
 MAX_PLANES = 24  # For each direction: a bound on the search, well above any room's walls.
 
 
@@ -35,7 +37,7 @@ class WallRun:
 
 def find_walls(
     surface: Surface,
-    ceiling: np.ndarray,
+    level: np.ndarray,
     ceiling_m: float | None,
     parameters: StructureParameters,
 ) -> tuple[np.ndarray, list[tuple[WallRun, Relief]]]:
@@ -43,16 +45,17 @@ def find_walls(
 
     Args:
         surface: the room.
-        ceiling: bool [X, Y, Z], its cells.
+        level: bool [X, Y, Z], the cells of floor and ceiling.
         ceiling_m: the ceiling's height, None where it was not seen.
         parameters: the thresholds.
     """
     cells = np.zeros(surface.occupied.shape, bool)
     found: list[tuple[WallRun, Relief]] = []
     for axis, sign in DIRECTIONS:
-        view = _Turned(surface, ceiling, axis, sign)
+        view = _Turned(surface, level, axis, sign)
         runs = list(_runs(view, ceiling_m, parameters))
         runs = [run for run in runs if not _is_shadow(run, runs, parameters)]
+        runs = [run for run in runs if not _is_open_above(run, view, ceiling_m)]
         runs = [run for run in runs if not _is_furniture(run, runs, ceiling_m, view, parameters)]
         for run in runs:
             box, on = _marked(view, run, parameters)
@@ -64,11 +67,12 @@ def find_walls(
 class _Turned:
     """A room's arrays turned so that axis 0 leads outward, axis 1 along the wall, axis 2 up."""
 
-    def __init__(self, surface: Surface, ceiling: np.ndarray, axis: int, sign: int):
+    def __init__(self, surface: Surface, level: np.ndarray, axis: int, sign: int):
         self.axis, self.sign, self.voxel_m = axis, sign, surface.voxel_m
         self.above_floor = max(surface.floor_layer + 1, 0)
-        self.occupied = self.turn(surface.occupied & ~ceiling)
+        self.occupied = self.turn(surface.occupied & ~level)
         self.free = self.turn(surface.free)
+        self.layers_below = surface.layers_below
         self.outward_m = sign * self.turn(surface.points_m[..., axis])
         self.height_m = self.turn(surface.points_m[..., 2])
         ends = surface.origin_m[axis] + np.array([0, surface.occupied.shape[axis]]) * self.voxel_m
@@ -82,7 +86,7 @@ def _runs(
     view: _Turned, ceiling_m: float | None, parameters: StructureParameters
 ) -> Iterator[WallRun]:
     """Yield the planes that may be walls, split where they stop for long."""
-    fronts = view.occupied & _free_before(view.free)
+    fronts = view.occupied & _facing(view.free)
     fronts[:, :, : view.above_floor] = False
     hidden = fronts & ~_passed_behind(view, parameters)
     yield from _peeled(view, hidden, parameters, parameters.wall_top_m)
@@ -92,6 +96,17 @@ def _runs(
             width = (run.span[1] - run.span[0] + 1) * view.voxel_m
             if run.area_m2 >= parameters.full_share * width * ceiling_m:
                 yield run
+
+
+def _facing(free: np.ndarray) -> np.ndarray:
+    """Return where a surface would face the room: one of the two cells before it is free.
+
+    The second counts only where nothing behind is free: else it is the far face of a thin wall.
+    """
+    next_, second = np.zeros((2, *free.shape), bool)
+    next_[1:] = free[:-1]
+    second[2:] = free[:-2]
+    return next_ | (second & ~_free_before(free[::-1])[::-1])
 
 
 def _free_before(free: np.ndarray) -> np.ndarray:
@@ -157,6 +172,16 @@ def _is_shadow(run: WallRun, runs: list[WallRun], parameters: StructureParameter
         if near and inside and wall.area_m2 > 1.5 * run.area_m2:
             return True
     return False
+
+
+def _is_open_above(run: WallRun, view: _Turned, ceiling_m: float | None) -> bool:
+    """Return whether rays passed over a run: a door that stands open, a wardrobe, a balustrade."""
+    layer = int(np.floor((run.outward_m - view.edge_m) / view.voxel_m))
+    low = view.layers_below(run.top_m + 2 * view.voxel_m)
+    high = view.layers_below(HIGH_M if ceiling_m is None else ceiling_m - view.voxel_m)
+    over = view.free[layer + 1 : layer + 3, run.span[0] : run.span[1] + 1, low:high]
+    passed = over.all(axis=0).sum(axis=1) >= 2
+    return bool(passed.size and passed.mean() >= OPEN_SHARE)
 
 
 def _is_furniture(

@@ -1,0 +1,49 @@
+"""The structure of one storey: floor, ceiling and walls, and what is cut into the walls."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.label.horizontal import Floor, find_ceiling, find_floor
+from world2minecraft.label.openings import WallFace, read_wall
+from world2minecraft.label.parameters import StructureParameters
+from world2minecraft.label.relief import Relief
+from world2minecraft.label.surface import Surface
+from world2minecraft.label.walls import WallRun, find_walls
+
+
+@dataclass(frozen=True, eq=False)
+class Wall:
+    """A straight piece of wall, its relief and what its places are."""
+
+    run: WallRun
+    relief: Relief
+    face: WallFace
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """Floor, ceiling and walls of a storey, in its own frame: its floor's top is z = 0."""
+
+    surface: Surface
+    floor: Floor
+    ceiling: np.ndarray  # bool [X, Y, Z]
+    ceiling_m: float | None  # None where it was not seen
+    wall: np.ndarray  # bool [X, Y, Z]
+    walls: tuple[Wall, ...]
+
+    @property
+    def rest(self) -> np.ndarray:
+        """The occupied cells that are no structure, bool [X, Y, Z]."""
+        structure = self.floor.cells | self.floor.spill | self.ceiling | self.wall
+        return self.surface.occupied & ~structure
+
+
+def structure_of(surface: Surface, parameters: StructureParameters) -> Structure:
+    """Return the structure of a storey."""
+    floor = find_floor(surface, parameters)
+    ceiling, ceiling_m = find_ceiling(surface, parameters)
+    level = floor.cells | floor.spill | ceiling
+    mask, runs = find_walls(surface, level, ceiling_m, parameters)
+    walls = tuple(Wall(run, relief, read_wall(surface, relief, parameters)) for run, relief in runs)
+    return Structure(surface, floor, ceiling, ceiling_m, mask, walls)

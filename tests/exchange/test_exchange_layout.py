@@ -1,0 +1,51 @@
+"""``layout.json``: rooms there and back, and what is refused."""
+
+import json
+
+import numpy as np
+import pytest
+
+from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.exchange.layout import read_layouts, write_layouts
+from world2minecraft.types import Layout, Opening
+
+ROOM = Layout(
+    np.array([[0, 0], [3.2, 0], [3.2, 4.12345], [0, 4.12345]]),
+    2.4,
+    (Opening("doorway", np.array([0.5, 0]), np.array([1.4, 0]), 0.0, 2.04),),
+    floor_z_m=2.8,
+    name="room 1",
+)
+
+
+def test_rooms_there_and_back(tmp_path):
+    path = tmp_path / "layout.json"
+    write_layouts(path, (ROOM, ROOM))
+    first, second = read_layouts(path)
+    assert np.allclose(first.floor_polygon_m, ROOM.floor_polygon_m, atol=1e-4)
+    assert (first.floor_z_m, first.wall_height_m, first.name) == (2.8, 2.4, "room 1")
+    assert first.openings[0].kind == "doorway" and first.openings[0].head_m == 2.04
+    assert np.array_equal(second.openings[0].end_m, [1.4, 0])
+    again = tmp_path / "again.json"
+    write_layouts(again, (first, second))
+    assert again.read_bytes() == path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    "rows, words",
+    [
+        ({}, "must hold a list"),
+        ([{"name": "hall"}], "row 0 is not valid"),
+        ([3], "row 0 is not valid"),
+    ],
+)
+def test_what_is_no_layout_is_refused(tmp_path, rows, words):
+    path = tmp_path / "layout.json"
+    path.write_text(json.dumps(rows))
+    with pytest.raises(DamagedFileError, match=words):
+        read_layouts(path)
+
+
+def test_a_missing_file_is_told(tmp_path):
+    with pytest.raises(InputError):
+        read_layouts(tmp_path / "layout.json")
