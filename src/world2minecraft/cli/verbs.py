@@ -22,6 +22,7 @@ VERBS: dict[str, str] = {
     "scan": "Tell what a capture holds, before any long work.",
     "reconstruct": "Turn a capture into a Minecraft world, with a report.",
     "build": "Turn any occupancy grid into a Minecraft world.",
+    "rooms generate": "Generate a furnished room or a house, with exact truth.",
     "rooms scan": "Scan a generated room or house with a virtual depth camera.",
     "evaluate reconstruction": "Score a reconstruction against a scanned room's truth.",
     "convert": "Turn one Minecraft format into another.",

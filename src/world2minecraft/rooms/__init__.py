@@ -8,9 +8,11 @@ beside it.
 from world2minecraft.rooms.capture import room_views, scan_room
 from world2minecraft.rooms.house import generate_house
 from world2minecraft.rooms.kinds import BASE_KINDS, KINDS
+from world2minecraft.rooms.picture import room_picture
 from world2minecraft.rooms.room import Room, generate_room
 from world2minecraft.rooms.sensor import SENSORS, Sensor
 from world2minecraft.rooms.shapes import SHAPES
+from world2minecraft.rooms.stored import read_generated, write_generated
 
 __all__ = [
     "BASE_KINDS",
@@ -21,6 +23,9 @@ __all__ = [
     "Sensor",
     "generate_house",
     "generate_room",
+    "read_generated",
+    "room_picture",
     "room_views",
     "scan_room",
+    "write_generated",
 ]
