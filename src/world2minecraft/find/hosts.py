@@ -11,18 +11,14 @@ from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.find.growth import grow
 from world2minecraft.find.heap import floor_below
 from world2minecraft.find.owned import cells_by_owner
+from world2minecraft.find.sheets import NEAR_CELLS, UNLIKE, Scene, hung_plans, joined_in_air
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.types import OccupancyGrid
 
 LEAST_COLUMNS = 3  # What stands with fewer cells leans over, or is noise: a vase has four.
 LEAST_CELLS = 8  # Of a part, as of any object.
-NEAR_WALL_CELLS = 2  # A curtain hangs this near its wall.
-LEAST_SHEET = 12  # Cells of a thing on a wall: at 0.08 m, a picture of 0.3 m side.
-HIGH_M = 1.8  # What reaches so high beside a wall hangs there, wherever it ends below.
-CLEAR_M = 0.24  # As does what has so much free air below it.
-AROUND_CELLS = 4  # What stands this near is compared,
-UNLIKE = 0.08  # in Oklab: one thing in light and shade differs by less.
+LEAST_SHADE = 20  # Cells of a shade that floats.
 UNDER_CELLS = 2  # A thing stands on what lies this near below it.
 
 
@@ -43,99 +39,91 @@ def part_by_hosts(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
 def _parts(cells: np.ndarray, owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return the part, int32 [N] from 1, of each cell, 1 where all hang together."""
     floor = floor_below(cells, grid)
-    low = np.maximum(cells.min(axis=0) - NEAR_WALL_CELLS, 0)
+    low = np.maximum(cells.min(axis=0) - NEAR_CELLS, 0)
     low[2] = max(int(cells[:, 2].min()) - UNDER_CELLS, 0)
-    high = cells.max(axis=0) + 1 + NEAR_WALL_CELLS
+    high = cells.max(axis=0) + 1 + NEAR_CELLS
     box = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
     labels, own = grid.labels[box], np.zeros(grid.labels[box].shape, np.bool_)
     own[tuple((cells - low).T)] = True
-    colour = oklab_of_srgb(grid.colour[box])
-    seeds = _seeds(own, labels, owners[box], colour, floor - int(low[2]), grid.voxel_m)
+    scene = Scene(oklab_of_srgb(grid.colour[box]), floor - int(low[2]), grid.voxel_m)
+    seeds = _seeds(own, labels, owners[box], scene)
     count = int(seeds.max(initial=0))
     if count < 2:
         return np.ones(len(cells), np.int32)
     at = np.argwhere(seeds).astype(np.int32)
-    grown = grow(labels, own, at, seeds[tuple(at.T)] - 1)[tuple((cells - low).T)]
-    return _large_enough(grown)
+    grown = _connected(own, grow(labels, own, at, seeds[tuple(at.T)] - 1))
+    return _large_enough(grown[tuple((cells - low).T)])
 
 
-def _seeds(
-    own: np.ndarray,
-    labels: np.ndarray,
-    owners: np.ndarray,
-    colour: np.ndarray,
-    floor: int,
-    voxel_m: float,
-) -> np.ndarray:
+def _seeds(own: np.ndarray, labels: np.ndarray, owners: np.ndarray, scene: Scene) -> np.ndarray:
     """Return int32 [X, Y, Z]: the numbers of the hosts in the columns that they hold."""
-    bottom = np.where(own.any(axis=2), own.argmax(axis=2), -1)
-    hung = _by_wall(own, labels, bottom, floor, voxel_m)
-    host = np.where(hung, -1, _hosts(bottom, labels, owners, floor))
-    seeds = np.zeros(own.shape, np.int32)
-    sheets, count = connected_parts(hung)
-    groups = [sheets == sheet for sheet in range(1, count + 1)]
-    groups = [plan for plan in groups if _is_sheet(plan, hung, own, colour)]
-    for number in np.unique(host[host >= 0]):
+    host = _hosts(own, labels, owners, scene.floor)
+    sheets = hung_plans(own, labels, host >= 0, scene)
+    hung = np.logical_or.reduce([np.zeros(host.shape, np.bool_), *sheets])
+    host = np.where(hung, -1, host)
+    stood = host >= 0
+    groups = [own & plan[:, :, None] for plan in joined_in_air(sheets, own, stood)]
+    for number in np.unique(host[stood]):
         plan = host == number
         if plan.sum() >= LEAST_COLUMNS:
-            groups.append(plan)
-    for number, plan in enumerate(groups, start=1):
-        seeds[own & plan[:, :, None]] = number
+            groups.append(own & plan[:, :, None])
+    if sheets:
+        groups += _shades(own & ~(hung | stood)[:, :, None], stood, own & hung[:, :, None], scene)
+    seeds = np.zeros(own.shape, np.int32)
+    for number, cells in enumerate(groups, start=1):
+        seeds[cells] = number
     return seeds
 
 
-def _is_sheet(plan: np.ndarray, hung: np.ndarray, own: np.ndarray, colour: np.ndarray) -> bool:
-    """Tell whether what hangs in some columns looks unlike what stands beside them.
+def _shades(
+    rest: np.ndarray, stood: np.ndarray, hung: np.ndarray, scene: Scene
+) -> list[np.ndarray]:
+    """Return what floats before a curtain, bool [X, Y, Z] each: a lamp whose post is unseen."""
+    pieces, count = connected_parts(rest)
+    beside = ndimage.binary_dilation(stood, np.ones((3, 3), np.bool_))[:, :, None]
+    curtain = np.median(scene.colour[hung], axis=0)
+    found = [pieces == piece for piece in range(1, count + 1)]
+    return [
+        piece
+        for piece in found
+        if np.count_nonzero(piece) >= LEAST_SHADE
+        and not (piece & beside).any()
+        and np.linalg.norm(np.median(scene.colour[piece], axis=0) - curtain) >= UNLIKE
+    ]
 
-    The leaves of a plant that lean to a wall are no thing of their own.
+
+def _hosts(own: np.ndarray, labels: np.ndarray, owners: np.ndarray, floor: int) -> np.ndarray:
+    """Return int64 [X, Y]: what each column stands on: 0 the floor, else an owner; -1 nothing.
+
+    What lies flat on a table may fill the cells of its top; then the top beside it counts.
     """
-    sheet = own & plan[:, :, None]
-    around = ndimage.binary_dilation(plan, np.ones((3, 3), np.bool_), iterations=AROUND_CELLS)
-    beside = own & (around & ~hung)[:, :, None]
-    if np.count_nonzero(sheet) < LEAST_SHEET:
-        return False
-    if not beside.any():
-        return True
-    apart = np.median(colour[sheet], axis=0) - np.median(colour[beside], axis=0)
-    return float(np.linalg.norm(apart)) >= UNLIKE
-
-
-def _by_wall(
-    own: np.ndarray, labels: np.ndarray, bottom: np.ndarray, floor: int, voxel_m: float
-) -> np.ndarray:
-    """Return bool [X, Y]: columns that hang beside a wall."""
-    wall = ((labels == SemanticClass.WALL) | (labels == SemanticClass.WINDOW)).any(axis=2)
-    if not wall.any():
-        return wall
-    near = np.asarray(ndimage.distance_transform_cdt(~wall)) <= NEAR_WALL_CELLS
-    top = own.shape[2] - 1 - own[:, :, ::-1].argmax(axis=2)
-    high = top + 1 - floor >= HIGH_M / voxel_m
-    clear = np.zeros_like(near)
-    for x, y in np.argwhere(near & (bottom > 0)):
-        first = int(bottom[x, y])
-        below = labels[x, y, max(first - int(CLEAR_M / voxel_m), 0) : first]
-        clear[x, y] = bool((below == 0).all())
-    return near & (bottom >= 0) & (high | clear)
-
-
-def _hosts(bottom: np.ndarray, labels: np.ndarray, owners: np.ndarray, floor: int) -> np.ndarray:
-    """Return int64 [X, Y]: what each column stands on: 0 the floor, else an owner; -1 nothing."""
-    host = np.full(bottom.shape, -1, np.int64)
-    for x, y in np.argwhere(bottom >= 0):
-        first = int(bottom[x, y])
+    object_ = (labels >= OBJECT_CLASSES[0]) & (labels <= OBJECT_CLASSES[-1])
+    holder = np.where(object_ & (labels != SemanticClass.OBJS) & (owners > 0), owners, -1)
+    holder = np.where(labels == SemanticClass.FLOOR, 0, holder).astype(np.int64)
+    host = np.full(own.shape[:2], -1, np.int64)
+    for x, y in np.argwhere(own.any(axis=2)):
+        first = int(own[x, y].argmax())
         if first - floor < UNDER_CELLS:
             host[x, y] = 0
             continue
-        for k in range(first - 1, max(first - 1 - UNDER_CELLS, -1), -1):
-            label = int(labels[x, y, k])
-            if label in OBJECT_CLASSES and label != SemanticClass.OBJS and owners[x, y, k]:
-                host[x, y] = int(owners[x, y, k])
-            elif label == SemanticClass.FLOOR:
-                host[x, y] = 0
-            else:
-                continue
-            break
+        near = (slice(max(x - 1, 0), x + 2), slice(max(y - 1, 0), y + 2))
+        below = holder[x, y, max(first - UNDER_CELLS, 0) : first]
+        beside = holder[near][:, :, max(first - 1, 0) : first + 1]
+        for held in (below[::-1], np.sort(beside.reshape(-1))[::-1]):
+            known = held[held >= 0]
+            if len(known):
+                host[x, y] = known[0]
+                break
     return host
+
+
+def _connected(own: np.ndarray, parts: np.ndarray) -> np.ndarray:
+    """Return parts, int32 [X, Y, Z], of which each hangs together: what a curtain joined is two."""
+    result = np.zeros_like(parts)
+    for number in range(1, int(parts.max(initial=0)) + 1):
+        pieces, _ = connected_parts(own & (parts == number))
+        result = np.where(pieces > 0, pieces + result.max(), result)
+    return result.astype(np.int32)
 
 
 def _large_enough(parts: np.ndarray) -> np.ndarray:

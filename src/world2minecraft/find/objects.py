@@ -12,6 +12,7 @@ from world2minecraft.find.density import candidate_cells, density_map, object_ce
 from world2minecraft.find.growth import grow
 from world2minecraft.find.hosts import part_by_hosts
 from world2minecraft.find.parameters import FindParameters
+from world2minecraft.find.posts import join_posts
 from world2minecraft.find.reach import layers_reached
 from world2minecraft.find.rejoin import rejoin
 from world2minecraft.find.rows import part_rows
@@ -69,7 +70,7 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
         )
         owners = join_backs(part_chairs(owners, grid), grid)
         owners = part_rows(owners, grid)
-        owners = part_by_hosts(owners, grid)
+        owners = join_posts(part_by_hosts(owners, grid), grid)
     instances = _instances(grid, owners, reach=not chosen.paper_compat)
     marked = np.zeros(grid.shape, np.uint16)
     for instance in instances:
