@@ -32,6 +32,7 @@ OPEN_SHARE = 0.35
 STANDING_M = 1.0  # Free space up to here shows that one can stand on the floor under it.
 FOOTPRINT_SHARE = 0.25
 OPEN_FLOOR = 0.5  # A block of an upper floor of which more was seen free is no floor.
+ROOM_M2 = 0.5  # Smaller pieces of floor lie in a window's niche or behind it.
 LEVEL_SHARE = 0.2  # Of a wall's columns that reach a height, to draw the others up to it.
 FLOORED_SHARE = 0.3  # Of an upper room's plan; furniture and shade hide much of it.
 STAIRWELL_M = 0.7  # A narrower hole in an upper floor was left by noise.
@@ -229,9 +230,17 @@ def _footprint(grid, open_share, walls, lattice, storey, open_floor) -> np.ndarr
     low = things[:, :, first : max(last, first + 1)].any(2).astype(np.float32)
     stood = cover[0] @ low @ cover[1].T >= FOOTPRINT_SHARE
     stood |= (open_share[:, :, ground:top] >= 0.5).any(2)
-    stood &= ~walls[:, :, ground:top].any(2)
-    whole = without_holes(closed(stood & ~open_floor, (1, 1))) & ~_wide(open_floor, lattice)
+    walled = walls[:, :, ground:top].any(2)
+    whole = without_holes(closed(stood & ~walled & ~open_floor, (1, 1)))
+    whole = _rooms(whole & ~walled & ~_wide(open_floor, lattice), lattice)
     return whole if ground == lattice.ground else _carried_by_floor(whole, grid, lattice, ground)
+
+
+def _rooms(plan: np.ndarray, lattice: Lattice) -> np.ndarray:
+    """Return a plan, bool [X, Y], without what walls part from it and is too small for a room."""
+    parts, sizes = parts_of(plan)
+    least = min(ROOM_M2 * lattice.blocks_per_metre**2, sizes.max(initial=0))
+    return plan & (sizes[parts] >= least)
 
 
 def _carried_by_floor(plan: np.ndarray, grid, lattice, ground: int) -> np.ndarray:

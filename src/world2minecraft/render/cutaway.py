@@ -1,19 +1,29 @@
 """What to leave out of a room so that one can look into it.
 
 The ceiling goes; of the walls on the near sides only a low rim stays, with whatever hangs on them
-gone too. Nothing is decided by names of blocks, only by the classes and places in the volume.
+gone too, and walls between rooms end at breast height. A house of several storeys is taken apart:
+its storeys stand side by side. Nothing is decided by names of blocks, only by the classes and
+places in the volume.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
+from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.types import BlockVolume
 
 RIM_M = 0.25  # So much of a near wall stays, to show where it is.
 HUNG_M = 0.12  # What hangs on a near wall reaches this far into the room,
 HIGH_M = 1.0  # and hangs above this height; lower things stand on the floor.
+BREAST_M = 1.1  # So much of a wall between two rooms stays.
+ROOM_M2 = 1.0
+STOREY_M = 1.9  # Floors lie at least this far over one another,
+STOREY_SHARE = 0.15  # and have at least this share of the largest one's area.
+APART_M = 1.5  # Between storeys that stand side by side.
 _WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))
 
 
@@ -35,6 +45,67 @@ def ceiling_level(semantic: np.ndarray) -> int | None:
         return None
     # Drops and beams lie under the flat part; half of the fullest layer tells them apart.
     return int(np.flatnonzero(counts >= counts.max() / 2)[0])
+
+
+def storeys_of(volume: BlockVolume) -> list[BlockVolume]:
+    """Return the storeys of a house, from the ground up, each from its floor to the next.
+
+    A room is its own and only storey.
+    """
+    counts = (volume.semantic == SemanticClass.FLOOR).sum(axis=(0, 2))
+    least = max(STOREY_SHARE * counts.max(initial=0), 1)
+    apart = STOREY_M * volume.blocks_per_metre
+    floors: list[int] = []
+    for level in np.flatnonzero(counts >= least).tolist():
+        if floors and level - floors[-1] < apart:
+            continue
+        floors.append(level)
+    if len(floors) < 2:
+        return [volume]
+    edges = [0, *floors[1:], volume.states.shape[1]]
+    return [_layers(volume, low, high) for low, high in pairwise(edges)]
+
+
+def side_by_side(volumes: Sequence[BlockVolume]) -> BlockVolume:
+    """Return volumes of one plan in a row, on one level, in the order given.
+
+    They stand along the shorter side of their plan, so that the row is about square.
+    """
+    if len(volumes) == 1:
+        return volumes[0]
+    first = volumes[0]
+    axis = 0 if first.states.shape[0] <= first.states.shape[2] else 2
+    height = max(one.states.shape[1] for one in volumes)
+    gap = round(APART_M * first.blocks_per_metre)
+    return replace(
+        first,
+        states=_in_a_row([one.states for one in volumes], axis, height, gap),
+        semantic=_in_a_row([one.semantic for one in volumes], axis, height, gap),
+        instance=_in_a_row([one.instance for one in volumes], axis, height, gap),
+    )
+
+
+def without_partitions(volume: BlockVolume) -> BlockVolume:
+    """Return the volume with the walls between its rooms, and what hangs on them, cut down.
+
+    Such a wall has floor before and behind it, within half a metre.
+    """
+    semantic = volume.semantic
+    bpm = volume.blocks_per_metre
+    floor = _rooms(floor_columns(semantic), ROOM_M2 * bpm**2)
+    reach = max(2, round(0.5 * bpm))
+    walls = np.isin(semantic, _WALLS).any(axis=1) & ~floor
+    between = walls & (_both_sides(floor, 0, reach) | _both_sides(floor, 1, reach))
+    if not between.any():
+        return volume
+    level = floor_level(semantic) + 1 + round(BREAST_M * bpm)
+    drop = np.zeros(semantic.shape, bool)
+    drop[:, level:, :] = between[:, None, :]
+    low = np.unique(volume.instance[:, :level, :])
+    near = _dilate(between, max(1, round(HUNG_M * bpm)))[:, None, :]
+    hangs = (volume.instance > 0) & ~np.isin(volume.instance, low) & near
+    drop |= np.isin(volume.instance, np.unique(volume.instance[hangs])) & (volume.instance > 0)
+    return _without(volume, drop)
 
 
 def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVolume:
@@ -89,6 +160,52 @@ def _beyond(floor: np.ndarray, axis: int, side: int) -> np.ndarray:
         nearest = last[np.abs(last[None] - np.flatnonzero(empty)[:, None]).argmin(axis=1)]
         beyond[:, empty] = beyond[:, nearest]
     return np.moveaxis(beyond, 0, axis)
+
+
+def _rooms(floor: np.ndarray, least: float) -> np.ndarray:
+    """Return a plan's parts of at least so many columns: a sill outside a window is no room."""
+    parts, count = connected_parts(floor, corners=False)
+    sizes = np.bincount(parts.ravel(), minlength=count + 1)
+    return floor & (sizes[parts] >= least)
+
+
+def _both_sides(floor: np.ndarray, axis: int, reach: int) -> np.ndarray:
+    """Tell which columns [X, Z] have floor within reach on either side along an axis."""
+    sides = []
+    for step in (-1, 1):
+        near = np.zeros_like(floor)
+        for distance in range(1, reach + 1):
+            moved = np.roll(floor, step * distance, axis=axis)
+            edge = [slice(None), slice(None)]
+            edge[axis] = slice(0, distance) if step > 0 else slice(-distance, None)
+            moved[tuple(edge)] = False
+            near |= moved
+        sides.append(near)
+    return sides[0] & sides[1]
+
+
+def _layers(volume: BlockVolume, low: int, high: int) -> BlockVolume:
+    """Return the layers [low, high) of a volume, at their place."""
+    x, y, z = volume.corner
+    return replace(
+        volume,
+        states=volume.states[:, low:high],
+        semantic=volume.semantic[:, low:high],
+        instance=volume.instance[:, low:high],
+        corner=(x, y + low, z),
+    )
+
+
+def _in_a_row(arrays: list[np.ndarray], axis: int, height: int, gap: int) -> np.ndarray:
+    pieces: list[np.ndarray] = []
+    for values in arrays:
+        tall = np.pad(values, ((0, 0), (0, height - values.shape[1]), (0, 0)))
+        if pieces:
+            shape = list(tall.shape)
+            shape[axis] = gap
+            pieces.append(np.zeros(shape, values.dtype))
+        pieces.append(tall)
+    return np.concatenate(pieces, axis=axis)
 
 
 def _dilate(mask: np.ndarray, steps: int) -> np.ndarray:

@@ -3,7 +3,13 @@
 import numpy as np
 
 from world2minecraft.coordinates import apply, look_at
-from world2minecraft.render.cutaway import without_ceiling, without_near_walls
+from world2minecraft.render.cutaway import (
+    side_by_side,
+    storeys_of,
+    without_ceiling,
+    without_near_walls,
+    without_partitions,
+)
 from world2minecraft.render.picture import BACKGROUND, MAX_PIXELS, render_parallel, render_volume
 from world2minecraft.render.scene import prepare_scene
 from world2minecraft.types import BlockVolume, Camera
@@ -20,7 +26,7 @@ def preview(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> 
     """Return a cutaway picture of a room from above at an angle, uint8 [height, width, 3].
 
     The ceiling and the two near walls are left out. Of the four corners it looks from the one
-    that shows most of the furniture.
+    that shows most of the furniture. The storeys of a house stand side by side.
 
     Args:
         volume: a built room.
@@ -31,10 +37,10 @@ def preview(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> 
         ValueError: the picture would be too large.
     """
     _check_size(width_px * SUPERSAMPLE, height_px * SUPERSAMPLE)
-    opened = without_ceiling(volume)
+    opened = [without_partitions(without_ceiling(one)) for one in storeys_of(volume)]
     sides = ((-1, 1), (1, 1), (1, -1), (-1, -1))
-    best = max(range(4), key=lambda n: _furniture_seen(opened, *sides[n]))
-    cut = without_near_walls(opened, *sides[best])
+    best = max(range(4), key=lambda n: sum(_furniture_seen(one, *sides[n]) for one in opened))
+    cut = side_by_side([without_near_walls(one, *sides[best]) for one in opened])
     size = (width_px * SUPERSAMPLE, height_px * SUPERSAMPLE)
     camera, pose = dollhouse_camera(cut, *sides[best], *size)
     picture = render_volume(cut, camera, pose, outputs=("colour",))
@@ -109,7 +115,7 @@ def _corner_points_m(volume: BlockVolume) -> np.ndarray:
 def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
     """Return a plan of the room from under its ceiling, uint8 [H, W, 3].
 
-    Room +x points right and room +y up.
+    Room +x points right and room +y up. The storeys of a house stand side by side.
 
     Args:
         volume: a built room.
@@ -120,12 +126,12 @@ def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
     """
     if px_per_block < 1:
         raise ValueError(f"px_per_block must be 1 or more, not {px_per_block}")
-    opened = without_ceiling(volume)
-    x_blocks, _, z_blocks = volume.states.shape
+    opened = side_by_side([without_ceiling(one) for one in storeys_of(volume)])
+    x_blocks, _, z_blocks = opened.states.shape
     size = (z_blocks * px_per_block * SUPERSAMPLE, x_blocks * px_per_block * SUPERSAMPLE)
     _check_size(size[1], size[0])
-    middle = np.array(volume.corner) + np.array(volume.states.shape) / 2
-    middle[1] = volume.corner[1] + volume.states.shape[1] + 1
+    middle = np.array(opened.corner) + np.array(opened.states.shape) / 2
+    middle[1] = opened.corner[1] + opened.states.shape[1] + 1
     down = np.diag([1.0, -1.0, -1.0, 1.0])
     down[:3, 3] = apply(volume.block_to_room, middle)
     picture = render_parallel(
