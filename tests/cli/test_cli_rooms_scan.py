@@ -6,7 +6,7 @@ import pytest
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.files import read_npz
-from world2minecraft.rooms import capture, trials
+from world2minecraft.rooms import capture, generate_room, trials, write_generated
 
 
 @pytest.fixture(autouse=True)
@@ -105,3 +105,29 @@ def test_a_folder_with_a_capture_is_refused(tmp_path, capsys):
     assert w2m(["rooms", "scan", "--seed", "1", "--out", str(tmp_path)]) == 2
     line = f"error: {tmp_path} holds a capture already; give another --out, or remove it\n"
     assert capsys.readouterr().err == line
+
+
+def test_a_generated_room_is_scanned_from_its_folder(tmp_path):
+    room = generate_room(3, kind="study")
+    write_generated(room, tmp_path / "room")
+    out = tmp_path / "cap"
+    assert w2m(["rooms", "scan", str(tmp_path / "room"), "--frames", "2", "--out", str(out)]) == 0
+    again = tmp_path / "again"
+    base = ["rooms", "scan", "--seed", "3", "--kind", "study", "--frames", "2"]
+    assert w2m([*base, "--out", str(again)]) == 0
+    for name in ("capture.json", "depth/frame-000001.png", "colour/frame-000001.png"):
+        assert (out / name).read_bytes() == (again / name).read_bytes()
+
+
+def test_a_generated_room_is_not_written_over(tmp_path, capsys):
+    write_generated(generate_room(3, kind="study"), tmp_path)
+    before = (tmp_path / "truth.npz").read_bytes()
+    assert w2m(["rooms", "scan", str(tmp_path), "--out", str(tmp_path)]) == 2
+    line = f"error: {tmp_path} holds a generated room; give another --out\n"
+    assert capsys.readouterr().err == line
+    assert (tmp_path / "truth.npz").read_bytes() == before
+
+
+def test_a_folder_that_is_no_room_is_refused(tmp_path, capsys):
+    assert w2m(["rooms", "scan", str(tmp_path), "--out", str(tmp_path / "cap")]) == 3
+    assert "layout.json: is not there" in capsys.readouterr().err

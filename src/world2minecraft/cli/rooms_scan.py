@@ -106,13 +106,15 @@ def _check_figures(given: dict[str, Any]) -> None:
 
 
 def _check_empty(out: Path) -> None:
-    """Refuse a folder that holds a capture: pictures of two scans would mix."""
+    """Refuse a folder that holds a capture or a room: two would mix."""
     from world2minecraft.errors import UsageError
     from world2minecraft.run_folder import check_writable
 
     check_writable(out)
     if (out / "capture.json").exists():
         raise UsageError(f"{out} holds a capture already; give another --out, or remove it")
+    if (out / "layout.json").exists():
+        raise UsageError(f"{out} holds a generated room; give another --out")
 
 
 def _scan_trial(name: str, out: Path, progress: "Progress") -> None:
@@ -124,15 +126,10 @@ def _scan_trial(name: str, out: Path, progress: "Progress") -> None:
 def _room(
     room_dir: Path | None, seed: int | None, kind: str | None, progress: "Progress"
 ) -> "Room":
+    from world2minecraft.rooms import generate_room, read_generated
+
     progress("room", 0, 1)
-    if room_dir is not None:
-        from world2minecraft.rooms import read_generated
-
-        room = read_generated(room_dir)
-    else:
-        from world2minecraft.rooms import generate_room
-
-        room = generate_room(seed or 0, kind=kind)
+    room = read_generated(room_dir) if room_dir is not None else generate_room(seed or 0, kind=kind)
     progress("room", 1, 1, f"{room.kind}, seed {room.seed}")
     return room
 

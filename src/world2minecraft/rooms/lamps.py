@@ -9,7 +9,7 @@ from world2minecraft.rooms.stands import is_inside
 from world2minecraft.types import Layout
 
 UNDER_CEILING_M = 0.35
-GRID_M = 0.1  # How finely a place for a lamp is looked for.
+GRID_M, MAX_STEPS = 0.1, 300  # How finely a place for a lamp is looked for.
 
 
 def hang_lamps(room: Room) -> np.ndarray:
@@ -19,10 +19,8 @@ def hang_lamps(room: Room) -> np.ndarray:
 
 def _lamp_m(room: Room, layout: Layout) -> list[float]:
     x, y = _middle_m(layout.floor_polygon_m)
-    i, j, k = (
-        int(value)
-        for value in np.floor(([x, y, layout.floor_z_m] - room.origin_m) / room.voxel_m + 1e-6)
-    )
+    cell = np.floor(([x, y, layout.floor_z_m] - room.origin_m) / room.voxel_m + 1e-6).astype(int)
+    i, j, k = np.clip(cell, 0, np.array(room.labels.shape) - 1)  # A room that was read may lie.
     column = room.labels[i, j, k:] == int(SemanticClass.CEILING)
     height = layout.wall_height_m
     if column.any():  # Under a roof the ceiling may be lower than the walls are high.
@@ -36,9 +34,10 @@ def _middle_m(polygon_m: np.ndarray) -> tuple[float, float]:
     if len(polygon_m) == 4:
         x, y = (low + high) / 2
         return float(x), float(y)
-    counts = np.ceil((high - low) / GRID_M).astype(int)
+    step = max(GRID_M, float((high - low).max()) / MAX_STEPS)
+    counts = np.ceil((high - low) / step).astype(int)
     cells = np.stack(np.meshgrid(*(np.arange(n) for n in counts), indexing="ij"), axis=-1)
-    points = low + (cells.reshape(-1, 2) + 0.5) * GRID_M
+    points = low + (cells.reshape(-1, 2) + 0.5) * step
     inside = np.pad(is_inside(polygon_m, points).reshape(counts), 1)
     distance = np.zeros(inside.shape)
     ndimage.distance_transform_edt(inside, distances=distance)

@@ -108,7 +108,7 @@ def _offsets() -> np.ndarray:
 
 
 def _cells(room: Room, length_m: float) -> int:
-    return round(length_m / room.voxel_m)
+    return max(1, round(length_m / room.voxel_m))
 
 
 def _places_m(room: Room, spots: np.ndarray) -> np.ndarray:
