@@ -16,6 +16,7 @@ w2m reconstruct my_scan --out OUT --labels my_labels      with 2D label images
 w2m reconstruct my_scan --out OUT --from build            build again, all before kept
 w2m reconstruct my_scan --out OUT --method paper          the paper's steps alone
 w2m reconstruct my_scan --out OUT --set find.cluster_radius=3
+w2m reconstruct my_scan --out OUT --follow                while the scan still goes on
 """
 
 
@@ -46,6 +47,16 @@ def run(
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any parameter.")
     ] = None,
+    follow: Annotated[
+        bool,
+        typer.Option(
+            "--follow", help="Watch a capture that still grows; a file named done ends it."
+        ),
+    ] = False,
+    follow_idle_s: Annotated[
+        float,
+        typer.Option("--follow-idle-s", help="Seconds without a new frame that end --follow."),
+    ] = 60.0,
 ) -> None:
     """Turn a capture into a Minecraft world.
 
@@ -63,22 +74,38 @@ def run(
         method: how objects and poses are found.
         mc_version: the game version.
         settings: further parameters.
+        follow: keep room.npz and preview.png fresh while frames come, then finish.
+        follow_idle_s: how long to wait for a new frame.
     """
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
+    from world2minecraft.errors import UsageError
     from world2minecraft.parameters import Parameters, with_method, with_settings
 
-    plain = Parameters(
-        voxel_m=voxel,
-        blocks_per_metre=blocks_per_metre,
-        labeller=labeller,
-        mc_version=mc_version,
-    )
-    chosen = with_settings(with_method(plain, method), settings or [])
+    chosen = Parameters(voxel, blocks_per_metre, labeller=labeller, mc_version=mc_version)
+    chosen = with_settings(with_method(chosen, method), settings or [])
+    if follow and start is not None:
+        raise UsageError("--follow reads a whole capture; leave out --from")
     compiling_note()
     with shown() as progress:
+        if follow:
+            watch(capture, out, chosen, labels, follow_idle_s, progress)
         facts = make(capture, out, chosen, start, labels, progress)
     say_where(out, facts)
+
+
+def watch(
+    capture: Path,
+    out: Path,
+    chosen: "Parameters",
+    labels: Path | None,
+    idle_s: float,
+    progress: "Progress",
+) -> None:
+    """Follow a capture until it is complete."""
+    from world2minecraft.live import follow
+
+    follow(capture, out, chosen, labels=labels, idle_s=idle_s, progress=progress)
 
 
 def make(

@@ -1,6 +1,6 @@
 """The map's memory: blocks of cells where rays passed, records where surfaces were met.
 
-A cell (i, j, k) of the room lies in block (i // 8, j // 8, k // 8). ``table`` gives the number of
+A cell (i, j, k) of the room lies in block (i >> 3, j >> 3, k >> 3). ``table`` gives the number of
 each block, 0 for none; block n holds the cells from ``n * 512`` of the flat cell arrays. A cell in
 which a surface was met has a record: its number stands in ``record``, 0 for none. So memory grows
 with the space that was seen, and the many sums with the surface in it.
@@ -11,7 +11,9 @@ import numpy as np
 from world2minecraft.classes import CLASS_COUNT
 from world2minecraft.errors import CaptureError
 
-SIDE = 8  # 0.64 m at the paper's cell: half of a room's blocks hold no surface.
+SHIFT = 3
+SIDE = 1 << SHIFT  # 0.64 m at the paper's cell: half of a room's blocks hold no surface.
+MASK = SIDE - 1
 BLOCK_CELLS = SIDE**3
 FACES = 6  # A surface that faces -x, +x, -y, +y, -z or +z most.
 FACE_SUMS = 8  # Weight; weighted offset [3], normal [3] and depth sigma.

@@ -9,7 +9,7 @@ tests, which hold them against it.
 
 import numpy as np
 
-from world2minecraft.fuse.blocks import BLOCK_CELLS, FACE_SUMS, FACES, SIDE
+from world2minecraft.fuse.blocks import BLOCK_CELLS, FACE_SUMS, FACES, MASK, SHIFT
 from world2minecraft.jit import njit
 
 
@@ -33,13 +33,13 @@ def to_cells(points_m, scan_to_cells):
 @njit
 def place_of(i, j, k, low, table, used):
     """Return where cell (i, j, k) of the room lies in the flat arrays; its block is made."""
-    a, b, c = i // SIDE, j // SIDE, k // SIDE
-    block = table[a - low[0], b - low[1], c - low[2]]
+    a, b, c = (i >> SHIFT) - low[0], (j >> SHIFT) - low[1], (k >> SHIFT) - low[2]
+    block = table[a, b, c]
     if block == 0:
         used[0] += 1
         block = used[0]
-        table[a - low[0], b - low[1], c - low[2]] = block
-    inner = ((i - a * SIDE) * SIDE + (j - b * SIDE)) * SIDE + (k - c * SIDE)
+        table[a, b, c] = block
+    inner = ((i & MASK) << SHIFT | (j & MASK)) << SHIFT | (k & MASK)
     return block * BLOCK_CELLS + inner
 
 

@@ -7,13 +7,17 @@ the cell is solid. Fewer, and the points in it were spill from the cell behind: 
 them, with the plane in the cell before it, and the points were spill to the back: nothing is known.
 """
 
+import math
+
 import numpy as np
 
 from world2minecraft.fuse.blocks import FACES
 from world2minecraft.jit import njit
 
 PER_SIDE = 4  # Sub-cells along a cell's edge, as in SSCNet's rule.
-SPILL_FACTOR = 8.0
+# More than the noise alone explains is let go as spill, because views err together; and never more
+# than a fifth: then there is a second surface. docs/fusion.md has the figures.
+SPILL_MORE, SPILL_MOST = 0.05, 0.2
 SOLID, SPILL_BEFORE, SPILL_BEHIND = 1, 2, 3
 
 
@@ -76,8 +80,12 @@ def _judge(i, j, k, record, faces, voxel_m, rules):
         _joined_plane(i, j, k, f, record, faces, voxel_m, rules, plane)
         depth, whole = _depth_of_solid(plane, voxel_m, int(rules[0]))
         # The same plane leaves the neighbour before this cell solid too, and this one whole.
-        behind = whole and depth - abs(plane[3 + f // 2]) * voxel_m > 0
-        behind = behind and _weight_before(i, j, k, f, record, faces) > SPILL_FACTOR * weight
+        before = depth - abs(plane[3 + f // 2]) * voxel_m
+        behind = False
+        if whole and before > 0:
+            front = _weight_before(i, j, k, f, record, faces)
+            sigma = faces[record[i, j, k], f, 7] / weight
+            behind = weight < (weight + front) * _spill_share(before, sigma)
         if depth > 0 and not behind and depth > best:
             best, best_face = depth, f
         if weight > heaviest:
@@ -86,6 +94,17 @@ def _judge(i, j, k, record, faces, voxel_m, rules):
     if best_face >= 0:
         return SOLID, best, best_face
     return said, margin_m, face
+
+
+@njit
+def _spill_share(depth, sigma):
+    """Return the largest part of a surface's points that noise may put behind a cell's back.
+
+    ``depth`` is the way in metres from where the surface lies to where its points would fall over
+    the edge, ``sigma`` the standard deviation of a point along its ray.
+    """
+    tail = 0.5 * math.erfc(depth / (math.sqrt(2) * max(sigma, 1e-6)))
+    return min(tail + SPILL_MORE, SPILL_MOST)
 
 
 @njit

@@ -1,0 +1,174 @@
+"""Confidence that means something: of the cells at 0.9, nine in ten bear the right label.
+
+In: a labelled grid and the evidence behind it. Out: the grid with the chance of each cell's label
+being right in ``confidence``. The chance is logistic in a few features of the cell; the weights
+were fitted on generated rooms (``python -m benchmarks.fit_confidence``), apart for each labeller,
+since the one that has no 2D labels errs more often. A completed cell has what was right of those.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.errors import DamagedFileError
+from world2minecraft.files import read_json
+from world2minecraft.types import COMPLETED, OBSERVED, FusedEvidence, OccupancyGrid
+
+TABLES = Path(__file__).parent / "data" / "confidence.json"
+OCCUPIED_FEATURES = (
+    "log_odds", "hits", "voted", "share", "share_squared", "same_class", "occupied_around",
+)  # fmt: skip
+FREE_FEATURES = ("one", "log_odds", "hits", "beside_occupied", "two_off", "beside_unknown")
+LEAST, MOST = 0.01, 0.995  # Nothing is certain after a few rooms.
+DECIMALS = 3  # Confidence is told to a thousandth.
+
+
+@dataclass(frozen=True)
+class ConfidenceTable:
+    """The fitted weights of one labeller.
+
+    ``classes`` is the intercept of each class, ``completed`` the share of completed cells of each
+    class that was right; both have 12 entries, the first (empty) of no use.
+    """
+
+    occupied: tuple[float, ...]
+    classes: tuple[float, ...]
+    free: tuple[float, ...]
+    completed: tuple[float, ...]
+    uses_votes: bool
+
+    def __post_init__(self):
+        for name, size in (
+            ("occupied", len(OCCUPIED_FEATURES)),
+            ("classes", CLASS_COUNT),
+            ("free", len(FREE_FEATURES)),
+            ("completed", CLASS_COUNT),
+        ):
+            values = np.array(getattr(self, name), np.float64)
+            if values.shape != (size,) or not np.isfinite(values).all():
+                raise ValueError(f"{name} must be {size} finite numbers, not {values.tolist()}")
+            object.__setattr__(self, name, tuple(values.tolist()))
+
+
+def confidence_table(labeller: str) -> ConfidenceTable | None:
+    """Return the table of a labeller; None where none was fitted for it.
+
+    Raises:
+        DamagedFileError: the package's own file is damaged.
+    """
+    return _tables().get(labeller)
+
+
+@cache
+def _tables() -> dict[str, ConfidenceTable]:
+    stated = read_json(TABLES)
+    try:
+        return {name: ConfidenceTable(**row) for name, row in stated["labellers"].items()}
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise DamagedFileError(TABLES, f"holds no confidence tables ({error})") from error
+
+
+def calibrate(
+    grid: OccupancyGrid, evidence: FusedEvidence, table: ConfidenceTable | None
+) -> OccupancyGrid:
+    """Return the grid with calibrated confidence; without a table it stays as it is.
+
+    Unseen cells have 0, completed ones the share that was right of their class, observed ones
+    the chance that their features give.
+
+    Raises:
+        ValueError: grid and evidence are not of the same shape.
+    """
+    if table is None:
+        return grid
+    occupied, free = grid.occupied & (grid.source == OBSERVED), grid.labels == 0
+    confidence = np.zeros(grid.shape, np.float64)
+    weights = np.array(table.occupied)
+    offset = np.array(table.classes)[grid.labels[occupied]]
+    rows = occupied_features(grid, evidence, occupied, table.uses_votes)
+    confidence[occupied] = _chance(_weighed(rows, weights) + offset)
+    rows = free_features(grid, evidence, free)
+    confidence[free] = _chance(_weighed(rows, np.array(table.free)))
+    completed = (grid.source == COMPLETED) & (grid.labels < CLASS_COUNT)
+    confidence[completed] = np.array(table.completed)[grid.labels[completed]]
+    return replace(grid, confidence=np.round(confidence, DECIMALS).astype(np.float16))
+
+
+def occupied_features(
+    grid: OccupancyGrid, evidence: FusedEvidence, cells: np.ndarray, uses_votes: bool
+) -> np.ndarray:
+    """Return float64 [N, 7], the ``OCCUPIED_FEATURES`` of chosen cells bool [X, Y, Z].
+
+    Log-odds are in units of 6, hits logarithmic in units of 8; ``share`` is the part of the votes
+    that the label has, ``same_class`` and ``occupied_around`` the parts of the 26 neighbours.
+    """
+    if evidence.log_odds.shape != grid.shape:
+        raise ValueError(f"evidence {evidence.log_odds.shape} and grid {grid.shape} differ")
+    labels = grid.labels[cells]
+    votes = evidence.votes[cells].astype(np.float64)
+    total = votes.sum(axis=1) * uses_votes
+    share = votes[np.arange(len(labels)), labels] / np.maximum(total, 1e-9) * (total > 0)
+    around, same = _around(grid, cells)
+    return np.column_stack(
+        [
+            np.clip(evidence.log_odds[cells].astype(np.float64), -6, 6) / 6,
+            np.log1p(evidence.hits[cells].astype(np.float64)) / 8,
+            total > 0,
+            share,
+            share**2,
+            same,
+            around,
+        ]
+    )
+
+
+def free_features(grid: OccupancyGrid, evidence: FusedEvidence, cells: np.ndarray) -> np.ndarray:
+    """Return float64 [N, 6], the ``FREE_FEATURES`` of chosen cells bool [X, Y, Z]."""
+    box = np.ones((3, 3, 3), bool)
+    beside = np.asarray(ndimage.binary_dilation(grid.occupied, box), bool)
+    two_off = np.asarray(ndimage.binary_dilation(beside, box), bool) & ~beside
+    unknown = np.asarray(ndimage.binary_dilation(grid.labels == UNKNOWN, box), bool)
+    return np.column_stack(
+        [
+            np.ones(np.count_nonzero(cells)),
+            np.clip(evidence.log_odds[cells].astype(np.float64), -6, 6) / 6,
+            evidence.hits[cells] > 0,
+            beside[cells],
+            two_off[cells],
+            unknown[cells],
+        ]
+    ).astype(np.float64)
+
+
+def _around(grid: OccupancyGrid, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return for each chosen cell the parts of its 26 neighbours occupied, and of its class."""
+    labels = grid.labels[cells]
+    around = _neighbours(grid.occupied)[cells]
+    same = np.zeros(len(labels))
+    for class_id in np.unique(labels):
+        same[labels == class_id] = _neighbours(grid.labels == class_id)[cells][labels == class_id]
+    return around, same
+
+
+def _neighbours(mask: np.ndarray) -> np.ndarray:
+    """Return the part of each cell's 26 neighbours that is in the mask."""
+    count = mask.astype(np.uint8)
+    for axis in range(3):
+        count = ndimage.convolve1d(count, np.ones(3, np.uint8), axis=axis, mode="constant")
+    return (count - mask) / 26
+
+
+def _weighed(rows: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    # Column by column: a matrix product may differ in its last bits with the number of threads.
+    result = np.zeros(len(rows))
+    for column, weight in zip(rows.T, weights, strict=True):
+        result += column * weight
+    return result
+
+
+def _chance(value: np.ndarray) -> np.ndarray:
+    return np.clip(1 / (1 + np.exp(-np.clip(value, -30, 30))), LEAST, MOST)
