@@ -11,6 +11,8 @@ from world2minecraft.rooms.odd import ODD
 from world2minecraft.rooms.place import Item, Plan, ways_are_clear
 from world2minecraft.rooms.small import ON_BEDS, ON_FLOORS, ON_TABLES, Maker
 
+Doors = list[tuple[float, float]]
+WIDE_BODY_M, NARROW_BODY_M = 0.32, 0.24  # Half a person's width, with and without ease.
 MAX_ASKEW_DEG = 20
 PULLED_M = 0.30  # How far a chair is left from its table at most.
 SEATS = ("chair", "office_chair", "stool", "armchair")
@@ -32,9 +34,7 @@ TOPS: dict[str, float | None] = {
 }  # fmt: skip
 
 
-def scatter(
-    plan: Plan, clutter: float, rng: np.random.Generator, doors_m: list[tuple[float, float]]
-) -> None:
+def scatter(plan: Plan, clutter: float, rng: np.random.Generator, doors_m: Doors) -> None:
     """Clutter a furnished room.
 
     Args:
@@ -45,18 +45,20 @@ def scatter(
     """
     if clutter <= 0:
         return
-    _turn_seats(plan, clutter, rng, doors_m)
+    wide = ways_are_clear(plan, *doors_m, body_m=WIDE_BODY_M)
+    body_m = WIDE_BODY_M if wide else NARROW_BODY_M
+    _turn_seats(plan, clutter, rng, doors_m, body_m)
     for _ in range(round(clutter * ODD_THINGS * rng.uniform(0.6, 1.2))):
-        _lay(plan, ODD, rng, doors_m)
+        _lay(plan, ODD, rng, doors_m, body_m)
     for base in list(plan.items):
         _cover(plan, base, clutter, rng)
     area = plan.size_m[0] * plan.size_m[1]
     for _ in range(round(clutter * area * FLOOR_THINGS_PER_M2)):
-        _lay(plan, ON_FLOORS, rng, doors_m)
+        _lay(plan, ON_FLOORS, rng, doors_m, body_m)
 
 
 def _turn_seats(
-    plan: Plan, clutter: float, rng: np.random.Generator, doors_m: list[tuple[float, float]]
+    plan: Plan, clutter: float, rng: np.random.Generator, doors_m: Doors, body_m: float
 ) -> None:
     """Pull chairs out and turn them; one that finds no room stays as it was."""
     for n, seat in enumerate(plan.items):
@@ -70,18 +72,24 @@ def _turn_seats(
             if not plan.fits(moved, may_block=True, among=others):
                 continue
             plan.items[n] = moved
-            if ways_are_clear(plan, *doors_m):
+            if ways_are_clear(plan, *doors_m, body_m=body_m):
                 break
             plan.items[n] = seat
 
 
-def _lay(plan: Plan, makers: tuple[Maker, ...], rng: np.random.Generator, doors_m: list) -> None:
+def _lay(
+    plan: Plan,
+    makers: tuple[Maker, ...],
+    rng: np.random.Generator,
+    doors_m: Doors,
+    body_m: float,
+) -> None:
     """Lay one thing on the floor, by a wall as often as not, where it blocks no way."""
     model = makers[int(rng.integers(len(makers)))](rng)
     for _ in range(TRIES):
         if plan.add(_floor_spot(plan, model, rng)) is None:
             continue
-        if ways_are_clear(plan, *doors_m):
+        if ways_are_clear(plan, *doors_m, body_m=body_m):
             return
         plan.items.pop()
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.rooms.clutter import scatter
+from world2minecraft.rooms.clutter import WIDE_BODY_M, scatter
 from world2minecraft.rooms.decor import door
 from world2minecraft.rooms.galley import furnish_galley
 from world2minecraft.rooms.ground import Ground
@@ -139,7 +139,7 @@ def _try_cell(
     rugs = recipe(room, style)
     inner = [frame.hole(hole) for hole in holes]
     steps = [_step_in(room, hole) for hole in inner if hole.kind != "window"]
-    if rugs is None or not ways_are_clear(room, *steps):
+    if rugs is None or not ways_are_clear(room, *steps, body_m=WIDE_BODY_M):
         return None
     hang_curtains(room, tuple(inner), style.curtain)
     scatter(room, clutter, rng, steps)

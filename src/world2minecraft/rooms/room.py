@@ -6,7 +6,7 @@ import numpy as np
 
 from world2minecraft.errors import UnknownNameError, World2MinecraftError
 from world2minecraft.rooms import voxels
-from world2minecraft.rooms.clutter import scatter
+from world2minecraft.rooms.clutter import NARROW_BODY_M, WIDE_BODY_M, scatter
 from world2minecraft.rooms.kinds import BASE_KINDS, KINDS, random_size
 from world2minecraft.rooms.openings import (
     Hole,
@@ -103,7 +103,9 @@ def _try_room(
     style = choose_style(rng)
     holes = choose_openings(plan, walls=open_walls(plan.ground, kind))
     rugs = recipe.furnish(plan, style)
-    if rugs is None or not ways_are_clear(plan, door_step_m(plan, holes[0])):
+    # Box rooms keep the narrower way that old seeds were drawn with.
+    body_m = NARROW_BODY_M if shape == "box" and kind in BASE_KINDS else WIDE_BODY_M
+    if rugs is None or not ways_are_clear(plan, door_step_m(plan, holes[0]), body_m=body_m):
         return None
     hang_curtains(plan, holes, style.curtain)
     scatter(plan, clutter, np.random.default_rng([seed, 1 << 21]), [door_step_m(plan, holes[0])])

@@ -51,6 +51,7 @@ def sloped_ground(size_m: Size, rng: np.random.Generator) -> Ground:
     knee = whole(rng.uniform(0.9, 1.4))
     reach = whole((height - knee) / np.tan(np.radians(rng.uniform(35, 50))))
     both = rng.random() < 0.5
+    reach = min(reach, whole(0.42 * min(width, depth)))  # In the middle one stands upright.
     roofs = [Roof(3 - axis, knee, reach)]
     if both:
         roofs.append(Roof(1 - axis, knee, reach))
