@@ -1,11 +1,9 @@
 """Openings that were found against the true ones, in cases that were counted by hand."""
 
 import numpy as np
-import pytest
 
 from world2minecraft.coordinates import rotation_about_z
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.evaluate.openings import found_rooms, opening_facts
+from world2minecraft.evaluate.openings import opening_facts
 from world2minecraft.evaluate.reach import Reached
 from world2minecraft.types import Layout, Opening
 
@@ -62,10 +60,3 @@ def test_upper_floors_count_from_their_own():
     true = [room(opening(), floor_z_m=2.8)]
     assert opening_facts([room(opening())], true, np.eye(4), everywhere())["matched"] == 0
     assert opening_facts(true, true, np.eye(4), everywhere())["matched"] == 1
-
-
-def test_a_run_without_rooms_has_none_and_a_damaged_one_is_named(tmp_path):
-    assert found_rooms(tmp_path) is None
-    (tmp_path / "layout.json").write_text('[{"wall_height_m": 2}]')
-    with pytest.raises(DamagedFileError, match=r"layout\.json: is no list of rooms \('floor_pol"):
-        found_rooms(tmp_path)

@@ -81,6 +81,24 @@ def test_what_was_found_beyond_the_truth_costs_precision(perfect, capture, tmp_p
     assert facts["occupancy"] == before["occupancy"]
 
 
+def test_errors_are_counted_where_they_are(perfect, capture, tmp_path):
+    out = copied(perfect, tmp_path)
+    grid, scan_to_room = read_room(out / "room.npz")
+    labels, source = grid.labels.copy(), grid.source.copy()
+    for class_id, wrong, count in ((8, 0, 5), (3, 255, 4), (0, 11, 3)):
+        cells = np.argwhere(grid.labels == class_id)[:count]
+        labels[tuple(cells.T)], source[tuple(cells.T)] = wrong, wrong != 255
+    write_room(out / "room.npz", replace(grid, labels=labels, source=source), scan_to_room)
+    errors = evaluate_reconstruction(out, capture)["errors"]
+    assert errors == {
+        "called_free": 5,
+        "left_unknown": 4,
+        "called_occupied": 3,
+        "missed_by_class": {"wall": 4, "table": 5},
+        "added_by_class": {"objs": 3},
+    }
+
+
 def test_objects_are_counted_by_class_and_turn(perfect, capture, tmp_path):
     out = copied(perfect, tmp_path)
     grid, _ = read_room(out / "room.npz")

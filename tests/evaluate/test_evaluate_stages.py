@@ -39,6 +39,7 @@ def test_truth_put_in_scores_full_marks_from_there_on(stages):
     for name in AFTER[2:]:
         assert stages[name]["occupancy"]["iou"] == 1.0
         assert stages[name]["occupancy"]["label_accuracy"] == 1.0
+        assert stages[name]["openings"]["f1"] == 1.0
     for name in AFTER[3:]:
         assert stages[name]["objects"]["f1"] == 1.0
         assert stages[name]["objects"]["orientation_right"] == 1.0

@@ -1,17 +1,13 @@
 """Windows, doors and doorways that were found, against those of the true rooms."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from world2minecraft.coordinates import apply
-from world2minecraft.errors import DamagedFileError
 from world2minecraft.evaluate.reach import Reached
-from world2minecraft.evaluate.truth import layout_of
-from world2minecraft.files import read_json
 from world2minecraft.metrics.occupancy import ratio
 from world2minecraft.types import Layout
 
@@ -51,21 +47,6 @@ def opening_facts(
         if counts.any():
             facts[kind] = _rates(counts)
     return _rates(sums) | {"by_kind": facts}
-
-
-def found_rooms(out: Path) -> tuple[Layout, ...] | None:
-    """Return the rooms of a run's ``layout.json``; None where it wrote none.
-
-    Raises:
-        DamagedFileError: the file holds no list of rooms.
-    """
-    path = out / "layout.json"
-    if not path.is_file():
-        return None
-    try:
-        return tuple(layout_of(row) for row in read_json(path))
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise DamagedFileError(path, f"is no list of rooms ({error})") from error
 
 
 def _rates(counts: np.ndarray) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
+from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
 from world2minecraft.evaluate.frame_error import frame_error
 from world2minecraft.evaluate.frames import UsedFrame, used_frames
 from world2minecraft.evaluate.layout import in_room, layout_facts
@@ -22,11 +22,12 @@ from world2minecraft.evaluate.objects import (
     object_facts,
     true_objects,
 )
-from world2minecraft.evaluate.openings import found_rooms, opening_facts
+from world2minecraft.evaluate.openings import opening_facts
 from world2minecraft.evaluate.poses import pose_facts
 from world2minecraft.evaluate.reach import CROSSED, Reached, reached_cells
 from world2minecraft.evaluate.truth import Truth, read_truth
 from world2minecraft.evaluate.world import world_facts
+from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.exchange.objects import read_objects
 from world2minecraft.exchange.room import read_room
 from world2minecraft.metrics.calibration import count_calibration
@@ -105,8 +106,8 @@ def score_run(out: Path, room: TrueRoom) -> dict[str, Any]:
     facts["poses"] = pose_facts(out, room.truth, room.frames)
     true_rooms = in_room(room.truth.layouts, room.truth_to_room)
     facts["layout"] = layout_facts(out, grid, true_rooms, room.objects)
-    rooms = found_rooms(out)
-    if rooms is not None:
+    if (out / "layout.json").is_file():
+        rooms = read_layouts(out / "layout.json")
         facts["openings"] = opening_facts(
             rooms, room.truth.layouts, room.truth_to_room, room.reached
         )
@@ -136,11 +137,34 @@ def cell_facts(grid: OccupancyGrid, room: TrueRoom) -> dict[str, Any]:
         "surface_within_one_voxel": {"precision": surface.precision, "recall": surface.recall},
         "free_recall": free_space_recall(labels == 0, true == 0, flags == CROSSED),
         "occupancy": count_occupancy(labels, true, scored).figures(),
+        "errors": error_facts(labels, true, scored),
         "calibration": {
             name: _calibration(confidence[cells], (labels == true)[cells])
             for name, cells in (("all", observed), ("occupied", observed & found_here))
         },
     }
+
+
+def error_facts(labels: np.ndarray, true: np.ndarray, scored: np.ndarray) -> dict[str, Any]:
+    """Return where exact IoU is lost: how many scored cells were missed and added, by class.
+
+    A missed cell was called free or left unknown; an added one is empty and was called occupied.
+    """
+    missed = scored & (true > 0) & ((labels == 0) | (labels == UNKNOWN))
+    added = scored & (true == 0) & (labels > 0) & (labels != UNKNOWN)
+    return {
+        "called_free": int((missed & (labels == 0)).sum()),
+        "left_unknown": int((missed & (labels == UNKNOWN)).sum()),
+        "called_occupied": int(added.sum()),
+        "missed_by_class": _by_class(true[missed]),
+        "added_by_class": _by_class(labels[added]),
+    }
+
+
+def _by_class(labels: np.ndarray) -> dict[str, int]:
+    """Return how many of some labels are of each class; classes without any are left out."""
+    counts = np.bincount(labels, minlength=CLASS_COUNT)
+    return {CLASS_NAMES[n]: int(counts[n]) for n in range(1, CLASS_COUNT) if counts[n]}
 
 
 def _calibration(confidence: np.ndarray, right: np.ndarray) -> dict[str, Any]:

@@ -26,6 +26,7 @@ from world2minecraft.evaluate.true_objects import (
 )
 from world2minecraft.evaluate.truth import Truth, read_truth
 from world2minecraft.exchange.evidence import write_evidence
+from world2minecraft.exchange.layout import write_layouts
 from world2minecraft.exchange.room import read_room
 from world2minecraft.exchange.scan import write_scan
 from world2minecraft.fuse import fuse_views
@@ -159,6 +160,7 @@ def _write_true_evidence(case: Case, work: Path) -> None:
 
 def _after_labels(case: Case, work: Path) -> None:
     put_true_labels(work, case.room)
+    write_layouts(work / "layout.json", case.room.truth.layouts)
     _go_on(case, work, "find")
 
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from world2minecraft.classes import class_id
 from world2minecraft.errors import DamagedFileError, InputError, UnknownNameError
+from world2minecraft.exchange.layout import layout_of_row
 from world2minecraft.files import array_names, read_json, read_npz
-from world2minecraft.types import Layout, LayoutObject, Opening, checks
+from world2minecraft.types import Layout, LayoutObject, checks
 
 ARRAYS = ("labels", "voxel_m", "origin_m", "truth_room_to_scan")
 
@@ -94,27 +95,12 @@ def _object(row: dict[str, Any]) -> LayoutObject:
 def _layouts(stated: dict[str, Any]) -> tuple[Layout, ...]:
     """Return the rooms; an old truth states the sides of its one room alone."""
     if "layouts" in stated:
-        return tuple(layout_of(row) for row in stated["layouts"])
+        return tuple(layout_of_row(row) for row in stated["layouts"])
     if "size_m" not in stated:
         return ()
     width, depth, height = stated["size_m"]
     outline = np.array([[0, 0], [width, 0], [width, depth], [0, depth]], np.float64)
     return (Layout(outline, height),)
-
-
-def layout_of(row: dict[str, Any]) -> Layout:
-    """Return the room that a row of ``truth.json`` or ``layout.json`` states, without objects."""
-    openings = tuple(
-        Opening(o["kind"], o["start_m"], o["end_m"], o["sill_m"], o["head_m"])
-        for o in row.get("openings", ())
-    )
-    return Layout(
-        floor_polygon_m=np.array(row["floor_polygon_m"], np.float64),
-        wall_height_m=row["wall_height_m"],
-        openings=openings,
-        floor_z_m=row.get("floor_z_m", 0.0),
-        name=row.get("name", ""),
-    )
 
 
 def _by_frame(path: Path, key: str, shape: tuple[int, ...]) -> Any:
