@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.build.doorways import open_doorways
 from world2minecraft.build.faces import blocks_behind, find_faces, see_through, straighten, vote
 from world2minecraft.build.lattice import Lattice, face_shares, overlaps, volume_shares
 from world2minecraft.build.morphology import (
@@ -70,12 +71,12 @@ def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParamete
     footprints: list[np.ndarray] = []
     floor = np.zeros(lattice.shape, bool)
     for ground, top in lattice.storeys:
-        open_floor = open_share[:, :, ground - 1] >= OPEN_FLOOR
-        open_floor &= ground > lattice.ground  # The lowest floor has no stairwell.
+        open_floor = _open_floor(grid, free, lattice, ground)
         footprint = _footprint(grid, open_share, walls, lattice, (ground, top), open_floor)
         _floor(grid, footprint, walls, lattice, (ground, top), open_floor, floor, coloured)
         _up_and_down(walls, ceiling, open_share, lattice, (ground, top), parameters)
         _level_tops(walls, patches, open_share, (ground, top))
+        open_doorways(walls, grid, lattice, (ground, top))
         footprints.append(footprint)
         if ground > lattice.ground:
             _one_slab(ceiling, floor, ground - 1)
@@ -92,6 +93,25 @@ def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParamete
         cells=np.concatenate([cells for cells, _ in coloured]),
         blocks=np.concatenate([blocks for _, blocks in coloured]),
     )
+
+
+def _open_floor(grid, free, lattice: Lattice, ground: int) -> np.ndarray:
+    """Return the columns, bool [X, Y], in which an upper storey's floor was seen through.
+
+    It is told by the layers of cells in which the rest of its floor lies, which may be a tenth of
+    a block thick.
+    """
+    shape = lattice.shape[:2]
+    if ground == lattice.ground:
+        return np.zeros(shape, bool)  # The lowest floor has no stairwell.
+    edges = lattice.edges_of(grid, 2)
+    near = np.flatnonzero(np.abs((edges[:-1] + edges[1:]) / 2 - ground) < 1)
+    if not len(near):
+        return np.zeros(shape, bool)
+    layer = near[(grid.labels[:, :, near] == FLOOR).sum(axis=(0, 1)).argmax()]
+    cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
+    share = cover[0] @ free[:, :, layer].astype(np.float32) @ cover[1].T
+    return np.asarray(share >= OPEN_FLOOR)
 
 
 def _one_slab(ceiling: np.ndarray, floor: np.ndarray, layer: int) -> None:
