@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.errors import UnknownNameError
+from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.metrics.layout import collisions, out_of_bounds
 from world2minecraft.rooms import KINDS, SHAPES, generate_room
 from world2minecraft.rooms.clutter import MAX_ASKEW_DEG
@@ -72,9 +73,25 @@ def test_the_polygon_is_the_outline_of_the_air(shape):
     polygon = room.layout.floor_polygon_m
     level = round((0.01 - room.origin_m[2]) / room.voxel_m)
     built = np.isin(room.labels[6:-6, 6:-6, level], (1, 3))
+    built |= room.labels[6:-6, 6:-6, 0] == 0  # Beyond the walls there is no slab.
     columns = 0.5 if shape == "columns" else 0.0
     assert area(polygon) == pytest.approx((~built).sum() * 0.0004, abs=0.03 + columns)
     assert len(polygon) > 4 or shape in ("box", "sloped", "columns")
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("seed", [1, 6])
+def test_the_shell_is_closed_so_that_no_ray_leaves(shape, seed):
+    room = generate_room(seed, kind="living", shape=shape)
+    parts, _ = connected_parts(room.labels == 0, corners=True)
+    rim = np.concatenate([
+        parts[[0, -1]].ravel(), parts[:, [0, -1]].ravel(), parts[:, :, [0, -1]].ravel()
+    ])  # fmt: skip
+    door = next(o for o in room.layout.openings if o.kind == "door")
+    spots = find_stands(room).places_m
+    step = spots[np.linalg.norm(spots[:, :2] - door.start_m, axis=1).argmin()] + [0, 0, 1.0]
+    inside = parts[tuple(((step - room.origin_m) / room.voxel_m).astype(int))]
+    assert inside > 0 and inside not in rim
 
 
 @pytest.mark.parametrize("seed", range(6))

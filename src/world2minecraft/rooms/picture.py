@@ -20,16 +20,18 @@ BACKGROUND = np.array([238, 238, 235], np.uint8)
 SUPERSAMPLE = 2
 
 
-def room_picture(room: Room, width_px: int = 1280, height_px: int = 960) -> np.ndarray:
+def room_picture(room: Room, width_px: int = 1280, height_px: int | None = None) -> np.ndarray:
     """Return a cutaway picture, uint8 [height, width, 3]; storeys lie side by side.
 
     Args:
         room: a room or a house.
         width_px: of the picture.
-        height_px: of the picture.
+        height_px: of the picture; None: three quarters of its width, half for two storeys.
     """
     levels = sorted({layout.floor_z_m for layout in room.layouts})
     share = width_px // len(levels)
+    if height_px is None:
+        height_px = width_px // 2 if len(levels) > 1 else width_px * 3 // 4
     return np.concatenate(
         [_storey_picture(room, level, share, height_px) for level in levels], axis=1
     )
@@ -55,7 +57,7 @@ def _opened(room: Room, floor_z_m: float) -> Room:
     high = low + slab + round(height / room.voxel_m)
     labels = room.labels[:, :, low:high].copy()
     if len(room.layouts) == 1:
-        labels[labels == int(SemanticClass.CEILING)] = 0
+        _drop_near_roofs(labels)
         _drop_near_walls(room, labels, slab)
     origin = np.array([*room.origin_m[:2], room.origin_m[2] + low * room.voxel_m])
     return replace(
@@ -66,6 +68,13 @@ def _opened(room: Room, floor_z_m: float) -> Room:
         colour=np.ascontiguousarray(room.colour[:, :, low:high]),
         origin_m=origin,
     )
+
+
+def _drop_near_roofs(labels: np.ndarray) -> None:
+    """Empty what of a sloped ceiling hangs over the near half of the room."""
+    x, y = (side // 2 for side in labels.shape[:2])
+    for part in (labels[x:], labels[:, :y]):
+        part[part == int(SemanticClass.CEILING)] = 0
 
 
 def _drop_near_walls(room: Room, labels: np.ndarray, slab: int) -> None:

@@ -21,7 +21,11 @@ def ell_ground(size_m: Size, rng: np.random.Generator) -> Ground:
     width, depth = (whole(1.22 * side) for side in size_m[:2])
     gone_x = whole(width * rng.uniform(0.28, 0.4))
     gone_y = whole(depth * rng.uniform(0.28, 0.4))
-    block = (whole(width - gone_x), whole(depth - gone_y), width, depth)
+    x, y = (bool(rng.integers(2)) for _ in range(2))
+    block = (
+        *(whole(width - gone_x) if x else 0.0, whole(depth - gone_y) if y else 0.0),
+        *(width if x else gone_x, depth if y else gone_y),
+    )
     return Ground((width, depth, size_m[2]), (block,))
 
 
@@ -31,7 +35,8 @@ def cut_ground(size_m: Size, rng: np.random.Generator) -> Ground:
     drawn = int(rng.integers(3))
     if drawn == 0:
         leg = whole(rng.uniform(0.8, 1.3))
-        return Ground(size_m, cuts=(Cut(True, True, leg),))
+        cut = Cut(bool(rng.integers(2)), bool(rng.integers(2)), leg)
+        return Ground(size_m, cuts=(cut,))
     if drawn == 1:
         wide, deep = whole(rng.uniform(1.0, 1.5)), whole(rng.uniform(0.3, 0.46))
         first = whole(rng.uniform(0.9, width - wide - 0.9))

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
-from world2minecraft.rooms.ground import Ground, Rect, Wall
+from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.rooms.ground import Ground, Rect, Wall, grown
 from world2minecraft.rooms.model import STEP_M, Bar, Colour, Part, shade
 from world2minecraft.rooms.openings import RECESS_M, Hole
 from world2minecraft.rooms.place import Item
@@ -95,6 +96,21 @@ def paint_built(canvas: Canvas, ground: Ground, style: Style) -> None:
     above = ~built[..., None] & (z > ground.ceiling_m(x, y)[inner[:2]][..., None])
     walls[0][above] = int(SemanticClass.CEILING)
     walls[1][above] = (244, 243, 239)
+    outside = _outside(canvas.labels)
+    canvas.labels[outside] = 0
+    canvas.colour[outside] = 0
+
+
+def _outside(labels: np.ndarray) -> np.ndarray:
+    """Return bool [X, Y]: what lies farther than a wall's thickness from the room's floor.
+
+    A thick column stays whole: outside is only what reaches the rim.
+    """
+    floor = np.zeros(labels.shape[:2], bool)
+    floor[SHELL:-SHELL, SHELL:-SHELL] = labels[SHELL:-SHELL, SHELL:-SHELL, SHELL] == 0
+    parts, _ = connected_parts(~grown(floor, SHELL), corners=False)
+    rim = np.concatenate([parts[0], parts[-1], parts[:, 0], parts[:, -1]])
+    return np.isin(parts, np.unique(rim[rim > 0]))
 
 
 def _planks(shape: tuple[int, ...], wood: Colour, rng: np.random.Generator) -> np.ndarray:

@@ -1,0 +1,36 @@
+"""``w2m rooms generate``: what it writes, and words that do not go together."""
+
+import pytest
+
+from world2minecraft import cli
+from world2minecraft.rooms import read_generated
+
+
+def test_a_room_is_written_and_can_be_read_back(tmp_path, capsys):
+    out = tmp_path / "made"
+    words = ["rooms", "generate", "--seed", "3", "--kind", "bathroom", "--out", str(out)]
+    assert cli.run(words) == 0
+    assert {path.name for path in out.iterdir()} == {"layout.json", "preview.png", "truth.npz"}
+    assert read_generated(out).kind == "bathroom"
+    shown = capsys.readouterr()
+    assert f"next   w2m rooms scan {out} --out capture" in shown.out
+    assert "write done" in shown.err
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--kind", "kitchn"], "no room kind is named 'kitchn'; did you mean 'kitchen'?"),
+        (["--shape", "round"], "no room shape is named 'round'; known: box, columns, cut, ell"),
+        (["--rooms", "5"], "--rooms and --storeys are of a house; add --house"),
+        (["--house", "--kind", "bed"], "--kind and --shape are of a single room; leave them out"),
+        (["--house", "--rooms", "2"], "--rooms must be from 3 to 14 on 1 storeys, not 2"),
+        (["--house", "--storeys", "0"], "--storeys must be 1 or 2, not 0"),
+        (["--seed", "-1"], "--seed must be 0 or more, not -1"),
+        (["--clutter", "2"], "--clutter must be from 0 to 1, not 2.0"),
+    ],
+)
+def test_words_that_cannot_be_are_refused_in_one_line(tmp_path, capsys, words, message):
+    out = tmp_path / "made"
+    assert cli.run(["rooms", "generate", *words, "--out", str(out)]) == 2
+    assert message in capsys.readouterr().err
