@@ -92,9 +92,9 @@ def row(true: tuple, jitter_m: float, scale_sigma: float, seed: int, passes: int
     surface, to_scan, size = true
     given, scale = disturbed(surface, jitter_m, scale_sigma, seed)
     first = align_surface(given)
-    begun = time.perf_counter()
+    begun = time.process_time()
     found = register_surface(given, first.scan_to_room, RegisterParameters(passes=passes))
-    seconds = time.perf_counter() - begun
+    seconds = time.process_time() - begun
     second = align_surface(found.surface)
     before = pose_error(given.cameras, surface.cameras)
     after = pose_error(found.corrections.pose_change @ given.cameras, surface.cameras)
@@ -109,7 +109,7 @@ def row(true: tuple, jitter_m: float, scale_sigma: float, seed: int, passes: int
 
 def main() -> None:
     """Print a row for each room and disturbance."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--first", type=int, default=500)
     parser.add_argument("--rooms", type=int, default=2)
     parser.add_argument("--frames", type=int, default=40)

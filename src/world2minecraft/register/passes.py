@@ -29,40 +29,53 @@ class State:
     """The patches and cameras as they stand, and what was changed to get here.
 
     ``total`` float64 [F, 7] is the sum of all steps: turn in radians, shift in metres, log of the
-    depth's scale. ``sigmas`` float64 [3] is how far off the three were, as learned so far.
+    depth's scale. ``sigmas`` float64 [3] is how far off the three were, as learned so far, and
+    ``bend_m`` how far patches still are from their surfels.
     """
 
     surface: Surface
     total: np.ndarray
     sigmas: np.ndarray
+    bend_m: float
+
+
+def begin(surface: Surface, chosen: RegisterParameters) -> State:
+    """Return the state before the first pass; ``surface`` lies in a frame that walls follow."""
+    sigmas = np.array([np.radians(chosen.jitter_deg), chosen.jitter_m, chosen.scale_sigma])
+    return State(surface, np.zeros((len(surface.cameras), UNKNOWNS)), sigmas, FIRST_BEND_M)
 
 
 def run_passes(
-    surface: Surface, speaks: np.ndarray, chosen: RegisterParameters, scale_sigma: float
+    state: State, speaks: np.ndarray, chosen: RegisterParameters, first: int = 0
 ) -> State:
     """Move all frames until their patches meet.
 
     Args:
-        surface: in a frame whose axes most walls follow.
+        state: where to begin.
         speaks: bool [N], the patches that take part; all are moved.
         chosen: the parameters.
-        scale_sigma: how far depth scales may be off; 0 leaves the depth as it is.
+        first: the pass to begin with; later ones look more closely.
     """
-    sigmas = np.array([np.radians(chosen.jitter_deg), chosen.jitter_m, scale_sigma])
-    state = State(surface, np.zeros((len(surface.cameras), UNKNOWNS)), sigmas)
-    bend_m = FIRST_BEND_M
-    together = np.sqrt(max(1.0, np.count_nonzero(speaks) / len(surface.cameras) / INDEPENDENT))
-    for number in range(chosen.passes):
+    frames = len(state.surface.cameras)
+    together = np.sqrt(max(1.0, np.count_nonzero(speaks) / frames / INDEPENDENT))
+    for number in range(first, chosen.passes):
         gap_m = GAPS_M[min(number, len(GAPS_M) - 1)]
         width_m = WIDTHS_M[min(number, len(WIDTHS_M) - 1)]
         cell_m = chosen.cell_m * (FIRST_CELLS if number == 0 else 1.0)
-        noise_m = max(LEAST_NOISE_M, bend_m * together)
+        noise_m = max(LEAST_NOISE_M, state.bend_m * together)
         seen = observe(state.surface, speaks, cell_m, gap_m, noise_m)
         prior = np.repeat(state.sigmas, (3, 3, 1))
-        step = solve(seen, state.total, prior, width_m)
-        state = _stepped(state, step)
-        bend_m = step.spread_m
+        state = _stepped(state, solve(seen, state.total, prior, width_m))
     return state
+
+
+def without_scale(before: State, after: State) -> State:
+    """Return the state ``after`` some passes with the depth as it was ``before`` them."""
+    change = after.total - before.total
+    change[:, 6] = 0.0
+    kept = Step(change, np.zeros_like(change), after.bend_m)
+    sigmas = after.sigmas * [1.0, 1.0, 0.0]
+    return replace(_stepped(before, kept), sigmas=sigmas)
 
 
 def surfels_of(surface: Surface, cell_m: float, gap_m: float) -> Surfels:
@@ -116,7 +129,7 @@ def _stepped(state: State, step: Step) -> State:
     learned = np.array([np.sqrt(np.mean(total[:, g] ** 2 + step.variance[:, g])) for g in GROUPS])
     learned = np.clip(learned, SIGMAS_LEAST, SIGMAS_MOST)
     moved = replace(surface, points_m=points_m, normals=normals, cameras=cameras)
-    return State(moved, total, np.where(state.sigmas > 0, learned, 0.0))
+    return State(moved, total, np.where(state.sigmas > 0, learned, 0.0), step.spread_m)
 
 
 def _rotation(vector: np.ndarray) -> np.ndarray:

@@ -16,17 +16,35 @@ import numpy as np
 from world2minecraft.coordinates import invert_rigid
 from world2minecraft.geometry.surface import Surface, collect_surface
 from world2minecraft.progress import Progress, silent
-from world2minecraft.register.kernels import UNKNOWNS, surfel_means
+from world2minecraft.register.kernels import surfel_means
 from world2minecraft.register.parameters import RegisterParameters
-from world2minecraft.register.passes import State, run_passes, shared, surfels_of
+from world2minecraft.register.passes import (
+    State,
+    begin,
+    run_passes,
+    shared,
+    surfels_of,
+    without_scale,
+)
 from world2minecraft.types import Corrections, Scan, View
 
 STAGE = "register"
 JUDGED_GAP_M = 0.10
 HELD_BLOCK_M = 0.4  # Held-out surface comes in blocks: neighbours would speak for each other.
-MUST_FALL = 0.98  # What the held-out misfit must fall to; less is chance.
+MUST_FALL = 0.97  # What the held-out misfit must fall to; less is chance.
+CLEAR_SPREAD = 0.02  # Depth scales that spread by less must prove that they do.
+CLOSER_PASSES = 2  # With the depth left alone, poses are at most millimetres from their best.
 LEAST_JUDGES = 50
 DECIMALS = 9
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether corrections are kept, and the held-out misfit without and with them."""
+
+    kept: bool
+    before_m: float | None
+    after_m: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,18 +94,28 @@ def register_surface(
     took no part does not fit better.
     """
     room = surface.turned(scan_to_room)
-    frames = len(room.cameras)
-    still = State(room, np.zeros((frames, UNKNOWNS)), np.zeros(3))
-    if chosen.passes == 0 or frames < 2 or not len(room.points_m):
-        return _registered(surface, still, scan_to_room, None, None)
+    still = begin(room, chosen)
+    if chosen.passes == 0 or len(room.cameras) < 2 or not len(room.points_m):
+        return _registered(surface, still, scan_to_room, Verdict(False, None, None))
     held = _held_out(room, chosen.held_share)
-    moved = run_passes(room, ~held, chosen, chosen.scale_sigma)
-    if moved.sigmas[2] < chosen.least_scale_sigma and chosen.scale_sigma > 0:
-        moved = run_passes(room, ~held, chosen, 0.0)
-    before, after = (_misfit_m(state.surface, held, chosen) for state in (still, moved))
-    if before is None or after is None or after > MUST_FALL * before:
-        return _registered(surface, still, scan_to_room, before, after)
-    return _registered(surface, moved, scan_to_room, before, after)
+    before_m = _misfit_m(room, held, chosen)
+    moved = run_passes(still, ~held, chosen)
+    after_m = _misfit_m(moved.surface, held, chosen)
+    if moved.sigmas[2] < CLEAR_SPREAD:
+        rigid = without_scale(still, moved)
+        rigid = run_passes(rigid, ~held, chosen, max(1, chosen.passes - CLOSER_PASSES))
+        rigid_m = _misfit_m(rigid.surface, held, chosen)
+        if moved.sigmas[2] < chosen.least_scale_sigma or not _fell(rigid_m, after_m):
+            moved, after_m = rigid, rigid_m
+    kept = _fell(before_m, after_m)
+    return _registered(
+        surface, moved if kept else still, scan_to_room, Verdict(kept, before_m, after_m)
+    )
+
+
+def _fell(before_m: float | None, after_m: float | None) -> bool:
+    """Whether a held-out misfit fell by more than chance; where few judge, it did not."""
+    return before_m is not None and after_m is not None and after_m < MUST_FALL * before_m
 
 
 def _told(views: Iterable[View], total: int, progress: Progress) -> Iterable[View]:
@@ -119,45 +147,40 @@ def _misfit_m(surface: Surface, held: np.ndarray, chosen: RegisterParameters) ->
 
 
 def _registered(
-    surface: Surface,
-    state: State,
-    scan_to_room: np.ndarray,
-    before_m: float | None,
-    after_m: float | None,
+    surface: Surface, state: State, scan_to_room: np.ndarray, verdict: Verdict
 ) -> Registered:
     room_to_scan = invert_rigid(scan_to_room)
     cameras = room_to_scan @ state.surface.cameras
     change = cameras @ np.array([invert_rigid(old) for old in surface.cameras]).reshape(-1, 4, 4)
     change = np.round(change, DECIMALS)
     scale = np.round(np.exp(state.total[:, 6]), DECIMALS)
-    facts = _facts(state, before_m, after_m)
+    facts = _facts(state, verdict)
     return Registered(
         Corrections(surface.names, change, scale, facts), state.surface.turned(room_to_scan)
     )
 
 
-def _facts(state: State, before_m: float | None, after_m: float | None) -> dict[str, Any]:
+def _facts(state: State, verdict: Verdict) -> dict[str, Any]:
     """Return the figures for ``scan.json``."""
-    shift = np.linalg.norm(state.total[:, 3:6], axis=1)
-    turn = np.degrees(np.linalg.norm(state.total[:, :3], axis=1))
-    kept = bool(state.sigmas[1] > 0)
-    return {
-        "kept": kept,
-        "frames": len(state.total),
-        "moved_median_mm": _rounded(1000 * _median(shift)),
-        "moved_most_mm": _rounded(1000 * float(shift.max(initial=0))),
-        "turned_median_deg": _rounded(_median(turn)),
-        "turned_most_deg": _rounded(float(turn.max(initial=0))),
-        "depth_scaled": bool(state.sigmas[2] > 0),
-        "depth_scale_spread": _rounded(float(state.sigmas[2])),
-        "misfit_before_mm": None if before_m is None else _rounded(1000 * before_m),
-        "misfit_after_mm": None if after_m is None else _rounded(1000 * after_m),
+    shift_mm = 1000 * np.linalg.norm(state.total[:, 3:6], axis=1)
+    turn_deg = np.degrees(np.linalg.norm(state.total[:, :3], axis=1))
+    scaled = verdict.kept and state.sigmas[2] > 0
+    figures = {
+        "moved_median_mm": _median(shift_mm),
+        "moved_most_mm": float(shift_mm.max(initial=0)),
+        "turned_median_deg": _median(turn_deg),
+        "turned_most_deg": float(turn_deg.max(initial=0)),
+        "depth_scale_spread": float(state.sigmas[2]) if scaled else 0.0,
+        "misfit_before_mm": None if verdict.before_m is None else 1000 * verdict.before_m,
+        "misfit_after_mm": None if verdict.after_m is None else 1000 * verdict.after_m,
     }
+    rounded = {name: None if v is None else round(v, 4) for name, v in figures.items()}
+    return {
+        "kept": verdict.kept,
+        "depth_scaled": bool(scaled),
+        "frames": len(state.total),
+    } | rounded
 
 
 def _median(values: np.ndarray) -> float:
     return float(np.median(values)) if len(values) else 0.0
-
-
-def _rounded(value: float) -> float:
-    return round(value, 4)

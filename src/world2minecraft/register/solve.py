@@ -19,7 +19,7 @@ from world2minecraft.register.kernels import (
 
 REWEIGHTINGS = 4
 CG_STEPS = 60
-CG_TOLERANCE = 1e-5
+CG_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)

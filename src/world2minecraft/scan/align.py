@@ -14,6 +14,8 @@ import numpy as np
 from world2minecraft.coordinates import rotation_about_z
 from world2minecraft.geometry.surface import Surface, collect_surface
 from world2minecraft.scan.gravity import Ground, find_ground, frame_of_up
+from world2minecraft.scan.places import face_place_m
+from world2minecraft.scan.straighten import FACING, straightening_turn
 from world2minecraft.scan.walls import Box, find_box, find_yaw
 from world2minecraft.types import Scan, View
 
@@ -62,6 +64,8 @@ def align_surface(surface: Surface) -> Alignment:
     level = surface.turned(scan_to_level)
     scan_to_level = _turn_to_walls(level) @ scan_to_level
     level = surface.turned(scan_to_level)
+    scan_to_level = _straightened(level, ground.floor_area_m2 > 0) @ scan_to_level
+    level = surface.turned(scan_to_level)
     box = find_box(level)
     low_m, high_m = _with_cameras(box, level)
     level_to_room = np.eye(4)
@@ -98,6 +102,16 @@ def _turn_to_walls(level: Surface) -> np.ndarray:
     heading_deg = np.degrees(np.arctan2(look[1], look[0]))
     quarters = round((90.0 - heading_deg) / 90.0)
     return rotation_about_z(90.0 * quarters) @ rotation_about_z(-yaw_deg)
+
+
+def _straightened(level: Surface, has_floor: bool) -> np.ndarray:
+    """Return the small move that lays all large faces along the axes and the floor on 0."""
+    move = np.eye(4)
+    move[:3, :3] = straightening_turn(level)
+    if has_floor:
+        turned = level.turned(move)
+        move[2, 3] = -face_place_m(turned.chosen(turned.normals[:, 2] > FACING), 2, 0.0)
+    return move
 
 
 def _with_cameras(box: Box, level: Surface) -> tuple[np.ndarray, np.ndarray]:

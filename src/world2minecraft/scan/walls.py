@@ -9,6 +9,7 @@ import numpy as np
 
 from world2minecraft.coordinates import rotation_about_z
 from world2minecraft.geometry.surface import Surface
+from world2minecraft.scan.places import face_place_m
 from world2minecraft.scan.surface import profile
 
 UPRIGHT = 0.17  # Sine of 10 degrees: how far a wall's normal may lean.
@@ -118,8 +119,7 @@ def _side(surface: Surface, axis: int, sign: int) -> tuple[float, bool]:
     places = found.peaks(max(WALL_LEAST_M2, WALL_SHARE * float(found.area_m2.max())))
     for place in places[::-1]:
         if np.mean(patches > place + 0.10) <= BEYOND_SHARE:
-            near = outward[facing & (np.abs(outward - place) < 0.06)]
-            return -sign * float(np.median(near)), True
+            return face_place_m(surface.chosen(facing), axis, -sign * float(place)), True
     return -sign * end, False
 
 
@@ -138,10 +138,10 @@ def _distinct(points: np.ndarray, values: np.ndarray) -> np.ndarray:
 def _ceiling(surface: Surface) -> tuple[float, bool]:
     """Return the height of the highest large surface that faces down, or where points end."""
     points = surface.points_m
-    facing = points[surface.normals[:, 2] < -FACING]
-    found = profile(facing, 2)
+    facing = surface.chosen(surface.normals[:, 2] < -FACING)
+    found = profile(facing.points_m, 2)
     high = _distinct(points, points[:, 2])
     for place in found.peaks(WALL_LEAST_M2)[::-1]:
         if place > CEILING_LEAST_M and np.mean(high > place + 0.10) <= BEYOND_SHARE:
-            return float(np.median(facing[np.abs(facing[:, 2] - place) < 0.06][:, 2])), True
+            return face_place_m(facing, 2, float(place)), True
     return float(np.quantile(high, 1 - EDGE_QUANTILE)), False
