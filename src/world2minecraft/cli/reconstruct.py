@@ -20,39 +20,42 @@ w2m reconstruct my_scan --out OUT --follow                while the scan still g
 """
 
 
+BlocksPerMetre = Annotated[
+    float,
+    typer.Option(
+        "--blocks-per-metre", help="Scale: 1 true size, 2, 4 or 12.5 (one voxel, one block)."
+    ),
+]
+Start = Annotated[
+    str | None,
+    typer.Option("--from", metavar="STAGE", help="scan, register, fuse, ... or report."),
+]
+LabelImages = Annotated[
+    Path | None, typer.Option("--labels", help="A folder of 2D label images, one a frame.")
+]
+Method = Annotated[str, typer.Option("--method", help="best, or paper: its steps and no others.")]
+Follow = Annotated[
+    bool,
+    typer.Option("--follow", help="Watch a capture that still grows; a file named done ends it."),
+]
+
+
 def run(
     capture: Annotated[Path, typer.Argument(help="A folder of posed RGB-D frames.")],
     out: Annotated[Path, typer.Option("--out", help="The folder of the results.")],
     voxel: Annotated[float, typer.Option("--voxel", help="Size of a cell, in metres.")] = 0.08,
-    blocks_per_metre: Annotated[
-        float,
-        typer.Option(
-            "--blocks-per-metre", help="Scale: 1 true size, 2, 4 or 12.5 (one voxel, one block)."
-        ),
-    ] = 4.0,
-    start: Annotated[
-        str | None,
-        typer.Option("--from", metavar="STAGE", help="scan, register, fuse, ... or report."),
-    ] = None,
-    labels: Annotated[
-        Path | None, typer.Option("--labels", help="A folder of 2D label images, one a frame.")
-    ] = None,
+    blocks_per_metre: BlocksPerMetre = 4.0,
+    start: Start = None,
+    labels: LabelImages = None,
     labeller: Annotated[str, typer.Option("--labeller", help="auto, votes or geometric.")] = "auto",
-    method: Annotated[
-        str, typer.Option("--method", help="best, or paper: its steps and no others.")
-    ] = "best",
+    method: Method = "best",
     mc_version: Annotated[
         str, typer.Option("--mc-version", help="The game version to write for.")
     ] = "1.20.1",
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any parameter.")
     ] = None,
-    follow: Annotated[
-        bool,
-        typer.Option(
-            "--follow", help="Watch a capture that still grows; a file named done ends it."
-        ),
-    ] = False,
+    follow: Follow = False,
     follow_idle_s: Annotated[
         float,
         typer.Option("--follow-idle-s", help="Seconds without a new frame that end --follow."),
