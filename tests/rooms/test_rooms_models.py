@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 
-from world2minecraft.rooms import decor, seating, storage
+from world2minecraft.rooms import decor, playing, seating, storage, washing
 from world2minecraft.rooms.model import Part, shade, whole
+from world2minecraft.rooms.odd import ODD
+from world2minecraft.rooms.small import ON_BEDS, ON_FLOORS, ON_TABLES
+from world2minecraft.rooms.stairs import railing
 
 WOOD, CLOTH = (180, 140, 90), (70, 90, 130)
 
@@ -49,7 +52,22 @@ MODELS = [
     decor.door(0.9, 2.04, WOOD),
     decor.waste_bin(CLOTH),
     decor.keyboard(),
+    washing.toilet(),
+    washing.washstand(CLOTH),
+    washing.mirror(0.7),
+    washing.bathtub(1.7),
+    washing.shower(),
+    washing.washing_machine(),
+    playing.stool(CLOTH),
+    playing.toy_shelf(WOOD, rng()),
+    playing.shoe_cabinet(WOOD),
+    playing.coats(rng(), WOOD),
+    playing.bench(WOOD),
+    playing.whiteboard(),
+    playing.printer(),
+    railing(1.77, WOOD),
 ]
+MAKERS = sorted({*ODD, *ON_BEDS, *ON_FLOORS, *ON_TABLES}, key=lambda maker: maker.__name__)
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
@@ -72,3 +90,16 @@ def test_lengths_are_rounded_to_two_centimetres():
 def test_shades_stay_colours():
     assert shade((100, 200, 250), 1.5) == (150, 255, 255)
     assert Part((0, 0, 0, 1, 1, 1), (1, 2, 3)).grain == "plain"
+
+
+@pytest.mark.parametrize("maker", MAKERS, ids=lambda maker: maker.__name__)
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_drawn_thing_stands_on_its_floor_and_has_a_size_of_homes(maker, seed):
+    model = maker(np.random.default_rng(seed))
+    boxes = np.array([part.box_m for part in model.parts])
+    size = np.array(model.size_m)
+    assert np.allclose(size / 0.02, np.round(size / 0.02))
+    assert (size > 0.03).all() and (size < 1.9).all()
+    # Round ends may reach over the voxels that they fill, by less than one.
+    assert (boxes[:, :3].min(axis=0) > [-size[0] / 2 - 0.021, -size[1] / 2 - 0.021, -0.021]).all()
+    assert (boxes[:, 3:].max(axis=0) < [*(size[:2] / 2 + 0.021), size[2] + 0.021]).all()
