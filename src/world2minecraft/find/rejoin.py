@@ -3,7 +3,11 @@
 import numpy as np
 from scipy.spatial import KDTree
 
+from world2minecraft.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
+
+STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
+STANDING_BIT = 4  # Times ``min_cells``: 32 cells are the star of a chair's foot.
 
 
 def rejoin(
@@ -11,19 +15,26 @@ def rejoin(
 ) -> np.ndarray:
     """Return owners in which no object is smaller than ``min_cells``.
 
+    What stands on the floor is large: of chairs, beds, sofas and tables bits of some more cells
+    join a neighbour too, where there is one.
+
     Loose pieces and too small objects join the nearest object of their own class within
     ``join_radius`` cells. A loose piece that finds none becomes an object where it is large
     enough; the rest belongs to none (owner 0).
     """
     result = owners.copy()
     for class_id in np.unique(labels[(labels >= 5) & (labels <= 11)]):
-        _rejoin_class(labels == class_id, result, min_cells, join_radius)
+        bit = STANDING_BIT * min_cells if class_id in STANDING else min_cells
+        _rejoin_class(labels == class_id, result, (min_cells, bit), join_radius)
     return result
 
 
-def _rejoin_class(mask: np.ndarray, owners: np.ndarray, min_cells: int, join_radius: float) -> None:
+def _rejoin_class(
+    mask: np.ndarray, owners: np.ndarray, limits: tuple[int, int], join_radius: float
+) -> None:
+    min_cells, bit = limits
     sizes = np.bincount(owners[mask])
-    small = np.flatnonzero((sizes > 0) & (sizes < min_cells))
+    small = np.flatnonzero((sizes > 0) & (sizes < bit))
     loose = mask & ((owners == 0) | np.isin(owners, small[small > 0]))
     if not loose.any():
         return
