@@ -1,6 +1,7 @@
 """Objects as blocks: templates by their parts or idioms, all else from its own cells."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ from world2minecraft.build.worktops import Worktop, find_worktop
 from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.furniture import idiom, template
 from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.metrics.solids import own_cells
 from world2minecraft.minecraft.colours import colours_of
 from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
 
@@ -115,12 +117,9 @@ class ObjectBuilder:
         return result
 
     def _cells_of(self, placement: Placement) -> np.ndarray:
-        """Return the cells, int [N, 3], of a placement's object that lie in its box."""
-        cells = np.argwhere(self.grid.instance == placement.object_id)
-        centres = self.grid.origin_m + (cells + 0.5) * self.grid.voxel_m
-        size = placement.size_m[[1, 0, 2]] if placement.quarter_turns % 2 else placement.size_m
-        reach = size / 2 + self.grid.voxel_m
-        return cells[(np.abs(centres - placement.center_m) <= reach).all(1)]
+        """Return the cells, int [N, 3], of a placement's object that lie in its box or by it."""
+        reach = 2 * self.grid.voxel_m
+        return own_cells(replace(placement, size_m=placement.size_m + reach), self.grid)
 
     def put_cells(self, cells: np.ndarray, class_id: int, number: int) -> None:
         """Set an object from its own cells; one that hangs flush on a wall takes wall blocks."""
