@@ -109,7 +109,7 @@ def test_spill_comes_down_to_the_floor():
     offset, hits = np.array(evidence.offset_sum), np.array(evidence.hits)
     colour, source = np.array(grid.colour), np.array(grid.source)
     lifted, high = (20, 20), (30, 20)
-    for column, z_m in ((lifted, 0.03), (high, 0.07)):
+    for column, z_m in ((lifted, 0.015), (high, 0.07)):
         at, under = (*column, floor_layer + 1), (*column, floor_layer)
         labels[at], log_odds[at], hits[at], source[at] = 11, 2.0, 10, OBSERVED
         offset[at] = [0, 0, 10 * (z_m - 0.04)]

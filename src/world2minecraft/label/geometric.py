@@ -65,8 +65,11 @@ class GeometricLabeller:
         runs = [wall.run for wall in structure.walls]
         rest &= ~label_screens(surface, rest, runs, labels, self.parameters.pieces)
         label_furniture(surface, rest, structure.wall, labels, self.parameters)
+        labels[structure.wall] = SemanticClass.WALL
+        labels[structure.ceiling] = SemanticClass.CEILING
+        labels[floor.cells | floor.spill] = SemanticClass.FLOOR
         for wall in structure.walls:
-            straight.add(wall.relief, wall.face.classes, wall.face.depth_m)
+            straight.add(wall.relief, wall.face.cells, wall.face.classes, wall.face.depth_m)
         if structure.ceiling_m is not None:
             straight.add_level(structure.ceiling, 1, SemanticClass.CEILING)
         straight.add_level(floor.cells | floor.spill, -1, SemanticClass.FLOOR, 0.0)

@@ -62,7 +62,10 @@ def find_ceiling(
         if count < needed:
             return cells, None
         if above < needed:
-            near = surface.points_m[..., 2] > peak - parameters.plane_gate_m
+            height = surface.points_m[..., 2]
+            near = (height > peak - parameters.plane_gate_m) & below_free
+            # The top cells of walls end just under the ceiling, and are no part of it.
+            near |= height > peak - 0.4 * parameters.plane_gate_m
             return surface.occupied & near, peak
         heights = heights[heights > peak + parameters.plane_gate_m]
     return cells, None

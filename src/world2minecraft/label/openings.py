@@ -20,6 +20,11 @@ from world2minecraft.label.relief import Relief
 from world2minecraft.label.surface import Surface
 
 Kind = Literal["window", "door", "doorway"]
+BEND_M = 0.32  # Bends are wider than this to both sides.
+MOST_BEND_M = 0.1
+STRAIGHT_M = 0.03  # A wall that bends by less is straight.
+BAR_M = 0.02  # The bars of a window lie before its glass.
+STEP_M = 0.012  # What hangs on a wall and what is let into it has an edge; a bend has none.
 CLASS_OF_KIND = {"window": SemanticClass.WINDOW, "door": SemanticClass.OBJS}
 
 
@@ -38,6 +43,7 @@ class WallFace:
 
     classes: np.ndarray  # uint8 [A, B]: wall, window, or objs for the leaf of a door
     depth_m: np.ndarray  # float [A, B]: how deep it lies, along the relief's axis 0
+    cells: np.ndarray  # bool [N, A, B]: those of the relief's cells that lie there
     gaps: tuple[Gap, ...]
 
 
@@ -49,7 +55,21 @@ def read_wall(surface: Surface, relief: Relief, parameters: StructureParameters)
     face.cut_leaves()
     face.hang(relief.seen & _between(relief.gap_m, *parameters.hung_m))
     face.pass_through(_passed(surface, relief))
-    return WallFace(face.classes, face.depth_m, tuple(face.gaps))
+    outward_m = relief.sign * relief.of(surface.points_m[..., relief.axis])
+    near = np.abs(outward_m - face.depth_m) <= parameters.noise_m
+    near |= np.abs(outward_m - relief.plane_m - face.bend_m) <= parameters.noise_m
+    return WallFace(face.classes, face.depth_m, relief.cells & near, tuple(face.gaps))
+
+
+def _bend(surface: Surface, relief: Relief) -> np.ndarray:
+    """Return how far the wall around each place stands off its plane, float [A, B].
+
+    Lens and sensor bend a long wall by some centimetres; a median follows them, and neither the
+    edge of a curtain nor a shelf board.
+    """
+    gap_m = np.where(relief.seen, relief.gap_m, 0.0)
+    bend = ndimage.median_filter(gap_m, 2 * surface.cells_of(BEND_M) + 1, mode="nearest")
+    return np.clip(bend, -MOST_BEND_M, MOST_BEND_M)
 
 
 class _Face:
@@ -58,13 +78,15 @@ class _Face:
     def __init__(self, surface: Surface, relief: Relief, parameters: StructureParameters):
         self.surface, self.relief, self.parameters = surface, relief, parameters
         self.classes = np.full(relief.weight.shape, SemanticClass.WALL, np.uint8)
-        self.depth_m = relief.plane_m.copy()
+        self.bend_m = _bend(surface, relief)
+        strong = np.abs(self.bend_m) >= STRAIGHT_M
+        self.depth_m = relief.plane_m + np.where(strong, self.bend_m, 0.0)
         self.plane = relief.seen & (np.abs(relief.gap_m) < parameters.opening_depth_m[0])
         self.gaps: list[Gap] = []
 
     def cut(self, recessed: np.ndarray) -> None:
         """Claim the windows and the leaves of doors that lie well behind the face."""
-        for part in _parts(opened(recessed)):
+        for part in _parts(opened(_bridged(recessed) & self.relief.seen)):
             kind = _kind(part, self._metres(part), self.surface.voxel_m, self.parameters)
             if kind is None or _framed(part, self.plane) < self.parameters.frame_share:
                 continue
@@ -84,15 +106,17 @@ class _Face:
             along, height = self._metres(part)
             wide = within(along[1] - along[0], parameters.leaf_width_m)
             high = within(height[1], parameters.leaf_height_m) and height[0] <= 0.4
-            if wide and high and part.sum() >= 0.6 * _box_cells(part):
+            flat = part.sum() >= 0.6 * _box_cells(part)
+            if wide and high and flat and self._has_edge(part):
                 self._claim(part, SemanticClass.OBJS, float(np.median(relief.gap_m[part])))
                 self._add_gap("door", part)
 
     def hang(self, raised: np.ndarray) -> None:
         """Claim what hangs flat on the wall: pictures, boards, mirrors."""
         for part in _parts(opened(raised & (self.classes == SemanticClass.WALL))):
+            large = part.sum() * self.surface.voxel_m**2 >= self.parameters.hung_area_m2
             flat = part.sum() >= 0.6 * _box_cells(part)
-            if flat and part.sum() * self.surface.voxel_m**2 >= self.parameters.hung_area_m2:
+            if large and flat and self._has_edge(part):
                 depth = float(np.median(self.relief.gap_m[part]))
                 rim = grown(part) & self.relief.seen & (self.relief.gap_m <= depth / 2)
                 self._claim(part | rim, SemanticClass.OBJS, depth)
@@ -104,9 +128,20 @@ class _Face:
             if kind is not None and _framed(part, self.plane) >= self.parameters.frame_share:
                 self._add_gap("doorway" if kind == "door" else kind, part)
 
+    def _has_edge(self, part: np.ndarray) -> bool:
+        """Return whether the depth steps around most of a part, where it was seen."""
+        gap_m = self.relief.gap_m
+        ring = grown(part, 2) & ~grown(part) & self.relief.seen
+        depth = np.median(gap_m[part])
+        step = np.sign(depth) * (depth - gap_m[ring]) >= STEP_M
+        return bool(ring.sum() >= 0.4 * part.sum() ** 0.5 and step.mean() >= 0.6)
+
     def _claim(self, places: np.ndarray, kind: SemanticClass, gap_m: float) -> None:
+        """Say what places are: all as deep, but for the bars of a window."""
+        relief = self.relief
+        depth_m = np.where(np.abs(relief.gap_m - gap_m) <= BAR_M, gap_m, relief.gap_m)
         self.classes[places] = kind
-        self.depth_m[places] = self.relief.plane_m[places] + gap_m
+        self.depth_m[places] = (relief.plane_m + depth_m)[places]
 
     def _add_gap(self, kind: Kind, part: np.ndarray) -> None:
         along, height = self._metres(part)
@@ -127,6 +162,16 @@ class _Face:
 def _parts(mask: np.ndarray) -> list[np.ndarray]:
     parts, count = connected_parts(mask)
     return [parts == number for number in range(1, count + 1)]
+
+
+def _bridged(mask: np.ndarray) -> np.ndarray:
+    """Return a mask with what the bars of a window part joined."""
+    result = mask
+    for shape in ((4, 1), (1, 4)):
+        padded = np.pad(mask, 4)
+        closed = ndimage.binary_closing(padded, np.ones(shape, bool))
+        result = result | closed[4:-4, 4:-4]
+    return result
 
 
 def _box_cells(part: np.ndarray) -> int:

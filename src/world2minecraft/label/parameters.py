@@ -14,7 +14,7 @@ Range = tuple[float, float]
 class StructureParameters:
     """How floor, ceiling, walls and openings are found.
 
-    spill_m: a floor point may read this high: three sigma of the sensor model at 3 m.
+    spill_m: the mean point of noise of the floor lies no higher; what lies on it is thicker. Trial.
     ceiling_min_m: nothing lower is a ceiling; doors are 2 m high.
     ceiling_area_m2: less may be the underside of a cupboard or a lamp.
     storey_m: floors of two storeys are this far apart at least; a cellar is lower than a room.
@@ -40,6 +40,8 @@ class StructureParameters:
     opening_area_m2: a small window.
     leaf_depth_m, leaf_width_m, leaf_height_m: a closed door whose leaf lies hardly behind the
         wall: deeper than the noise of a wall's relief, as wide and as high as doors are.
+    noise_m: cells of a plane have their mean point this near it: the noise of a wall's relief is
+        3 to 5 mm, that of a single cell three times as much.
     hung_m, hung_area_m2: how far before a wall, as negative depth, flat things hang, and the
         least of them; the noise of a wall's relief is 3 to 5 mm.
     window_sill_m, window_size_m, door_width_m, door_height_m: catalogue; a window begins above
@@ -47,7 +49,7 @@ class StructureParameters:
     frame_share: of the ring around an opening this share is wall; curtains hide the rest. Trial.
     """
 
-    spill_m: float = 0.05
+    spill_m: float = 0.03
     ceiling_min_m: float = 1.9
     ceiling_area_m2: float = 1.0
     storey_m: float = 2.0
@@ -72,6 +74,7 @@ class StructureParameters:
     leaf_depth_m: float = 0.008
     leaf_width_m: Range = (0.6, 1.15)
     leaf_height_m: Range = (1.75, 2.3)
+    noise_m: float = 0.035
     hung_m: Range = (-0.07, -0.015)
     hung_area_m2: float = 0.05
     window_sill_m: float = 0.3

@@ -8,10 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface, turned
 
 SOLID_M = 0.008  # SSCNet's 4 of 64: about this much matter makes a cell of 8 cm solid.
-FIT_GATES_M = (0.03, 0.02, 0.012, 0.012)  # Windows, pictures and boards do not tell where it lies.
+FIT_GATES_M = (0.012, 0.012, 0.01, 0.01)  # Doors, pictures and boards do not tell where it lies.
+MAX_SLOPE = 0.01  # 0.6 degrees: twice what a frame may be off.
 MANY_POINTS = 300  # More points of one place do not make it surer: what is left is the lens.
 FIT_PLACES = 60  # Fewer places, half a square metre, tell no slope.
 
@@ -65,12 +67,12 @@ def relief_of(
     outward = sign * turned(surface.points_m[..., axis], axis, sign)[box]
     total = weight.sum(axis=0)
     mean = (weight * outward).sum(axis=0) / np.maximum(total, 1)
-    plane = _fitted(mean, total)
+    plane = _fitted(mean, total, surface.voxel_m)
     depth = np.where(total > 0, mean, plane)
     return Relief(axis, sign, box, cells, total, depth, plane)
 
 
-def _fitted(depth_m: np.ndarray, weight: np.ndarray) -> np.ndarray:
+def _fitted(depth_m: np.ndarray, weight: np.ndarray, voxel_m: float) -> np.ndarray:
     """Return the plane through the places seen, float [A, B], without what lies off it."""
     a, b = np.nonzero(weight)
     if not len(a):
@@ -78,18 +80,15 @@ def _fitted(depth_m: np.ndarray, weight: np.ndarray) -> np.ndarray:
     values = depth_m[a, b]
     strength = np.sqrt(np.minimum(weight[a, b], MANY_POINTS))
     columns = np.stack([np.ones(len(a)), a - a.mean(), b - b.mean()], axis=1)
-    fit = np.array([_weighted_median(values, strength), 0.0, 0.0])
+    fit = np.array([highest_peak(values, FIT_GATES_M[0] / 2)[0], 0.0, 0.0])
     for gate_m in FIT_GATES_M:
         near = np.abs(values - columns @ fit) <= gate_m
         if near.sum() < FIT_PLACES:
             break
         rows = columns[near] * strength[near, None]
-        fit = np.linalg.lstsq(rows, values[near] * strength[near], rcond=None)[0].round(9)
+        found = np.linalg.lstsq(rows, values[near] * strength[near], rcond=None)[0].round(9)
+        if np.abs(found[1:]).max() > MAX_SLOPE * voxel_m:
+            break
+        fit = found
     rows, columns = np.indices(depth_m.shape)
     return fit[0] + fit[1] * (rows - a.mean()) + fit[2] * (columns - b.mean())
-
-
-def _weighted_median(values: np.ndarray, weight: np.ndarray) -> float:
-    order = np.argsort(values, kind="stable")
-    total = np.cumsum(weight[order])
-    return float(values[order][np.searchsorted(total, total[-1] / 2)])

@@ -15,6 +15,8 @@ from world2minecraft.label.storeys import Storey
 from world2minecraft.label.surface import Surface, turned
 from world2minecraft.types import COMPLETED, UNSEEN, OccupancyGrid
 
+MOVE_M = 0.02  # A place this far off its plane does not move into a layer where nothing was seen.
+
 
 class Straightening:
     """What becomes of the cells of planes; filled plane by plane, then applied at once."""
@@ -34,31 +36,37 @@ class Straightening:
             setattr(part, name, storey.part(getattr(self, name)))
         return part
 
-    def add(self, relief: Relief, classes: np.ndarray, depth_m: np.ndarray) -> None:
+    def add(
+        self, relief: Relief, cells: np.ndarray, classes: np.ndarray, depth_m: np.ndarray
+    ) -> None:
         """Pull a plane straight.
 
         Args:
             relief: the plane.
-            classes: uint8 [A, B], what each place is; 0 leaves its cells alone.
+            cells: bool [N, A, B], the cells that are of it; no other moves.
+            classes: uint8 [A, B], what each place is.
             depth_m: float [A, B], where along axis 0 its surface lies.
         """
-        chosen = relief.seen & (classes > 0)
+        chosen = cells.any(axis=0)
         layer = self._layer(relief, depth_m)
-        count = relief.cells.shape[0]
+        count = cells.shape[0]
         chosen &= (layer >= 0) & (layer < count)
         layers = np.arange(count)[:, None, None]
         target = (layers == layer) & chosen
-        free_to_take = relief.cells | ~relief.of(self.surface.occupied)
+        free_to_take = cells | ~relief.of(self.surface.occupied)
         placed = (target & free_to_take).any(axis=0)
+        # Where no cell was seen in that layer, the place itself must say that one belongs there.
+        sure = np.abs(relief.depth_m - depth_m) <= MOVE_M
+        placed &= sure | (target & cells).any(axis=0)
         target &= placed
-        weight = np.where(relief.cells, relief.of(self.surface.hits), -1)
+        weight = np.where(cells, relief.of(self.surface.hits), -1)
         best = weight.argmax(axis=0)
         index = np.take_along_axis(relief.of(self.origin), best[None], axis=0)
         labels, origin = relief.of(self.labels), relief.of(self.origin)
         first = target & (labels == 0)
         origin[first] = np.broadcast_to(index, first.shape)[first]
         labels[first] = np.broadcast_to(classes, first.shape)[first]
-        gone = relief.cells & placed & ~target
+        gone = cells & placed & ~target
         relief.of(self.before)[gone & (layers < layer)] = True
         relief.of(self.behind)[gone & (layers > layer)] = True
 
@@ -74,7 +82,7 @@ class Straightening:
         relief = relief_of(self.surface, view, 2, sign, box)
         classes = np.full(relief.weight.shape, kind, np.uint8)
         flat = relief.plane_m if height_m is None else np.full(classes.shape, sign * height_m)
-        self.add(relief, classes, flat)
+        self.add(relief, view, classes, flat)
 
     def applied(self, grid: OccupancyGrid, labels: np.ndarray) -> OccupancyGrid:
         """Return the grid with ``labels`` [X, Y, Z] for what is of no plane."""

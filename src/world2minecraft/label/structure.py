@@ -44,6 +44,10 @@ def structure_of(surface: Surface, parameters: StructureParameters) -> Structure
     floor = find_floor(surface, parameters)
     ceiling, ceiling_m = find_ceiling(surface, parameters)
     level = floor.cells | floor.spill | ceiling
-    mask, runs = find_walls(surface, level, ceiling_m, parameters)
-    walls = tuple(Wall(run, relief, read_wall(surface, relief, parameters)) for run, relief in runs)
-    return Structure(surface, floor, ceiling, ceiling_m, mask, walls)
+    mask = np.zeros(surface.occupied.shape, bool)
+    walls = []
+    for run, relief in find_walls(surface, level, ceiling_m, parameters):
+        face = read_wall(surface, relief, parameters)
+        relief.of(mask)[face.cells] = True
+        walls.append(Wall(run, relief, face))
+    return Structure(surface, floor, ceiling, ceiling_m, mask, tuple(walls))

@@ -40,8 +40,8 @@ def find_walls(
     level: np.ndarray,
     ceiling_m: float | None,
     parameters: StructureParameters,
-) -> tuple[np.ndarray, list[tuple[WallRun, Relief]]]:
-    """Return the walls' cells, bool [X, Y, Z], and their runs, each with its relief.
+) -> list[tuple[WallRun, Relief]]:
+    """Return the runs of wall, each with its relief.
 
     Args:
         surface: the room.
@@ -49,7 +49,6 @@ def find_walls(
         ceiling_m: the ceiling's height, None where it was not seen.
         parameters: the thresholds.
     """
-    cells = np.zeros(surface.occupied.shape, bool)
     found: list[tuple[WallRun, Relief]] = []
     for axis, sign in DIRECTIONS:
         view = _Turned(surface, level, axis, sign)
@@ -59,9 +58,8 @@ def find_walls(
         runs = [run for run in runs if not _is_furniture(run, runs, ceiling_m, view, parameters)]
         for run in runs:
             box, on = _marked(view, run, parameters)
-            turned(cells, axis, sign)[box] |= on
             found.append((run, relief_of(surface, on, axis, sign, box)))
-    return cells, found
+    return found
 
 
 class _Turned:
