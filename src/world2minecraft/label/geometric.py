@@ -66,7 +66,7 @@ class GeometricLabeller:
         rest &= ~label_screens(surface, rest, runs, labels, self.parameters.pieces)
         label_furniture(surface, rest, structure.wall, labels, self.parameters)
         labels[structure.wall] = SemanticClass.WALL
-        labels[structure.ceiling] = SemanticClass.CEILING
+        labels[structure.ceiling | structure.slopes] = SemanticClass.CEILING
         labels[floor.cells | floor.spill] = SemanticClass.FLOOR
         for wall in structure.walls:
             straight.add(wall.relief, wall.face.cells, wall.face.classes, wall.face.depth_m)

@@ -169,7 +169,7 @@ def _bridged(mask: np.ndarray) -> np.ndarray:
     result = mask
     for shape in ((4, 1), (1, 4)):
         padded = np.pad(mask, 4)
-        closed = ndimage.binary_closing(padded, np.ones(shape, bool))
+        closed = np.asarray(ndimage.binary_closing(padded, np.ones(shape, bool)), bool)
         result = result | closed[4:-4, 4:-4]
     return result
 

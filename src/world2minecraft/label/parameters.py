@@ -17,6 +17,8 @@ class StructureParameters:
     spill_m: the mean point of noise of the floor lies no higher; what lies on it is thicker. Trial.
     ceiling_min_m: nothing lower is a ceiling; doors are 2 m high.
     ceiling_area_m2: less may be the underside of a cupboard or a lamp.
+    roof_bottom_m, roof_area_m2, roof_length_m, roof_rise_m: a sloped ceiling begins no lower, and
+        has at least this area, length along the ridge and rise. A guess.
     storey_m: floors of two storeys are this far apart at least; a cellar is lower than a room.
     standing_m: over a floor is so much free space; over a wardrobe is not.
     floor_area_m2: the least seen part of another storey's floor; no bed or table is as large.
@@ -52,6 +54,10 @@ class StructureParameters:
     spill_m: float = 0.03
     ceiling_min_m: float = 1.9
     ceiling_area_m2: float = 1.0
+    roof_bottom_m: float = 0.7
+    roof_area_m2: float = 1.2
+    roof_length_m: float = 1.2
+    roof_rise_m: float = 0.4
     storey_m: float = 2.0
     standing_m: float = 1.5
     floor_area_m2: float = 2.5

@@ -8,6 +8,7 @@ from world2minecraft.label.horizontal import Floor, find_ceiling, find_floor
 from world2minecraft.label.openings import WallFace, read_wall
 from world2minecraft.label.parameters import StructureParameters
 from world2minecraft.label.relief import Relief
+from world2minecraft.label.slopes import find_slopes
 from world2minecraft.label.surface import Surface
 from world2minecraft.label.walls import WallRun, find_walls
 
@@ -29,14 +30,15 @@ class Structure:
     floor: Floor
     ceiling: np.ndarray  # bool [X, Y, Z]
     ceiling_m: float | None  # None where it was not seen
+    slopes: np.ndarray  # bool [X, Y, Z], sloped ceilings
     wall: np.ndarray  # bool [X, Y, Z]
     walls: tuple[Wall, ...]
 
     @property
     def rest(self) -> np.ndarray:
         """The occupied cells that are no structure, bool [X, Y, Z]."""
-        structure = self.floor.cells | self.floor.spill | self.ceiling | self.wall
-        return self.surface.occupied & ~structure
+        level = self.floor.cells | self.floor.spill | self.ceiling | self.slopes
+        return self.surface.occupied & ~(level | self.wall)
 
 
 def structure_of(surface: Surface, parameters: StructureParameters) -> Structure:
@@ -44,10 +46,12 @@ def structure_of(surface: Surface, parameters: StructureParameters) -> Structure
     floor = find_floor(surface, parameters)
     ceiling, ceiling_m = find_ceiling(surface, parameters)
     level = floor.cells | floor.spill | ceiling
+    slopes = find_slopes(surface, level, parameters)
+    level |= slopes
     mask = np.zeros(surface.occupied.shape, bool)
     walls = []
     for run, relief in find_walls(surface, level, ceiling_m, parameters):
         face = read_wall(surface, relief, parameters)
         relief.of(mask)[face.cells] = True
         walls.append(Wall(run, relief, face))
-    return Structure(surface, floor, ceiling, ceiling_m, mask, tuple(walls))
+    return Structure(surface, floor, ceiling, ceiling_m, slopes, mask, tuple(walls))

@@ -1,18 +1,22 @@
 """Labels from 2D label images: each cell takes the class that most of its pixels voted for.
 
-Where nothing voted, the geometric label stands. Votes are robust (in a trial 30 % of wrong pixels
-cost 0.1 points of mIoU), so that they only need single cells put right.
+Where nothing voted, the geometric label stands; where votes are divided it decides. Label images
+err in patches, at edges and far away; planes know floor, ceiling and walls better than they.
 """
 
 from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.classes import CLASS_COUNT, SemanticClass
 from world2minecraft.label.geometric import GeometricLabeller
 from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.smoothing import smooth_labels
 from world2minecraft.types import FusedEvidence, OccupancyGrid
+
+# What the geometric label counts beside shares of the votes, of structure and of objects. mIoU of
+# eight tuning scans: 0.879 without, 0.885, 0.889, 0.891 and 0.887 at 0.2, 0.4, 0.6 and 1.0.
+STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15
 
 
 class VotesLabeller:
@@ -38,8 +42,18 @@ class VotesLabeller:
         voted = total > 0
         at = tuple(occupied[voted].T)
         labels, confidence = np.array(base.labels), np.array(base.confidence, np.float32)
-        labels[at] = votes[voted].argmax(axis=1) + 1
-        share = votes[voted].max(axis=1) / total[voted]
+        shares = votes[voted] / total[voted][:, None]
+        kinds = (shares + _prior(base.labels[at])).argmax(axis=1)
+        labels[at] = kinds + 1
+        share = shares[np.arange(len(kinds)), kinds]
         confidence[at] = share * grid.confidence.reshape(-1)[seen_at[voted]].astype(np.float32)
         labels = smooth_labels(labels, self.small_cells)
         return replace(base, labels=labels, confidence=confidence.astype(np.float16))
+
+
+def _prior(labels: np.ndarray) -> np.ndarray:
+    """Return what geometric labels [N] of classes 1 to 11 add to each class, float32 [N, 11]."""
+    weight = np.where(labels <= SemanticClass.WINDOW, STRUCTURE_PRIOR, OBJECT_PRIOR)
+    prior = np.zeros((len(labels), CLASS_COUNT - 1), np.float32)
+    prior[np.arange(len(labels)), labels.astype(int) - 1] = weight
+    return prior
