@@ -42,7 +42,7 @@ from world2minecraft.steps import label_stage
 from world2minecraft.types import COMPLETED, OBSERVED, FusedEvidence, OccupancyGrid
 
 LABELLERS = ("geometric", "votes")
-PULL = 20.0  # Cells that a class's intercept needs before it leaves the mean of all classes.
+PULL = 20.0  # Completed cells that a class needs before it leaves the mean of all classes.
 
 
 class Example:

@@ -78,6 +78,12 @@ class EvidenceMap:
         box = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
         return self._as_evidence(log_odds[box], record[box], low + first, *sums)
 
+    @property
+    def memory_mb(self) -> float:
+        """What the map's arrays take, in megabytes."""
+        arrays = (value for value in vars(self.blocks).values() if isinstance(value, np.ndarray))
+        return sum(array.nbytes for array in arrays) / (1 << 20)
+
     def _as_evidence(self, log_odds, record, low, votes, colour_sum, offset_sum, hits):
         """Return dense evidence from dense cells and the sums of their records."""
         scale = np.maximum(hits / 65535, 1)[:, None]
