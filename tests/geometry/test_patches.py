@@ -47,6 +47,16 @@ def test_wide_patches_stand_on_planes_and_small_ones_at_a_fold():
     assert len(fold.points_m) > len(flat.points_m)
 
 
+def test_thinning_keeps_some_of_all_parts_of_the_image():
+    found = patches_of_depth(np.full((240, 320), 2.0, np.float32), CAMERA)
+    few = found.thinned(100)
+    assert len(few.points_m) == len(few.normals) == len(few.sigma_m) == 100
+    np.testing.assert_allclose(
+        np.ptp(few.points_m, axis=0), np.ptp(found.points_m, axis=0), atol=0.1
+    )
+    assert found.thinned(10**6) is found
+
+
 def test_holes_and_steps_give_none():
     depth = np.zeros((240, 320), np.float32)
     assert len(patches_of_depth(depth, CAMERA).points_m) == 0

@@ -203,7 +203,7 @@ def test_a_corrected_scan_has_moved_poses_and_stretched_depth():
     assert len(fixed.views) == 2
     np.testing.assert_array_equal(first.camera_to_scan, raw[0].camera_to_scan)
     np.testing.assert_array_equal(second.camera_to_scan, change @ raw[1].camera_to_scan)
-    np.testing.assert_array_equal(second.depth_m, raw[1].depth_m * np.float32(1.5))
+    np.testing.assert_array_equal(second.depth_m, np.float32(1.5) * np.asarray(raw[1].depth_m))
 
 
 def test_the_surface_is_that_of_the_corrected_views():

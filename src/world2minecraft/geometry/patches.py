@@ -36,6 +36,14 @@ class Patches:
     normals: np.ndarray
     sigma_m: np.ndarray
 
+    def thinned(self, most: int) -> "Patches":
+        """Return at most ``most`` of the patches, evenly spread over the image."""
+        count = len(self.sigma_m)
+        if count <= most:
+            return self
+        index = np.arange(most) * count // most
+        return Patches(self.points_m[index], self.normals[index], self.sigma_m[index])
+
 
 def patches_of_depth(depth_m: np.ndarray, camera: Camera) -> Patches:
     """Return the flat patches of one image.

@@ -9,6 +9,8 @@ from world2minecraft.geometry.patches import patches_of_depth
 from world2minecraft.jit import njit
 from world2minecraft.types import View
 
+MOST_EACH = 4096  # All of an image of any size.
+
 
 @dataclass(frozen=True, eq=False)
 class Surface:
@@ -46,14 +48,19 @@ class Surface:
         )
 
 
-def collect_surface(views: Iterable[View]) -> Surface:
-    """Gather the flat patches of views in the scan's frame; views without depth give none."""
+def collect_surface(views: Iterable[View], most_each: int = MOST_EACH) -> Surface:
+    """Gather the flat patches of views in the scan's frame; views without depth give none.
+
+    Args:
+        views: read once, one at a time.
+        most_each: of a view with more patches, that many are taken, evenly spread.
+    """
     points, normals, sigmas = [np.zeros((0, 3))], [np.zeros((0, 3))], [np.zeros(0)]
     cameras, names, counts = [], [], []
     for view in views:
         if view.depth_m is None or view.depth_camera is None:
             continue
-        found = patches_of_depth(view.depth_m, view.depth_camera)
+        found = patches_of_depth(view.depth_m, view.depth_camera).thinned(most_each)
         pose = view.depth_camera_to_scan
         points.append(_moved(found.points_m, pose[:3, :3], pose[:3, 3]))
         normals.append(_moved(found.normals, pose[:3, :3], np.zeros(3)))

@@ -34,6 +34,8 @@ HELD_BLOCK_M = 0.4  # Held-out surface comes in blocks: neighbours would speak f
 MUST_FALL = 0.97  # What the held-out misfit must fall to; less is chance.
 CLEAR_SPREAD = 0.02  # Depth scales that spread by less must prove that they do.
 CLOSER_PASSES = 2  # With the depth left alone, poses are at most millimetres from their best.
+MOST_PATCHES = 1_200_000  # Of all frames: about 700 MB at work.
+LEAST_EACH = 200
 LEAST_JUDGES = 50
 DECIMALS = 9
 
@@ -73,7 +75,8 @@ def register(
         progress: told of the stage ``register``.
     """
     total = len(scan.views) + 1
-    surface = collect_surface(_told(depth_views(scan), total, progress))
+    most_each = max(LEAST_EACH, MOST_PATCHES // max(1, len(scan.views)))
+    surface = collect_surface(_told(depth_views(scan), total, progress), most_each)
     found = register_surface(surface, scan.scan_to_room, parameters or RegisterParameters())
     progress(STAGE, total, total)
     return found
