@@ -19,6 +19,9 @@ LEAST_BLOCKS = 3.0
 ROUNDS = 4
 # A blue chair may be a stronger blue, but not purple: hue counts more than chroma.
 CHROMA_WEIGHT, HUE_WEIGHT = 0.6, 1.5
+# Of what is nearly grey the hue is noise, and a clear colour in its place is plainly wrong: the
+# kitchen's blue-grey carpet came out purple.
+FAINT_CHROMA, CLEAR_CHROMA, FAINT_WEIGHT = 0.01, 0.025, 2.5
 SAME_PAINT = 0.06  # Oklab distance of two medians of one paint: about the noise of fused colours.
 MAX_DISTANCES = 1 << 24  # Blocks times candidates held at once: 64 MB.
 
@@ -38,9 +41,13 @@ def costs_of(
     wanted = colours.astype(np.float32)[:, None]
     offered = oklab_of_srgb(colours_of(candidates))
     square = (wanted - offered) ** 2
-    chroma = np.hypot(wanted[..., 1], wanted[..., 2]) - np.hypot(offered[:, 1], offered[:, 2])
+    own = np.hypot(wanted[..., 1], wanted[..., 2])
+    chroma = own - np.hypot(offered[:, 1], offered[:, 2])
     hue = np.maximum(square[..., 1] + square[..., 2] - chroma**2, 0)
-    apart = lightness_weight * square[..., 0] + CHROMA_WEIGHT * chroma**2 + HUE_WEIGHT * hue
+    clear = np.clip((own - FAINT_CHROMA) / (CLEAR_CHROMA - FAINT_CHROMA), 0, 1)
+    weight = FAINT_WEIGHT + (CHROMA_WEIGHT - FAINT_WEIGHT) * clear
+    weight = np.where(chroma < 0, weight, CHROMA_WEIGHT)  # Greyer than it is, is no such fault.
+    apart = lightness_weight * square[..., 0] + weight * chroma**2 + HUE_WEIGHT * hue
     return (np.sqrt(apart) + handicaps.astype(np.float32)) ** 2
 
 
