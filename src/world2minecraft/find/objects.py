@@ -11,6 +11,7 @@ from world2minecraft.find.clusters import cluster_candidates
 from world2minecraft.find.density import candidate_cells, density_map, object_cells
 from world2minecraft.find.growth import grow
 from world2minecraft.find.hosts import part_by_hosts
+from world2minecraft.find.paints import part_by_paint
 from world2minecraft.find.parameters import FindParameters
 from world2minecraft.find.posts import join_posts
 from world2minecraft.find.reach import layers_reached
@@ -70,7 +71,8 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
         )
         owners = join_backs(part_chairs(owners, grid), grid)
         owners = part_rows(owners, grid)
-        owners = join_posts(part_by_hosts(owners, grid), grid)
+        owners = part_by_paint(part_by_hosts(owners, grid), grid)
+        owners = join_posts(owners, grid)
     instances = _instances(grid, owners, reach=not chosen.paper_compat)
     marked = np.zeros(grid.shape, np.uint16)
     for instance in instances:
