@@ -27,7 +27,7 @@ SURE_LOG_ODDS = 6.0  # The fusion's own limit.
 class _Sums:
     """What pixels add to the cells of a box: flat arrays, a row a cell."""
 
-    votes: np.ndarray  # float64 [C, 12]
+    votes: np.ndarray  # float32 [C, 12]
     colour: np.ndarray  # float64 [C, 3]
     offset: np.ndarray  # float64 [C, 3], metres
     hits: np.ndarray  # int64 [C]
@@ -46,7 +46,7 @@ def true_evidence(room: TrueRoom, views: Iterable[View], scan_to_room: np.ndarra
     free = room.reached.scored & (room.labels == 0)
     cells = int(np.prod(shape))
     sums = _Sums(
-        np.zeros((cells, CLASS_COUNT)), np.zeros((cells, 3)), np.zeros((cells, 3)),
+        np.zeros((cells, CLASS_COUNT), np.float32), np.zeros((cells, 3)), np.zeros((cells, 3)),
         np.zeros(cells, np.int64),
     )  # fmt: skip
     truth = room.truth
@@ -88,20 +88,23 @@ def _add_view(
     kept = cell >= 0
     cell, surface = cell[kept], surface[kept]
     pixels = _pixels(stated, camera, rows[kept], columns[kept])
-    count = len(sums.hits)
-    sums.hits += np.bincount(cell, minlength=count)
+    # Sums over the cells that this view touches alone: a house has far more.
+    touched, at = np.unique(cell, return_inverse=True)
+    count = len(touched)
+    sums.hits[touched] += np.bincount(at, minlength=count)
     place = np.stack(np.unravel_index(cell, room.labels.shape), axis=1) + room.reached.low + 0.5
     offset = surface - place * room.reached.voxel_m
     for axis in range(3):
-        sums.offset[:, axis] += np.bincount(cell, offset[:, axis], count)
+        sums.offset[touched, axis] += np.bincount(at, offset[:, axis], count)
         if view.colour is not None:
             tone = view.colour[..., axis][pixels].astype(np.float64)
-            sums.colour[:, axis] += np.bincount(cell, tone, count)
+            sums.colour[touched, axis] += np.bincount(at, tone, count)
     if view.labels is not None:
         said = view.labels[pixels].astype(np.int64)
         voting = (said > 0) & (said < CLASS_COUNT)
-        flat = np.bincount(cell[voting] * CLASS_COUNT + said[voting], minlength=count * CLASS_COUNT)
-        sums.votes += flat.reshape(count, CLASS_COUNT)
+        pairs = at[voting] * CLASS_COUNT + said[voting]
+        votes = np.bincount(pairs, minlength=count * CLASS_COUNT)
+        sums.votes[touched] += votes.reshape(count, CLASS_COUNT).astype(np.float32)
 
 
 def _ends(room, camera, camera_to_truth, hits, rows, columns, occupied):
