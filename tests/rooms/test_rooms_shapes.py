@@ -189,3 +189,11 @@ def test_a_roof_holds_low_things_at_its_knee_and_tall_ones_in_the_middle():
     assert ground.ceiling_m(np.array([0.0, 0.7, 1.4, 3.0]), np.zeros(4)) == pytest.approx(
         [1.0, 1.7, 2.4, 2.4]
     )
+
+
+@pytest.mark.parametrize(("kind", "shape"), [("hall", "sloped"), ("bathroom", "cut")])
+@pytest.mark.parametrize("seed", [500, 502, 503])
+def test_narrow_rooms_take_every_shape(kind, shape, seed):
+    room = generate_room(seed, kind=kind, shape=shape)
+    kinds = [opening.kind for opening in room.layout.openings]
+    assert kinds.count("door") == 1 and "window" in kinds

@@ -50,7 +50,7 @@ def choose_openings(plan: Plan, *, walls: tuple[int, ...]) -> tuple[Hole, ...]:
     holes = [Hole("door", order[0], first, first + DOOR_M[0], 0.0, DOOR_M[1])]
     for wall in order[1 : 2 + int(rng.integers(2))]:
         side = plan.ground.walls[wall]
-        wide = whole(rng.uniform(1.1, 1.6))
+        wide = min(whole(rng.uniform(1.1, 1.6)), whole(side.length_m - 0.5))
         first = side.first_m + whole(side.length_m / 2 - wide / 2 + rng.uniform(-0.2, 0.2))
         holes.append(Hole("window", wall, first, first + wide, SILL_M, HEAD_M))
     for hole in holes:

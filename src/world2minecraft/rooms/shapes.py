@@ -10,6 +10,8 @@ from world2minecraft.rooms.model import whole
 Size = tuple[float, float, float]
 WALL_FOR_OPENING_M = 1.9  # A window of 1.6 m and its curtains, or a door, its frame and a switch.
 
+WALL_FOR_DOOR_M = 1.3
+
 
 def box_ground(size_m: Size, rng: np.random.Generator) -> Ground:
     """Return the plain box."""
@@ -39,14 +41,22 @@ def cut_ground(size_m: Size, rng: np.random.Generator) -> Ground:
         return Ground(size_m, cuts=(cut,))
     if drawn == 1:
         wide, deep = whole(rng.uniform(1.0, 1.5)), whole(rng.uniform(0.3, 0.46))
-        first = whole(rng.uniform(0.9, width - wide - 0.9))
+        wide = min(wide, whole(0.5 * width))
+        first = _between(width - wide, 0.9, rng)
         return Ground(size_m, ((first, depth - deep, first + wide, depth),))
     deep, wide = whole(rng.uniform(0.5, 0.9)), whole(rng.uniform(1.6, 2.2))
-    first = whole(rng.uniform(0.6, width - wide - 0.6))
+    wide = min(wide, whole(0.6 * width))
+    first = _between(width - wide, 0.6, rng)
     sides: tuple[Rect, ...] = (
         (0.0, depth, first, depth + deep), (first + wide, depth, width, depth + deep),
     )  # fmt: skip
     return Ground((width, whole(depth + deep), height), sides)
+
+
+def _between(free_m: float, margin_m: float, rng: np.random.Generator) -> float:
+    """Return where something begins that leaves ``free_m`` of a wall, a margin at both ends."""
+    margin_m = min(margin_m, 0.5 * free_m)
+    return whole(rng.uniform(margin_m, free_m - margin_m))
 
 
 def sloped_ground(size_m: Size, rng: np.random.Generator) -> Ground:
@@ -105,11 +115,10 @@ def open_walls(ground: Ground, kind: str) -> tuple[int, ...]:
     A kitchen's counters take two; under a roof a window finds no place.
     """
     low = {roof.side for roof in ground.roofs}
-    wide = [
-        n
-        for n, wall in enumerate(ground.walls)
-        if wall.turn not in low and wall.length_m >= WALL_FOR_OPENING_M
-    ]
+    upright = [n for n, wall in enumerate(ground.walls) if wall.turn not in low]
+    wide = [n for n in upright if ground.walls[n].length_m >= WALL_FOR_OPENING_M]
+    if len(wide) < 2:  # A narrow hall under a roof has its door and its window in its short walls.
+        wide = [n for n in upright if ground.walls[n].length_m >= WALL_FOR_DOOR_M]
     if kind == "kitchen":
         wide = [n for n in wide if n not in (0, 1)]
     return tuple(wide)
