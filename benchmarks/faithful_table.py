@@ -7,6 +7,8 @@ from typing import Any
 
 from rich.table import Table
 
+from world2minecraft.evaluate.stages import AFTER
+
 Row = dict[str, Any]
 
 
@@ -111,7 +113,7 @@ def stages_table(title: str, rows: Sequence[Row]) -> Table:
         table.add_column(name, justify="left" if name in ("difficulty", "truth after") else "right")
     for group in dict.fromkeys(row["difficulty"] for row in rows):
         mine = [row for row in rows if row["difficulty"] == group]
-        for stage in ("none", *mine[0]["stages"]):
+        for stage in ("none", *(name for name in AFTER if name in mine[0]["stages"])):
             those = mine if stage == "none" else [row["stages"][stage] for row in mine]
             table.add_row(group, stage, *(_text(column, those) for column in STAGE_COLUMNS))
     return table

@@ -65,9 +65,13 @@ def test_a_row_for_each_difficulty_and_each_trial_on_request():
 
 def test_stages_stand_under_the_run_itself():
     better = row(iou=0.97)
-    text = printed(stages_table("votes", [row() | {"stages": {"fusion": better}}]))
+    text = printed(
+        stages_table("votes", [row() | {"stages": {"labels": better, "fusion": better}}])
+    )
     lines = [line.split() for line in text.splitlines()[2:]]
-    assert [line[:2] for line in lines] == [["noise", "none"], ["noise", "fusion"]]
+    assert [line[:2] for line in lines] == [
+        ["noise", "none"], ["noise", "fusion"], ["noise", "labels"],
+    ]  # fmt: skip
     assert "0.970" in lines[1]
 
 
