@@ -44,7 +44,7 @@ def test_two_cabinets_that_share_a_column_part_and_the_longer_gives_way():
 
 def test_a_turned_piece_gives_way_along_the_right_side():
     one = _put(1, "cabinet", (0, 0, 0), (1.6, 0.48, 0.8), 1)
-    other = _put(2, "box", (1.52, 0, 0), (1.92, 0.4, 0.4))
+    other = _put(2, "cabinet", (1.52, 0, 0), (1.92, 0.4, 0.4))
     first, _ = clear_overlaps([one, other], 0.08)
     np.testing.assert_allclose(first.size_m, (0.48, 1.52, 0.8))
 

@@ -1,5 +1,7 @@
 """Objects that are no box: cut into runs that are."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,6 +14,7 @@ from world2minecraft.furnish import FurnishParameters, furnish
 from world2minecraft.furnish.evidence import evidence_of
 from world2minecraft.furnish.runs import cut_into_runs, largest_rectangle
 from world2minecraft.furniture import surface
+from world2minecraft.types import ObjectInstance
 
 FURN, WALL = int(SemanticClass.FURN), int(SemanticClass.WALL)
 
@@ -33,13 +36,27 @@ def _kitchen(hidden=True, kettle=False):
     return labels
 
 
+def _l_and_cupboard(labels):
+    """Return the grid with its L of counters as one object and the tall cupboard as another."""
+    grid = grid_of(labels)
+    cells = np.argwhere(labels == FURN).astype(np.int32)
+    tall = cells[:, 0] >= 40
+    instance = np.zeros(labels.shape, np.uint16)
+    objects = []
+    for number, mine in enumerate((cells[~tall], cells[tall]), 1):
+        instance[tuple(mine.T)] = number
+        low, high = mine.min(0) * 0.08, (mine.max(0) + 1) * 0.08
+        x, y, z = high - low
+        middle = (low + high) / 2 + grid.origin_m
+        objects.append(ObjectInstance(number, FURN, middle, np.array([y, x, z]), 90.0, mine, 1.0))
+    return replace(grid, instance=instance), objects
+
+
 @pytest.mark.parametrize("hidden", [False, True])
 @pytest.mark.parametrize("kettle", [False, True])
 def test_an_l_of_counters_becomes_its_runs(hidden, kettle):
-    found = find_objects(grid_of(_kitchen(hidden, kettle)))
-    furn = [one for one in found.instances if one.class_id == FURN]
-    assert len(furn) == 2  # The tall cupboard is an object of its own, the L of counters one.
-    placements = furnish(found.grid, furn)
+    grid, furn = _l_and_cupboard(_kitchen(hidden, kettle))
+    placements = furnish(grid, furn)
     assert {placement.object_id for placement in placements} == {one.id for one in furn}
     large = [one for one in placements if one.template != "cells"]
     assert len(large) == 3

@@ -13,7 +13,7 @@ from world2minecraft.build.halves import FULL, slab_states
 from world2minecraft.build.hues import default_colour, spread
 from world2minecraft.build.idioms import Thing, idiom_box, put_idiom
 from world2minecraft.build.lattice import volume_shares
-from world2minecraft.build.morphology import beside
+from world2minecraft.build.morphology import beside, grown
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.parts import Design, design_of
@@ -316,11 +316,11 @@ def _is_flush(filled: np.ndarray, window: Window) -> bool:
 
 
 def _within(canvas: Canvas, footprints: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the blocks, bool [X, Y, Z], over the footprint of their storey or under its walls."""
+    """Return the blocks, bool [X, Y, Z], over the floor of their storey or in its walls."""
     within = np.zeros(canvas.states.shape, bool)
     walls = canvas.semantic == SemanticClass.WALL
     for (ground, top), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
-        columns = footprint | walls[:, :, ground:top].any(axis=2)
+        columns = grown(footprint, (1, 1)) | walls[:, :, ground:top].any(axis=2)
         within[:, :, ground:top] = columns[:, :, None]
     return within
 

@@ -17,6 +17,7 @@ from world2minecraft.types import Layout, Placement
 
 STEP_M = 0.04  # How finely a slanted wall is followed.
 LOST_M = 0.6  # What lies farther outside was seen through an opening or in a mirror.
+MOST_STAYS = 0.7  # Of each side of what is cut; else it is moved as a whole.
 HAIR_M = 1e-6
 
 
@@ -96,18 +97,33 @@ def _within_span(box: np.ndarray, axis: int, low: float, high: float, least: flo
 
 
 def _within_outline(box: np.ndarray, polygon: np.ndarray, least: np.ndarray) -> np.ndarray | None:
-    """Return the largest part of a box that lies in a polygon, grown to the least it may be."""
-    reach = np.maximum(least[:2] - (box[1] - box[0])[:2], 0)
-    grown = np.stack([box[0, :2] - least[:2] - reach, box[1, :2] + least[:2] + reach])
+    """Return a box cut to a polygon where most of it stays, else moved, else as small as may be."""
     first = _largest_within(box[:, :2], polygon)
-    if first is not None and (np.ptp(first, axis=0) >= least[:2] - HAIR_M).all():
+    wanted = np.maximum(least[:2], MOST_STAYS * np.ptp(box, axis=0)[:2])
+    if first is not None and (np.ptp(first, axis=0) >= wanted - HAIR_M).all():
         return np.column_stack([first, box[:, 2]])
+    moved = _moved_within(box, polygon)
+    if moved is not None:
+        return moved
+    grown = np.stack([box[0, :2] - least[:2], box[1, :2] + least[:2]])
     wider = _largest_within(grown, polygon)
     if wider is None:
         return None
     middle, half = box[:, :2].mean(axis=0), np.minimum(least[:2], np.ptp(wider, axis=0)) / 2
     middle = np.clip(middle, wider[0] + half, wider[1] - half)
     return np.column_stack([np.stack([middle - half, middle + half]), box[:, 2]])
+
+
+def _moved_within(box: np.ndarray, polygon: np.ndarray) -> np.ndarray | None:
+    """Return a box moved by the least way, up to ``LOST_M`` along x and y, that lets it in."""
+    steps = np.arange(-LOST_M, LOST_M + HAIR_M, 2 * STEP_M)
+    ways = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
+    ways = ways[np.argsort(np.round((ways**2).sum(axis=1), 6), kind="stable")]
+    rim = _rim(box, polygon)
+    for way in ways:
+        if inside_polygon(rim + way, polygon, HAIR_M).all():
+            return box + np.array([*way, 0.0])
+    return None
 
 
 def _largest_within(plan: np.ndarray, polygon: np.ndarray) -> np.ndarray | None:

@@ -17,8 +17,10 @@ TUCKED = {SemanticClass.CHAIR, SemanticClass.TABLE}  # A chair under its table i
 def clear_overlaps(placements: list[Placement], voxel_m: float) -> tuple[Placement, ...]:
     """Return the placements, in their order, without overlaps of up to two cells.
 
-    Of two objects that overlap, the upper one gives way in height and the longer one in plan,
-    where its template may be that small; else the other. ``iou`` stays that of the match.
+    Of two objects that overlap, the upper one gives way in height. In plan, loose cells and small
+    things give way to furniture, else the longer one to the shorter, where its template may be
+    that small; else the other. None loses more than two cells of a side to all its neighbours
+    together. ``iou`` stays that of the match.
     """
     boxes = [_box(one) for one in placements]
     for m, n in combinations(range(len(placements)), 2):
@@ -29,7 +31,7 @@ def clear_overlaps(placements: list[Placement], voxel_m: float) -> tuple[Placeme
         axis = int(np.argmin(np.round(depth, 6)))
         if not 1e-6 < depth[axis] <= DEEPEST_CELLS * voxel_m + 1e-6:
             continue
-        for yields, stays in _turns(m, n, boxes, axis):
+        for yields, stays in _turns(m, n, boxes, axis, placements):
             trimmed = _trimmed(boxes[yields], boxes[stays], axis)
             if _allowed(placements[yields], trimmed, axis, voxel_m):
                 boxes[yields] = trimmed
@@ -40,13 +42,22 @@ def clear_overlaps(placements: list[Placement], voxel_m: float) -> tuple[Placeme
 Box = tuple[np.ndarray, np.ndarray]
 
 
-def _turns(m: int, n: int, boxes: list[Box], axis: int) -> list[tuple[int, int]]:
+def _turns(
+    m: int, n: int, boxes: list[Box], axis: int, placements: list[Placement]
+) -> list[tuple[int, int]]:
     """Return who gives way to whom, the better choice first."""
     if axis == 2:
         upper_first = boxes[m][0][2] > boxes[n][0][2]
         return [(m, n), (n, m)] if upper_first else [(n, m), (m, n)]
+    lesser = [_is_lesser(placements[index]) for index in (m, n)]
+    if lesser[0] != lesser[1]:
+        return [(m, n), (n, m)] if lesser[0] else [(n, m), (m, n)]
     longer = np.ptp(boxes[m], axis=0)[axis] >= np.ptp(boxes[n], axis=0)[axis]
     return [(m, n), (n, m)] if longer else [(n, m), (m, n)]
+
+
+def _is_lesser(placement: Placement) -> bool:
+    return placement.template == OWN_CELLS or placement.class_id == SemanticClass.OBJS
 
 
 def _trimmed(box: Box, other: Box, axis: int) -> Box:
@@ -65,6 +76,10 @@ def _allowed(placement: Placement, box: Box, axis: int, voxel_m: float) -> bool:
         return False
     if placement.template == OWN_CELLS:
         return True
+    before = _box(placement)
+    lost = max(np.abs(box[0] - before[0])[axis], np.abs(box[1] - before[1])[axis])
+    if lost > DEEPEST_CELLS * voxel_m + 1e-6:
+        return False
     one = template(placement.template)
     if axis == 2 and one.mount == "floor" and box[0][2] > _box(placement)[0][2] + 1e-6:
         return False

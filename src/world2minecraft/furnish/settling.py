@@ -60,6 +60,7 @@ class _Table:
         self, placements: list[Placement | None], grid: OccupancyGrid, rooms: Sequence[Layout]
     ):
         self.placements, self.grid, self.rooms = placements, grid, rooms
+        self.original = list(placements)
         self.solids = [self.solid(one) for one in placements]
         self.boxes = np.array([_hull(one) for one in self.solids]).reshape(-1, 2, 3)
         self.depths = np.zeros((len(placements), len(placements)))
@@ -132,11 +133,15 @@ def _changes(table: _Table, index: int, other: int) -> Iterator[Change]:
         yield Change(weight * dear, index, _as_cells(one, table))
     for trimmed in _trims(box, solid, least_sides_m(one, table.grid.voxel_m)):
         cut = with_box(one, trimmed)
-        lost = 1 - _volume(trimmed) / _volume(box)
         if one.template == OWN_CELLS:
-            lost = 1 - len(own_cells(cut, table.grid)) / max(len(own_cells(one, table.grid)), 1)
-        if lost < 1:
-            yield Change(float(np.abs(trimmed - box).max()) + lost, index, cut)
+            before = max(len(own_cells(one, table.grid)), 1)
+            lost = 1 - len(own_cells(cut, table.grid)) / before
+            if lost < 1:
+                yield Change(CELLS_COST_M * lost, index, cut)
+            continue
+        first = table.original[index] or one
+        if np.abs(trimmed - box_m(first)).max() <= FARTHEST_M + 1e-6:
+            yield Change(weight * float(np.abs(trimmed - box).max()), index, cut)
 
 
 def _steps(voxel_m: float) -> list[np.ndarray]:
