@@ -70,6 +70,7 @@ def put_idiom(
     thing: Thing,
     colours: tuple[np.ndarray, np.ndarray],
     palette: Palette,
+    within: np.ndarray,
 ) -> None:
     """Set a design, as far as nothing stands there, in the object's colours.
 
@@ -80,6 +81,7 @@ def put_idiom(
         thing: the object's class and instance.
         colours: float32 [X, Y, Z, 3], Oklab, of its box of blocks; bool [X, Y, Z], where known.
         palette: the blocks that may replace the design's own full ones.
+        within: bool [X, Y, Z], where things may stand.
     """
     tinted, known = colours
     median = np.median(tinted[known], axis=0) if known.any() else None
@@ -90,6 +92,8 @@ def put_idiom(
     for cell, block in zip(local.tolist(), design.blocks, strict=True):
         at = tuple((low + cell).tolist())
         if any(i >= side for i, side in zip(at, shape, strict=True)) or canvas.states[at]:
+            continue
+        if not within[at]:
             continue
         colour = tinted[tuple(cell)] if known[tuple(cell)] else median
         state = block.state if colour is None else _in_colour(block.state, colour, thing, palette)

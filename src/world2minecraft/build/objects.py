@@ -154,7 +154,7 @@ class ObjectBuilder:
             low, size = idiom_box(found, placement, self.lattice)
             hues = self._stretched(cells, placement, low, size.tolist())
             colours = block_colours(tuple(size.tolist()), hues.blocks - low, *self._coloured(hues))
-            put_idiom(self.canvas, found, low, thing, colours, self.palette)
+            put_idiom(self.canvas, found, low, thing, colours, self.palette, self.within)
             return True
         parts = template(placement.template).parts(placement.size_m, placement.parameters)
         design = design_of(placement, parts, self.lattice)

@@ -95,9 +95,12 @@ def _patches(mask: np.ndarray, numbers: np.ndarray):
 
 
 def _name_foundations(canvas: Canvas) -> None:
-    """Count the floor's blocks under walls as wall: so the floor's class is what one sees."""
-    for ground, top in canvas.lattice.storeys:
-        above = np.isin(canvas.semantic[:, :, ground:top], (WALL, WINDOW)).any(2)
+    """Count the floor's blocks under walls as wall: so the floor's class is what one sees.
+
+    A doorway has a wall over it and floor in it.
+    """
+    for ground in canvas.lattice.grounds:
+        above = np.isin(canvas.semantic[:, :, ground], (WALL, WINDOW))
         below = canvas.semantic[:, :, ground - 1]
         below[above & (below == FLOOR)] = WALL
 

@@ -1,0 +1,137 @@
+"""Collisions told by what is solid, categories and objects that are kept."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from world2minecraft.coordinates import block_to_room
+from world2minecraft.furniture import template, templates_of
+from world2minecraft.metrics.layout import (
+    category_integrity,
+    collisions,
+    kept_objects,
+    out_of_rooms,
+    overlapping_boxes,
+)
+from world2minecraft.metrics.solids import box_m, depth_m, own_cells, solids_m
+from world2minecraft.types import BlockVolume, Layout, ObjectInstance, OccupancyGrid, Placement
+
+NAMES = ["chair", "dining_table", "sofa", "counter", "bookcase", "desk", "double_bed"]
+
+
+def put(number, name, x, y, turns=0, size=None, z=0.0) -> Placement:
+    one = template(name)
+    size_m = np.array(size or one.typical_m)
+    center = np.array([x, y, z + size_m[2] / 2])
+    return Placement(number, one.class_id, name, center, size_m, turns, 0.5)
+
+
+def grid_with(cells: dict[int, list[tuple[int, int, int]]]) -> OccupancyGrid:
+    labels = np.zeros((40, 40, 20), np.uint8)
+    instance = np.zeros(labels.shape, np.uint16)
+    for number, where in cells.items():
+        for cell in where:
+            labels[cell], instance[cell] = 11, number
+    return OccupancyGrid(
+        labels=labels,
+        confidence=np.ones(labels.shape, np.float16),
+        colour=np.zeros((*labels.shape, 3), np.uint8),
+        source=np.ones(labels.shape, np.uint8),
+        instance=instance,
+        voxel_m=0.08,
+        origin_m=np.zeros(3),
+    )
+
+
+@given(st.sampled_from(NAMES), st.integers(0, 3), st.floats(-2, 2), st.floats(-2, 2))
+def test_solid_parts_fill_the_turned_box_to_its_sides(name, turns, x, y):
+    placement = put(1, name, x, y, turns)
+    parts = solids_m(placement)
+    hull = np.stack([parts[:, 0].min(axis=0), parts[:, 1].max(axis=0)])
+    np.testing.assert_allclose(hull, box_m(placement), atol=1e-6)
+
+
+@given(st.sampled_from(NAMES), st.sampled_from(NAMES), st.floats(-1, 1), st.integers(0, 3))
+def test_depth_goes_both_ways_and_never_exceeds_that_of_the_boxes(first, second, y, turns):
+    one, other = solids_m(put(1, first, 0, 0)), solids_m(put(2, second, 0.6, y, turns))
+    assert depth_m(one, other) == pytest.approx(depth_m(other, one))
+    boxes = depth_m(box_m(put(1, first, 0, 0))[None], box_m(put(2, second, 0.6, y, turns))[None])
+    assert depth_m(one, other) <= boxes + 1e-9
+
+
+def test_a_chair_under_its_table_touches_only_the_table_s_box():
+    table = put(1, "dining_table", 0, 0, size=(0.9, 1.6, 0.75))
+    tucked = put(2, "chair", 0.45, 0, turns=2)
+    assert overlapping_boxes([table, tucked]) == [(0, 1)]
+    assert collisions([table, tucked]) == []
+
+
+def test_a_back_through_a_thin_top_is_a_collision_though_the_top_is_thinner_than_forgiven():
+    table = put(1, "dining_table", 0, 0, size=(0.9, 1.6, 0.75))
+    through = put(2, "chair", 0.1, 0, turns=2)
+    assert collisions([table, through]) == [(0, 1)]
+
+
+def test_every_template_collides_with_itself_in_the_same_place():
+    for class_id in range(5, 12):
+        for one in templates_of(class_id):
+            assert collisions([put(1, one.name, 0, 0), put(2, one.name, 0.01, 0)]) == [(0, 1)]
+
+
+def test_own_cells_are_solid_where_they_lie_and_nowhere_else():
+    grid = grid_with({1: [(10, 10, 0), (20, 10, 0)], 2: [(15, 10, 0)]})
+    wide = Placement(
+        1, 11, "cells", np.array([1.24, 0.84, 0.04]), np.array([0.08, 0.88, 0.08]), 1, 0
+    )
+    inner = Placement(2, 11, "cells", np.array([1.24, 0.84, 0.04]), np.array([0.08] * 3), 0, 0)
+    assert own_cells(wide, grid).tolist() == [[10, 10, 0], [20, 10, 0]]
+    assert collisions([wide, inner], grid=grid) == []
+    assert collisions([wide, inner]) == [(0, 1)], "without a grid the whole box is solid"
+    over = put(3, "box", 0.84, 0.84, size=(0.4, 0.4, 0.4))
+    assert collisions([wide, over], grid=grid) == [(0, 1)]
+
+
+def test_an_object_must_lie_in_one_room_and_on_its_storey():
+    square = np.array([[0, 0], [2, 0], [2, 2], [0, 2]], float)
+    rooms = [
+        Layout(square, 2.4),
+        Layout(square + np.array([2.1, 0]), 2.4),
+        Layout(square, 2.4, floor_z_m=2.8),
+    ]
+    things = [
+        put(1, "box", 1.0, 1.0, size=(0.4, 0.4, 0.4)),
+        put(2, "box", 3.0, 1.0, size=(0.4, 0.4, 0.4)),
+        put(3, "box", 2.05, 1.0, size=(0.4, 0.4, 0.4)),
+        put(4, "box", 1.0, 1.0, size=(0.4, 0.4, 0.4), z=2.8),
+        put(5, "box", 1.0, 1.0, size=(0.4, 0.4, 0.4), z=2.3),
+    ]
+    assert out_of_rooms(things, rooms) == [2, 4]
+
+
+def test_category_integrity_is_the_paper_s_ratio():
+    assert category_integrity({5, 8, 11}, {5, 8, 10, 11}) == 0.75
+    assert category_integrity({2, 3, 5}, {2, 3, 5, 6}) == 0.5, "structure is no category"
+    assert category_integrity(set(), set()) == 1.0
+
+
+def test_an_object_is_kept_where_blocks_of_its_number_and_class_stand():
+    cells = np.array([[x, 5, z] for x in range(10, 16) for z in range(6)], np.int32)
+    grid = grid_with({1: [tuple(cell) for cell in cells.tolist()]})
+    one = ObjectInstance(
+        1, 11, np.array([1.04, 0.44, 0.24]), np.array([0.48, 0.08, 0.48]), 0, cells, 1
+    )
+    shape = (16, 12, 16)
+    to_room = block_to_room(np.array([0.0, 3.2]), 4.0)
+
+    def volume(x, number=1, class_id=11):
+        semantic, instance = np.zeros(shape, np.uint8), np.zeros(shape, np.uint16)
+        semantic[x : x + 2, 1:3, 11], instance[x : x + 2, 1:3, 11] = class_id, number
+        states = (semantic > 0).astype(np.uint16)
+        palette = ("minecraft:air", "minecraft:stone")
+        return BlockVolume(states, palette, semantic, instance, (0, 63, 0), to_room)
+
+    assert kept_objects(volume(3), [one], grid) == [0]
+    assert kept_objects(volume(9), [one], grid) == [], "not in its place"
+    assert kept_objects(volume(3, number=2), [one], grid) == []
+    assert kept_objects(volume(3, class_id=10), [one], grid) == []
