@@ -94,7 +94,7 @@ def without_partitions(volume: BlockVolume) -> BlockVolume:
     bpm = volume.blocks_per_metre
     floor = _rooms(floor_columns(semantic), ROOM_M2 * bpm**2)
     reach = max(2, round(0.5 * bpm))
-    walls = np.isin(semantic, _WALLS).any(axis=1) & ~floor
+    walls = np.isin(semantic, _WALLS).any(axis=1)  # A lintel too, over the floor of its doorway.
     between = walls & (_both_sides(floor, 0, reach) | _both_sides(floor, 1, reach))
     if not between.any():
         return volume
