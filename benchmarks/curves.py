@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 PANEL, HIGH, EDGE, FOOT = 220, 170, 34, 56
+LOWEST = 0.6  # Where the panels begin; what is lower is drawn there.
 COLOURS = ("#1f6fb4", "#d9730d", "#4a9e4f", "#8a5bb0", "#888888")
 
 Curves = Mapping[str, Sequence[float]]
@@ -44,10 +45,11 @@ def _panel(
         return left + wide * index / max(len(values) - 1, 1)
 
     def y_of(share: float) -> float:
-        return bottom - (bottom - EDGE) * min(max(share, 0.0), 1.0)
+        within = min(max((share - LOWEST) / (1 - LOWEST), 0.0), 1.0)
+        return bottom - (bottom - EDGE) * within
 
     body = [f'<text x="{left}" y="{EDGE - 14}" font-size="12">{title}</text>']
-    for share in (0.0, 0.25, 0.5, 0.75, 1.0):
+    for share in (0.6, 0.7, 0.8, 0.9, 1.0):
         body.append(f'<path d="M{left} {y_of(share):.1f}h{wide}" stroke="#ddd"/>')
         body.append(f'<text x="{left - 26}" y="{y_of(share) + 3:.1f}">{share:.2f}</text>')
     for index, value in enumerate(values):
