@@ -7,7 +7,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from world2minecraft.fuse import read_out
 from world2minecraft.label import find_structure
+from world2minecraft.label.geometric import GeometricLabeller
 from world2minecraft.label.outline import outline_of
 
 WALL = rooms.WHITE
@@ -79,3 +81,54 @@ def test_nothing_seen_is_no_room():
     grid, evidence, _ = rooms.SmallRoom().scanned()
     labels = np.where(grid.occupied, np.uint8(0), grid.labels)
     assert find_structure(replace(grid, labels=labels), evidence) == ()
+
+
+def stacked(lower, upper):
+    """Two scanned rooms, one over the other: (grid, evidence)."""
+    (_, first, _), (_, second, _) = lower.scanned(), upper.scanned()
+    names = ("log_odds", "votes", "colour_sum", "offset_sum", "hits")
+    arrays = {
+        name: np.concatenate([getattr(first, name), getattr(second, name)], axis=2)
+        for name in names
+    }
+    evidence = replace(first, **arrays)
+    return read_out(evidence), evidence
+
+
+def test_storeys_are_found_and_each_has_its_rooms():
+    upper = rooms.SmallRoom()
+    rooms.table(upper, 1.6, 2.0)
+    grid, evidence = stacked(two_rooms_of(upper.size_m), upper)
+    layouts = find_structure(grid, evidence)
+    rise_m = grid.shape[2] / 2 * rooms.VOXEL_M
+    assert np.allclose([layout.floor_z_m for layout in layouts], [0, 0, rise_m], atol=0.01)
+    assert all(abs(layout.wall_height_m - 2.4) < 0.02 for layout in layouts)
+
+
+def two_rooms_of(size_m):
+    """A room of a size, parted by a wall up to the ceiling."""
+    room = rooms.SmallRoom(size_m=size_m)
+    return room.add((0, 1.92, 0, size_m[0], 2.08, size_m[2]), 3, WALL)
+
+
+def test_an_upper_storey_is_labelled_as_if_it_were_alone():
+    upper = rooms.SmallRoom()
+    rooms.table(upper, 1.6, 2.0)
+    grid, evidence = stacked(rooms.SmallRoom(), upper)
+    result = GeometricLabeller().label(grid, evidence)
+    alone = GeometricLabeller().label(*upper.scanned()[:2])
+    half = grid.shape[2] // 2
+    assert (result.labels[:, :, half:] == alone.labels).mean() > 0.99
+
+
+def test_a_sloped_ceiling_and_the_low_wall_under_it_are_structure():
+    room = rooms.SmallRoom(size_m=(3.2, 4.0, 2.4))
+    steps = np.arange(0.0, 1.2, 0.02)
+    for start in steps:  # A roof that rises from 1.0 m at x = 0 to 2.2 m at x = 1.2.
+        room.add((start, 0, 1.0 + start, start + 0.02, 4.0, 2.4), 1, WALL)
+    result = GeometricLabeller().label(*room.scanned()[:2])
+    assert np.isin(result.labels[result.occupied], (1, 2, 3)).mean() > 0.95
+    roof = result.labels[rooms.MARGIN + 3 : rooms.MARGIN + 12, 4:-4, rooms.MARGIN + 14 : -4]
+    assert (roof[(roof > 0) & (roof < 255)] == 1).mean() > 0.9
+    low_wall = result.labels[: rooms.MARGIN, 4:-4, rooms.MARGIN + 2 : rooms.MARGIN + 10]
+    assert (low_wall[low_wall > 0] != 1).all() and (low_wall == 3).any()

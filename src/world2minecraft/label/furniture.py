@@ -1,6 +1,7 @@
 """Objects among what is no structure: cut at plates, then told apart piece by piece."""
 
 import numpy as np
+from scipy import ndimage
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
@@ -21,6 +22,9 @@ REACH_M = {
     SemanticClass.CHAIR: (0.24, 1.15),
 }
 HEAD_M = 0.55  # How far pillows reach from the head of a bed.
+APART_M = 0.5  # A chair belongs to a table no further off.
+WALL_CELLS = 4  # In a column; then things to both sides of it stand apart.
+MARGIN_M = 0.64  # Walls matter within 0.45 m of a thing.
 TOP_M = 0.06  # A plate's cells lie this near its height.
 
 # What has a say before what: the arms of an easy chair are plates too, and would pass for a box.
@@ -45,6 +49,26 @@ def label_furniture(
     parameters: GeometricParameters,
 ) -> None:
     """Write the classes of the cells ``rest`` to ``labels``, both [X, Y, Z].
+
+    Things that stand apart are looked at apart, so that a house takes as long as its rooms.
+    """
+    plan, inside = plan_of(rest), wall.sum(axis=2) < WALL_CELLS
+    groups, count = connected_parts(plan | (grown(plan, surface.cells_of(APART_M / 2)) & inside))
+    margin = surface.cells_of(MARGIN_M)
+    for number, box in enumerate(ndimage.find_objects(groups, count), 1):
+        x, y = (slice(max(side.start - margin, 0), side.stop + margin) for side in box)
+        own = rest[x, y] & (groups[x, y] == number)[:, :, None]
+        _label_group(surface.columns(x, y), own, wall[x, y], labels[x, y], parameters)
+
+
+def _label_group(
+    surface: Surface,
+    rest: np.ndarray,
+    wall: np.ndarray,
+    labels: np.ndarray,
+    parameters: GeometricParameters,
+) -> None:
+    """Write the classes of things that stand together.
 
     A plate that says what it is takes its thing with it; what is left falls into pieces.
     """

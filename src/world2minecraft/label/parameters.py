@@ -36,6 +36,8 @@ class StructureParameters:
     recess_m: a plane this far before a wider one, not up to the ceiling, is furniture.
     recess_width_m: the widest of such furniture, where no ceiling was seen.
     ceiling_gap_m: a wall ends no lower under the ceiling than this.
+    full_gap_m: a wall between two rooms is seen so near to the ceiling; a wardrobe ends lower, or
+        rays pass over it.
     full_share: a wall with free space behind it, between two rooms, is seen over this share.
     opening_depth_m: how far windows and door leaves lie behind the face of their wall: from the
         sensor's noise up to the depth that a wall's cells may have.
@@ -74,6 +76,7 @@ class StructureParameters:
     recess_m: Range = (0.15, 0.9)
     recess_width_m: float = 3.0
     ceiling_gap_m: float = 0.25
+    full_gap_m: float = 0.45
     full_share: float = 0.4
     opening_depth_m: Range = (0.035, 0.16)
     opening_area_m2: float = 0.25

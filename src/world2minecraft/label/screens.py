@@ -37,15 +37,13 @@ def label_screens(
     """
     found = np.zeros(rest.shape, bool)
     for run in runs:
-        outward = run.sign * turned(surface.points_m[..., run.axis], run.axis, run.sign)
+        box = _box_before(surface, run, parameters)
+        outward = run.sign * turned(surface.points_m[..., run.axis], run.axis, run.sign)[box]
         before = run.outward_m - outward
         low, high = parameters.screen_before_m
-        cells = turned(rest, run.axis, run.sign) & (before >= low) & (before <= high)
-        cells[:, : run.span[0]] = False
-        cells[:, run.span[1] + 1 :] = False
-        cells[:, :, : surface.layers_below(parameters.screen_bottom_m)] = False
-        target = turned(found, run.axis, run.sign)
-        colour = turned(surface.oklab, run.axis, run.sign)
+        cells = turned(rest, run.axis, run.sign)[box] & (before >= low) & (before <= high)
+        target = turned(found, run.axis, run.sign)[box]
+        colour = turned(surface.oklab, run.axis, run.sign)[box]
         for _ in range(MAX_DEPTHS):
             if cells.sum() * surface.voxel_m**2 < 0.05:
                 break
@@ -57,6 +55,23 @@ def label_screens(
                     target |= plate
     labels[found] = SemanticClass.TVS
     return found
+
+
+def _box_before(
+    surface: Surface, run: WallRun, parameters: PieceParameters
+) -> tuple[slice, slice, slice]:
+    """Return the part of the turned room in which screens before a wall may be."""
+    size = surface.occupied.shape[run.axis]
+    ends = surface.origin_m[run.axis] + np.array([0, size]) * surface.voxel_m
+    face = (run.outward_m - min(run.sign * ends)) / surface.voxel_m
+    reach = parameters.screen_before_m[1] / surface.voxel_m
+    first, last = int(np.floor(face - reach)) - 1, int(np.ceil(face)) + 1
+    bottom = surface.layers_below(parameters.screen_bottom_m)
+    return (
+        slice(max(first, 0), max(last, 0)),
+        slice(run.span[0], run.span[1] + 1),
+        slice(bottom, None),
+    )
 
 
 def _plates(near: np.ndarray) -> list[np.ndarray]:

@@ -5,7 +5,10 @@ proportion to the way; the steepness that gathers most points in one plane is ta
 roof.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
+from scipy import ndimage
 
 from world2minecraft.label.parameters import StructureParameters
 from world2minecraft.label.peaks import highest_peak
@@ -13,6 +16,14 @@ from world2minecraft.label.surface import Surface
 
 STEEPNESS_DEG = np.arange(20.0, 62.0, 2.0)
 MAX_ROOFS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Roof:
+    """The points p of a plane: ``p @ normal == offset_m``."""
+
+    normal: np.ndarray  # float64 [3]
+    offset_m: float
 
 
 def find_slopes(surface: Surface, level: np.ndarray, parameters: StructureParameters) -> np.ndarray:
@@ -27,10 +38,19 @@ def find_slopes(surface: Surface, level: np.ndarray, parameters: StructureParame
     at = np.argwhere(_under_roof(surface, parameters) & ~level)
     points = surface.points_m[tuple(at.T)].astype(np.float64)
     for _ in range(MAX_ROOFS):
-        near = _largest_roof(points, surface.voxel_m, parameters)
-        if near is None:
+        roof = _largest_roof(points, surface.voxel_m, parameters)
+        if roof is None:
             break
-        cells[tuple(at[near].T)] = True
+        near = np.abs(points @ roof.normal - roof.offset_m) <= parameters.plane_gate_m
+        seen = np.zeros_like(cells)
+        seen[tuple(at[near].T)] = True
+        # A plane that runs askew through the cells touches some from the side alone; along the
+        # ridge it goes on into the gable, which is wall.
+        across = np.ones((3, 1, 3) if roof.normal[0] else (1, 3, 3), bool)
+        around = ndimage.binary_dilation(seen, across) & surface.occupied & ~level
+        around = np.argwhere(around)
+        off_m = surface.points_m[tuple(around.T)] @ roof.normal - roof.offset_m
+        cells[tuple(around[np.abs(off_m) <= parameters.plane_gate_m].T)] = True
         at, points = at[~near], points[~near]
     return cells
 
@@ -48,21 +68,23 @@ def _under_roof(surface: Surface, parameters: StructureParameters) -> np.ndarray
 
 def _largest_roof(
     points: np.ndarray, voxel_m: float, parameters: StructureParameters
-) -> np.ndarray | None:
-    """Return which points, float [N, 3], lie on the plane that holds most; None where too few."""
+) -> Roof | None:
+    """Return the plane on which most points, float [N, 3], lie; None where all hold too few."""
     best, best_count = None, parameters.roof_area_m2 / voxel_m**2
     if len(points) < best_count:
         return None
     for degrees in STEEPNESS_DEG:
         sine, cosine = np.sin(np.radians(degrees)), np.cos(np.radians(degrees))
         for axis, sign in ((0, 1), (0, -1), (1, 1), (1, -1)):
-            height = cosine * points[:, 2] - sign * sine * points[:, axis]
+            normal = np.array([0.0, 0.0, cosine])
+            normal[axis] = -sign * sine
+            height = points @ normal
             peak, count = highest_peak(height, parameters.plane_gate_m)
             if count <= best_count:
                 continue
             near = np.abs(height - peak) <= parameters.plane_gate_m
             if _is_wide(points[near], axis, parameters):
-                best, best_count = near, count
+                best, best_count = Roof(normal, peak), count
     return best
 
 

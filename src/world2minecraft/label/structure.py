@@ -50,7 +50,7 @@ def structure_of(surface: Surface, parameters: StructureParameters) -> Structure
     level |= slopes
     mask = np.zeros(surface.occupied.shape, bool)
     walls = []
-    for run, relief in find_walls(surface, level, ceiling_m, parameters):
+    for run, relief in find_walls(surface, level, slopes, ceiling_m, parameters):
         face = read_wall(surface, relief, parameters)
         relief.of(mask)[face.cells] = True
         walls.append(Wall(run, relief, face))

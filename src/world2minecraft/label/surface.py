@@ -1,6 +1,6 @@
 """What the geometric labeller looks at: occupied and free cells, and where in them surface lies."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,13 @@ class Surface:
     def floor_layer(self) -> int:
         """The index of the layer whose top is z = 0; it may lie outside the grid."""
         return round(-self.origin_m[2] / self.voxel_m) - 1
+
+    def columns(self, x: slice, y: slice) -> "Surface":
+        """Return the part of the surface that stands in a box of columns."""
+        arrays = ("occupied", "free", "points_m", "hits", "oklab")
+        corner = self.origin_m + np.array([x.start, y.start, 0.0]) * self.voxel_m
+        cut = {name: getattr(self, name)[x, y] for name in arrays}
+        return replace(self, origin_m=corner, **cut)
 
     def cells_of(self, length_m: float) -> int:
         """Return a length in whole cells, at least 1."""

@@ -38,6 +38,7 @@ class WallRun:
 def find_walls(
     surface: Surface,
     level: np.ndarray,
+    slopes: np.ndarray,
     ceiling_m: float | None,
     parameters: StructureParameters,
 ) -> list[tuple[WallRun, Relief]]:
@@ -45,13 +46,14 @@ def find_walls(
 
     Args:
         surface: the room.
-        level: bool [X, Y, Z], the cells of floor and ceiling.
+        level: bool [X, Y, Z], the cells of floor and ceiling, slopes among them.
+        slopes: bool [X, Y, Z], the cells of sloped ceilings.
         ceiling_m: the ceiling's height, None where it was not seen.
         parameters: the thresholds.
     """
     found: list[tuple[WallRun, Relief]] = []
     for axis, sign in DIRECTIONS:
-        view = _Turned(surface, level, axis, sign)
+        view = _Turned(surface, level, slopes, axis, sign)
         runs = list(_runs(view, ceiling_m, parameters))
         runs = [run for run in runs if not _is_shadow(run, runs, parameters)]
         runs = [run for run in runs if not _is_open_above(run, view, ceiling_m)]
@@ -65,11 +67,14 @@ def find_walls(
 class _Turned:
     """A room's arrays turned so that axis 0 leads outward, axis 1 along the wall, axis 2 up."""
 
-    def __init__(self, surface: Surface, level: np.ndarray, axis: int, sign: int):
+    def __init__(
+        self, surface: Surface, level: np.ndarray, slopes: np.ndarray, axis: int, sign: int
+    ):
         self.axis, self.sign, self.voxel_m = axis, sign, surface.voxel_m
         self.above_floor = max(surface.floor_layer + 1, 0)
         self.occupied = self.turn(surface.occupied & ~level)
         self.free = self.turn(surface.free)
+        self.slopes = self.turn(slopes)
         self.layers_below = surface.layers_below
         self.outward_m = sign * self.turn(surface.points_m[..., axis])
         self.height_m = self.turn(surface.points_m[..., 2])
@@ -87,13 +92,23 @@ def _runs(
     fronts = view.occupied & _facing(view.free)
     fronts[:, :, : view.above_floor] = False
     hidden = fronts & ~_passed_behind(view, parameters)
-    yield from _peeled(view, hidden, parameters, parameters.wall_top_m)
+    least = parameters.roof_bottom_m if view.slopes.any() else parameters.wall_top_m
+    for run in _peeled(view, hidden, parameters, least):
+        if run.top_m >= parameters.wall_top_m or _under_slope(run, view):
+            yield run
     if ceiling_m is not None:
-        full = ceiling_m - parameters.ceiling_gap_m
+        full = ceiling_m - parameters.full_gap_m
         for run in _peeled(view, fronts & ~hidden, parameters, full):
             width = (run.span[1] - run.span[0] + 1) * view.voxel_m
             if run.area_m2 >= parameters.full_share * width * ceiling_m:
                 yield run
+
+
+def _under_slope(run: WallRun, view: _Turned) -> bool:
+    """Return whether a sloped ceiling begins at a run: then it is a wall, however low."""
+    layer = int(np.floor((run.outward_m - view.edge_m) / view.voxel_m))
+    near = view.slopes[max(layer - 3, 0) : layer + 2, run.span[0] : run.span[1] + 1]
+    return bool(near.any(axis=(0, 2)).mean() >= 0.5)
 
 
 def _facing(free: np.ndarray) -> np.ndarray:
@@ -178,8 +193,10 @@ def _is_open_above(run: WallRun, view: _Turned, ceiling_m: float | None) -> bool
     low = view.layers_below(run.top_m + 2 * view.voxel_m)
     high = view.layers_below(HIGH_M if ceiling_m is None else ceiling_m - view.voxel_m)
     over = view.free[layer + 1 : layer + 3, run.span[0] : run.span[1] + 1, low:high]
+    if not over.size:  # The wall is the last that was seen.
+        return False
     passed = over.all(axis=0).sum(axis=1) >= 2
-    return bool(passed.size and passed.mean() >= OPEN_SHARE)
+    return bool(passed.mean() >= OPEN_SHARE)
 
 
 def _is_furniture(
