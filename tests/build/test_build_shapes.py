@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from build_samples import CHAIR, RED, TABLE, WOOD, Sketch, placement
+from build_samples import CHAIR, FURN, RED, TABLE, WOOD, Sketch, placement
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -122,12 +122,30 @@ def design(name, turns=0, center=(2.0, 1.0), scale=4.0):
 @pytest.mark.parametrize("name", TEMPLATES.names())
 @pytest.mark.parametrize("scale", [3.0, 4.0, 6.25])
 def test_every_template_gives_blocks_and_turns_as_a_whole(name, scale):
-    straight = design(name, scale=scale)
+    center = (2.0, 1.0)
+    if template(name).class_id == FURN:  # Its sides are rounded each by itself.
+        frame = lattice(scale)
+        block = np.floor(frame.coordinates_of(np.array([2.0, 1.0, 0.0]))) + 0.5
+        center = tuple(((block - frame.offset) / scale)[:2].tolist())
+    straight = design(name, center=center, scale=scale)
     assert (straight.halves > 0).any()
     for turns in range(4):
-        turned = design(name, turns, scale=scale)
+        turned = design(name, turns, center, scale=scale)
         assert np.array_equal(turned.halves, np.rot90(straight.halves, turns, axes=(0, 1)))
         assert np.array_equal(turned.part, np.rot90(straight.part, turns, axes=(0, 1)))
+
+
+@pytest.mark.parametrize("turns", range(4))
+@pytest.mark.parametrize("away_m", [0.0, 0.06, 0.1, 0.17])
+def test_the_front_of_a_counter_stays_within_half_a_block_of_where_it_is(turns, away_m):
+    found = template("counter")
+    size = np.array(found.typical_m)
+    place = placement("counter", FURN, (2.0 + away_m, 1.0 + away_m, size[2] / 2), size, turns)
+    made = design_of(place, found.parts(size), lattice(4.0))
+    turned = size[[1, 0]] if turns % 2 else size[:2]
+    low = lattice(4.0).coordinates_of(np.array([2.0 + away_m, 1.0 + away_m, 0.0]))[:2] - turned * 2
+    assert np.abs(made.low[:2] - low).max() <= 0.5 + 1e-5
+    assert np.abs(made.low[:2] + made.halves.shape[:2] - low - turned * 4).max() <= 0.5 + 1e-5
 
 
 @pytest.mark.parametrize("name", ["chair", "dining_table", "single_bed", "sofa"])

@@ -12,11 +12,13 @@ import numpy as np
 
 from world2minecraft.build.halves import of_half_layers
 from world2minecraft.build.lattice import Lattice
+from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import turn_grid
 from world2minecraft.furniture import Part
 from world2minecraft.types import Placement
 
 THIN = 0.75  # Blocks: a part thinner than this along an axis is one layer.
+TIE = 1e-6
 POST = 0.5  # Blocks: an upright part thinner than this both ways is a post.
 
 
@@ -32,8 +34,8 @@ class Design(NamedTuple):
 def design_of(placement: Placement, parts: Sequence[Part], lattice: Lattice) -> Design:
     """Return the half blocks of a placement's parts, turned and in place."""
     sizes = placement.size_m * lattice.blocks_per_metre
-    count = np.maximum(np.floor(sizes[:2] + 0.5), 1).astype(int)
     middle = lattice.coordinates_of(placement.center_m)
+    count, start = _plan(placement, sizes, middle)
     bottom = _half(middle[2] - sizes[2] / 2)
     ground = float(lattice.ground_under(bottom))
     bottom = ground if bottom < ground + 1 else bottom
@@ -59,7 +61,28 @@ def design_of(placement: Placement, parts: Sequence[Part], lattice: Lattice) -> 
     for index in order:
         if parts[index].role == "seat":
             _rest_on_posts(index + 1, owner, posts)
-    return _turned(owner, posts, middle, base, count, placement.quarter_turns)
+    return _turned(owner, posts, np.array([*start, base]), placement.quarter_turns)
+
+
+def _plan(
+    placement: Placement, sizes: np.ndarray, middle: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the blocks, int [2], along a placement's own depth and width, and its first block.
+
+    Sizes are rounded, so that equal things come out equal. Of what stands along walls the sides
+    are rounded instead, each to the nearest edge of a block: its front stays where it is.
+    """
+    odd = placement.quarter_turns % 2
+    if placement.class_id == SemanticClass.FURN:
+        turned = sizes[:2][::-1] if odd else sizes[:2]
+        # Halves go outward on both sides, so that a turn or a mirror image changes nothing.
+        start = np.ceil(middle[:2] - turned / 2 - 0.5 - TIE).astype(int)
+        end = np.floor(middle[:2] + turned / 2 + 0.5 + TIE).astype(int)
+        count = np.maximum(end - start, 1)
+        return (count[::-1] if odd else count), start
+    count = np.maximum(np.floor(sizes[:2] + 0.5), 1).astype(int)
+    size = count[::-1] if odd else count
+    return count, np.floor(middle[:2] - size / 2 + 0.5).astype(int)
 
 
 def _is_post(box: np.ndarray) -> bool:
@@ -87,10 +110,8 @@ def _rest_on_posts(seat: int, owner: np.ndarray, posts: np.ndarray) -> None:
     owner[:, :, level][mask] = above[mask]
 
 
-def _turned(owner, posts, middle, base, count, quarter_turns) -> Design:
+def _turned(owner, posts, low, quarter_turns) -> Design:
     owner, posts = (turn_grid(values, quarter_turns) for values in (owner, posts))
-    size = count[::-1] if quarter_turns % 2 else count
-    low = np.array([*np.floor(middle[:2] - size / 2 + 0.5).astype(int), base])
     halves = of_half_layers(owner > 0)
     upper, lower = owner[:, :, 1::2], owner[:, :, 0::2]
     part = np.where(upper > 0, upper, lower)

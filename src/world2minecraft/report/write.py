@@ -10,6 +10,7 @@ from world2minecraft import __version__
 from world2minecraft.classes import CLASS_COLOURS, CLASS_NAMES
 from world2minecraft.evaluate import evaluate_reconstruction
 from world2minecraft.evaluate.truth import read_truth
+from world2minecraft.exchange.scan import read_registration
 from world2minecraft.files import write_bytes, write_json, write_text
 from world2minecraft.metrics.layout import category_integrity
 from world2minecraft.progress import Progress, silent
@@ -39,7 +40,7 @@ def write_report(
     """
     scene = read_finished(folder)
     progress("report", 0, 3, "figures")
-    facts = scene_facts(scene) | {"scan": _scan_facts(scan)}
+    facts = scene_facts(scene) | {"scan": _scan_facts(scan, folder)}
     if truth is not None:
         facts["truth"] = evaluate_reconstruction(folder, truth)
         facts["layout"]["semantic_integrity"]["true_categories"] = round(
@@ -65,7 +66,7 @@ def write_report(
     return facts
 
 
-def _scan_facts(scan: Scan) -> dict[str, Any]:
+def _scan_facts(scan: Scan, folder: Path) -> dict[str, Any]:
     return {
         "source": scan.source,
         "frames_used": len(scan.frames_used),
@@ -73,6 +74,7 @@ def _scan_facts(scan: Scan) -> dict[str, Any]:
         "scale": scan.scale,
         "scale_sigma": scan.scale_sigma,
         "notes": list(scan.notes),
+        "registration": read_registration(folder / "scan.json"),
     }
 
 
