@@ -1,5 +1,6 @@
 """The report's figures against scenes whose figures are known."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -126,3 +127,18 @@ def test_a_build_whose_parts_do_not_belong_together_is_refused(tmp_path):
     )
     with pytest.raises(DamagedFileError, match=r"is not of the room\.schem beside it"):
         read_built(tmp_path / "a")
+
+
+def test_rooms_confidence_and_integrity_are_told():
+    scene = floor_and_table()
+    facts = scene_facts(scene)
+    (room,) = facts["rooms"]
+    assert room["area_m2"] == pytest.approx(3.2) and room["objects"] == 1
+    assert room["name"] == "room 1" and room["openings"] == {}
+    assert facts["confidence"]["mean"] == 1.0 and facts["confidence"]["below_half"] == 0.0
+    assert set(facts["confidence"]["by_class"]) == {"empty", "floor", "table"}
+    integrity = facts["layout"]["semantic_integrity"]
+    assert integrity == {"categories": 1.0, "objects": 0.0, "lost": [1]}, "no block has its number"
+    named = replace(scene.volume, instance=(scene.volume.semantic == 8).astype(np.uint16))
+    kept = scene_facts(replace(scene, volume=named))["layout"]["semantic_integrity"]
+    assert kept == {"categories": 1.0, "objects": 1.0, "lost": []}
