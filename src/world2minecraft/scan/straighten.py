@@ -11,13 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.geometry.surface import Surface
-from world2minecraft.scan.places import LIFT_M, looks
+from world2minecraft.scan.places import BIN_M, LIFT_M, looks
 from world2minecraft.scan.surface import Profile, profile
 
 FACING = 0.97  # Cosine of 14 degrees.
 FACE_LEAST_M2 = 0.5
 FACE_SHARE = 0.15  # Of the largest that looks the same way.
-LIMITS_M = (0.05, 0.03, 0.02, 0.02)
+LIMITS_M = (0.05, 0.03, 0.02, 0.012, 0.012)
+SPREADS = 8.0  # A level face's limit is at least that many times the median distance from it.
 # Walls lean and tables stand askew more often than floors slope: with one say for all, the shared
 # kitchen's floor would lean by 0.5 degrees.
 WALL_SAY, FLOOR_SAY = 0.1, 4.0
@@ -88,7 +89,13 @@ def _step(faces: Faces, points: np.ndarray, limit_m: float) -> np.ndarray:
     """Return the turn vector [3] that flattens the faces, by one reweighted step (Tukey)."""
     index = np.arange(len(points))
     along = points[index, faces.axis]
-    places = np.array([np.median(along[faces.face == face]) for face in range(faces.count)])
+    places = _fullest_places(faces, along)
+    # Where depth bends, a narrow limit would choose among the bends of a floor; a wall's parts a
+    # few centimetres apart are to be told apart whatever the spread.
+    off = np.abs(along - places[faces.face])
+    level = faces.axis == 2
+    spread_m = float(np.median(off[level])) if level.any() else 0.0
+    limits_m = np.where(level, max(limit_m, SPREADS * spread_m), limit_m)
     # A turn w moves a point by w x p; these are its parts along the face's axis.
     rows = np.zeros_like(points)
     rows[index, (faces.axis + 1) % 3] = points[index, (faces.axis + 2) % 3]
@@ -96,7 +103,9 @@ def _step(faces: Faces, points: np.ndarray, limit_m: float) -> np.ndarray:
     turn = np.zeros(3)
     for _ in range(3):
         off = along + rows @ turn - places[faces.face]
-        weight = faces.weight * np.where(np.abs(off) < limit_m, (1 - (off / limit_m) ** 2) ** 2, 0)
+        weight = faces.weight * np.where(
+            np.abs(off) < limits_m, (1 - (off / limits_m) ** 2) ** 2, 0
+        )
         mass = np.bincount(faces.face, weight, faces.count)
         mass = np.maximum(mass, 1e-12)
         places = places + np.bincount(faces.face, weight * off, faces.count) / mass
@@ -107,6 +116,17 @@ def _step(faces: Faces, points: np.ndarray, limit_m: float) -> np.ndarray:
         moment[range(3), range(3)] += STEADY_M2 * weight.sum()
         turn = turn - np.linalg.solve(moment, centred.T @ (weight * off))
     return turn
+
+
+def _fullest_places(faces: Faces, along: np.ndarray) -> np.ndarray:
+    """Return where most weight of each face gathers within 3 cm, in steps of 1 cm."""
+    places = np.zeros(faces.count)
+    for face in range(faces.count):
+        own, weight = along[faces.face == face], faces.weight[faces.face == face]
+        bins = np.floor((own - own.min()) / BIN_M).astype(np.int64)
+        held = np.convolve(np.bincount(bins, weight), np.ones(3), mode="same")
+        places[face] = own.min() + (int(np.argmax(held)) + 0.5) * BIN_M
+    return places
 
 
 def _rotation(vector: np.ndarray) -> np.ndarray:
