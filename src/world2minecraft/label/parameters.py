@@ -112,6 +112,8 @@ class PlateParameters:
     same_cloth: Oklab difference of seat and back of one upholstered thing; shades of one cloth
         are nearer, a screen on a board differs by 0.3. A guess.
     shelf_m, shelf_share: what stands this high over this share of a plate makes it a shelf's board.
+    worktop_height_m, worktop_size_m: catalogue, and the least width and length of the pieces of
+        one between what stands on it.
     bed_*, table_*, low_table_*, box_*: catalogue.
     """
 
@@ -144,6 +146,8 @@ class PlateParameters:
     box_width_m: float = 0.2
     box_area_m2: float = 0.15
     open_box_height_m: float = 0.8
+    worktop_height_m: Range = (0.85, 0.96)
+    worktop_size_m: Range = (0.16, 0.5)
 
 
 @dataclass(frozen=True)

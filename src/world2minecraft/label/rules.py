@@ -54,6 +54,10 @@ def class_of_plate(
         return SemanticClass.TABLE
     solid = closed or height >= parameters.open_box_height_m
     wide = area >= parameters.box_area_m2 and width >= parameters.box_width_m
+    # Of a worktop on which much stands only pieces are seen.
+    if closed and within(height, parameters.worktop_height_m):
+        least_m, long_m = parameters.worktop_size_m
+        wide |= width >= least_m and plate.length_m >= long_m
     return SemanticClass.FURN if solid and wide and height >= parameters.box_height_m else None
 
 
