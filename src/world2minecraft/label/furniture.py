@@ -113,7 +113,10 @@ def _claimed(surface: Surface, plate: Plate, left: np.ndarray, kind: SemanticCla
     around = grown(outline, surface.cells_of(reach_m))[:, :, None]
     reach = around & left & (height <= max(top_m, plate.height_m + TOP_M))
     if kind == SemanticClass.TABLE:
-        return reach & (height >= plate.height_m - TOP_M)
+        # Beside its rim, what rises higher is the back of a chair.
+        rises = np.zeros_like(left)
+        rises[:, :, :-1] = left[:, :, 1:] & ~plate.footprint[:, :, None]
+        return reach & (height >= plate.height_m - TOP_M) & ~rises
     parts, _ = connected_parts(reach)
     own = np.unique(parts[plate.mask & left])
     return reach & np.isin(parts, own[own > 0])

@@ -129,7 +129,7 @@ class PlateParameters:
     sofa_length_m: float = 1.1
     sofa_width_m: Range = (0.35, 1.2)
     back_rise_m: Range = (0.2, 0.5)
-    back_share: float = 0.6
+    back_share: float = 0.5
     closed_seat_m: float = 0.5
     same_cloth: float = 0.12
     shelf_m: Range = (1.25, 1.9)
