@@ -5,7 +5,7 @@ import pytest
 from build_samples import CHAIR, OBJS, RED, TABLE, WOOD, Sketch, furnished, placement
 
 from world2minecraft.build import build_volume
-from world2minecraft.build.fitting import best_step
+from world2minecraft.build.fitting import best_place, best_step
 from world2minecraft.metrics.layout import floaters
 
 
@@ -83,3 +83,20 @@ def test_a_thing_steps_aside_only_where_it_would_lose_much():
     thin = np.ones((2, 2, 1), bool)
     assert best_step(thin, low, free, opened, stands=False).tolist() == [0, 0, 1]
     assert best_step(thin, low, free, opened, stands=True).tolist() == [0, 0, 0]
+
+
+def test_an_object_whose_places_are_all_taken_gets_the_free_block_that_serves_it_best():
+    free = np.zeros((5, 5, 5), bool)
+    blocks, counts = np.array([[2, 2, 2], [2, 2, 3]]), np.array([9, 1])
+    assert best_place(blocks, counts, free) is None
+    free[3, 2, 2] = free[2, 3, 3] = True
+    assert best_place(blocks, counts, free).tolist() == [3, 2, 2]
+    free[2, 2, 2] = True
+    assert best_place(blocks, counts, free).tolist() == [2, 2, 2]
+
+
+def test_a_small_thing_between_others_is_never_lost():
+    sketch = furnished().put((3, 4), (8, 10), (9, 10), OBJS, RED, 3)
+    thing = placement("box", OBJS, (0.28, 0.72, 0.76), (0.08, 0.16, 0.08), number=3)
+    volume = build_volume(sketch.grid(), (thing,), (), corner_m=np.array([0.0, 2.0]))
+    assert (volume.instance == 3).any()

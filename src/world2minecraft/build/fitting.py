@@ -14,6 +14,26 @@ SIDEWAYS = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))
 UP = ((0, 0, 1),)
 
 
+def best_place(blocks: np.ndarray, counts: np.ndarray, free: np.ndarray) -> np.ndarray | None:
+    """Return the free block, int64 [3], that most of an object's cells lie in or by, or None.
+
+    Args:
+        blocks: int [N, 3], the blocks of its cells, each once.
+        counts: int [N], how many cells lie in each.
+        free: bool, the blocks of the whole lattice that nothing takes.
+    """
+    near = np.concatenate([blocks + step for step in ((0, 0, 0), *UP, *SIDEWAYS)])
+    places = np.unique(near, axis=0)
+    inside = ((places >= 0) & (places < free.shape)).all(axis=1)
+    places = places[inside]
+    places = places[free[tuple(places.T)]]
+    if not len(places):
+        return None
+    apart = np.abs(places[:, None] - blocks).sum(axis=2)
+    served = (counts * np.maximum(2 - apart, 0)).sum(axis=1)
+    return places[int(np.argmax(served))]
+
+
 def best_step(
     filled: np.ndarray, low: np.ndarray, free: np.ndarray, opened: np.ndarray, stands: bool
 ) -> np.ndarray:

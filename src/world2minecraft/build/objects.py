@@ -8,15 +8,16 @@ import numpy as np
 
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.cells import shape_of_cells, without_crumbs
-from world2minecraft.build.fitting import best_step
+from world2minecraft.build.fitting import best_place, best_step
 from world2minecraft.build.halves import FULL, slab_states
 from world2minecraft.build.hues import default_colour, spread
 from world2minecraft.build.idioms import Thing, idiom_box, put_idiom
 from world2minecraft.build.lattice import volume_shares
-from world2minecraft.build.morphology import beside, grown
+from world2minecraft.build.morphology import beside
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.parts import Design, design_of
+from world2minecraft.build.places import LAST, in_order, within_storeys
 from world2minecraft.build.seats import chair_paints
 from world2minecraft.build.surfaces import block_colours, painted
 from world2minecraft.build.tops import top_cells
@@ -30,7 +31,6 @@ from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
 
 CELLS = "cells"
 PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glare are not.
-LAST = {int(SemanticClass.CHAIR): 1, int(SemanticClass.TVS): 2, int(SemanticClass.OBJS): 3}
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 
@@ -51,7 +51,7 @@ class ObjectBuilder:
         free = (grid.labels == 0) & (grid.source != UNSEEN)
         self.exposed = beside(free)  # What lies inside an object says nothing of how it looks.
         self.open_share = volume_shares(free, grid, canvas.lattice)
-        self.within = _within(canvas, footprints)
+        self.within = within_storeys(canvas, footprints)
         self.canvas, self.grid, self.palette = canvas, grid, palette
         self.colours, self.coloured = colours, coloured
         self.parameters = parameters
@@ -64,15 +64,33 @@ class ObjectBuilder:
     def put_all(self, placements: Sequence[Placement]) -> None:
         """Set every placement, then the object cells that no block near them shows."""
         self.put_worktops()
-        for placement in sorted(placements, key=_order):
+        for placement in sorted(placements, key=in_order):
             cells = self._cells_of(placement)
-            if placement.template == CELLS or not self.put_template(placement, cells):
+            if placement.template == CELLS or not (
+                self.put_template(placement, cells, forced=not len(cells))
+            ):
                 self.put_cells(cells, placement.class_id, placement.object_id)
         rest = np.isin(self.grid.labels, OBJECT_CLASSES)
         rest &= ~self._shown()
         keys = (self.grid.labels.astype(np.int32) << 16) + self.grid.instance
         for key in np.unique(keys[rest]).tolist():
             self.put_cells(np.argwhere(rest & (keys == key)), key >> 16, key & 0xFFFF)
+        classes = {one.object_id: one.class_id for one in placements}
+        for number in sorted(set(classes) - set(np.unique(self.canvas.instance).tolist())):
+            self._put_one(classes[number], number)
+
+    def _put_one(self, class_id: int, number: int) -> None:
+        """Set the one free block that stands best for an object all of whose places are taken."""
+        cells = np.argwhere(self.grid.instance == number)
+        if not len(cells):
+            return
+        blocks, counts = np.unique(self._blocks_of(cells), axis=0, return_counts=True)
+        free = (self.canvas.states == 0) & self.within
+        place = best_place(blocks, counts, free)
+        if place is not None:
+            hues = Hues(cells, np.broadcast_to(place, cells.shape))
+            halves = np.full((1, 1, 1), FULL, np.uint8)
+            self._put_halves(place, halves, hues, Thing(class_id, number))
 
     def put_worktops(self) -> None:
         """Set the glossy worktops; what else their objects are made of comes under and on them."""
@@ -142,11 +160,12 @@ class ObjectBuilder:
         thing = Thing(class_id, number)
         self._put_halves(window.low, halves, Hues(hues, shape.blocks), thing)
 
-    def put_template(self, placement: Placement, cells: np.ndarray) -> bool:
+    def put_template(self, placement: Placement, cells: np.ndarray, *, forced: bool) -> bool:
         """Set a template by its vanilla design at small scales, else by its parts.
 
         Returns:
-            False where its parts would stand in space that was seen free: nothing is set then.
+            False where its parts would stand in space that was seen free: nothing is set then,
+            unless it is ``forced``.
         """
         thing = Thing(placement.class_id, placement.object_id)
         found = idiom(placement, self.lattice.blocks_per_metre)
@@ -162,7 +181,7 @@ class ObjectBuilder:
         limit = self.parameters.most_contradicted
         if placement.class_id == SemanticClass.CHAIR:
             limit = self.parameters.chair_contradicted
-        if self._contradicted(design, window) > limit:
+        if not forced and self._contradicted(design, window) > limit:
             return False
         design = design._replace(low=design.low + self._step(design.halves > 0, design.low))
         self._plate_over(design, thing.instance)
@@ -313,20 +332,3 @@ class Hues(NamedTuple):
 def _is_flush(filled: np.ndarray, window: Window) -> bool:
     """Whether most of a thing's blocks lie in a wall: a picture, a screen, a socket."""
     return bool((filled & window.wall).sum() > 0.5 * filled.sum())
-
-
-def _within(canvas: Canvas, footprints: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the blocks, bool [X, Y, Z], over the floor of their storey or in its walls."""
-    within = np.zeros(canvas.states.shape, bool)
-    walls = canvas.semantic == SemanticClass.WALL
-    for (ground, top), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
-        columns = grown(footprint, (1, 1)) | walls[:, :, ground:top].any(axis=2)
-        within[:, :, ground:top] = columns[:, :, None]
-    return within
-
-
-def _order(placement: Placement) -> tuple:
-    """Large furniture first, then chairs, then what stands on things; templates before cells."""
-    rank = LAST.get(placement.class_id, 0)
-    own = placement.template == CELLS
-    return rank, own, placement.object_id, placement.center_m.tolist(), placement.template
