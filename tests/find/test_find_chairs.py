@@ -97,3 +97,18 @@ def test_a_seat_takes_one_back_alone():
     labels[10:16, 8:10, 8:11] = SemanticClass.CHAIR
     owners[10:16, 8:10, 8:11] = 3
     assert len(np.unique(join_backs(owners, _grid(labels)))) == 3
+
+
+def test_the_top_of_a_far_back_is_no_part_of_its_neighbour():
+    labels = _room(("chair", 0, 10, 10))
+    labels[26:28, 12:18, 9:12] = SemanticClass.CHAIR
+    parted = _parted(labels)
+    assert len(np.unique(parted[26:28, 12:18, 9:12])) == 1
+    assert parted[26, 12, 9] not in parted[10:20, 10:20]
+
+
+def test_crumbs_of_a_chair_stay_with_it():
+    labels = _room(("chair", 0, 10, 10))
+    labels[26:28, 12:14, 9] = SemanticClass.CHAIR
+    parted = _parted(labels)
+    assert parted[26, 12, 9] in parted[10:20, 10:20]

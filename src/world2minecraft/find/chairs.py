@@ -8,6 +8,7 @@ from world2minecraft.find.heap import floor_below
 from world2minecraft.find.owned import cells_by_owner
 from world2minecraft.furniture import template
 from world2minecraft.furniture.seating import AGAINST, OWN, SeatFit, fit_seat, look_at
+from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.types import OccupancyGrid
 
 WIDE_M = 0.85  # A chair turned by half a quarter is this wide; an easy chair may be wider.
@@ -21,11 +22,13 @@ MOST = 6
 SEAT_M = 0.4  # What begins above this has no seat.
 BACK_M = 0.7  # What ends below this has no back.
 BESIDE_CELLS = 1
+TORN_CELLS = 8  # The top of a back. Fewer cells stay with the chair they joined.
 PAD = 10  # Cells around the heap: a chair's depth and some more.
 
 
 def part_chairs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
     """Return owners, int32 [X, Y, Z], in which chairs that touch have numbers of their own."""
+    owners = _without_far_pieces(owners, grid)
     tables = (grid.labels == SemanticClass.TABLE).any(axis=2)
     result = owners.copy()
     fresh = int(owners.max(initial=0))
@@ -66,6 +69,35 @@ def join_backs(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
             result[tuple(pieces[number][0].T)] = chosen
             seats.remove(chosen)
     return result
+
+
+def _without_far_pieces(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+    """Return owners in which a piece that lies too far from its chair has a number of its own.
+
+    Of a chair whose seat was not seen the top of the back is left, and joins a neighbour. With the
+    largest piece it is wider than an easy chair.
+    """
+    result = owners.copy()
+    fresh = int(owners.max(initial=0))
+    for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.CHAIR):
+        if (np.ptp(cells[:, :2], axis=0).max() + 1) * grid.voxel_m <= EASY_WIDE_M:
+            continue
+        own = np.zeros(np.ptp(cells, axis=0) + 1, np.bool_)
+        own[tuple((cells - cells.min(axis=0)).T)] = True
+        parts, count = connected_parts(own)
+        number = parts[tuple((cells - cells.min(axis=0)).T)]
+        sizes = np.bincount(number)
+        main = _box(cells[number == sizes.argmax()])
+        for part in range(1, count + 1):
+            piece = cells[number == part]
+            if sizes[part] >= TORN_CELLS and _width(main, _box(piece)) > EASY_WIDE_M / grid.voxel_m:
+                fresh += 1
+                result[tuple(piece.T)] = fresh
+    return result
+
+
+def _box(cells: np.ndarray) -> "Box":
+    return cells.min(axis=0), cells.max(axis=0) + 1
 
 
 Box = tuple[np.ndarray, np.ndarray]

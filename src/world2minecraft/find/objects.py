@@ -6,6 +6,7 @@ import numpy as np
 
 from world2minecraft.coordinates import cell_centers_m
 from world2minecraft.errors import UsageError
+from world2minecraft.find.askew import askew_rectangle
 from world2minecraft.find.chairs import join_backs, part_chairs
 from world2minecraft.find.clusters import cluster_candidates
 from world2minecraft.find.density import candidate_cells, density_map, object_cells
@@ -17,6 +18,7 @@ from world2minecraft.find.posts import join_posts
 from world2minecraft.find.reach import layers_reached
 from world2minecraft.find.rejoin import rejoin
 from world2minecraft.find.rows import part_rows
+from world2minecraft.find.specks import without_specks
 from world2minecraft.find.stacks import join_stacked
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.types import ObjectInstance, OccupancyGrid
@@ -49,13 +51,16 @@ class Found:
 def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) -> Found:
     """Find the objects of a room.
 
-    Objects are ordered by class, then by the middle of their box (x, y, z), and numbered from 1.
-    Labels stay as they are.
+    Objects are ordered by class, then by the middle of their cells (x, y, z), and numbered from 1.
+    Labels stay as they are, also those of specks that are taken for a part of another object.
 
     Raises:
         UsageError: there are more objects than ids; ``min_cells`` must be raised.
     """
     chosen = parameters or FindParameters()
+    given = grid
+    if not chosen.paper_compat:
+        grid = replace(grid, labels=without_specks(grid.labels))
     binary = object_cells(grid.labels)
     density = density_map(binary, chosen.density_kernel)
     candidates = candidate_cells(binary, density, chosen.density_threshold)
@@ -79,7 +84,7 @@ def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) 
         marked[tuple(instance.cells.T)] = instance.id
     leftover = int(np.count_nonzero(binary & (marked == 0)))
     centers = CenterMap(density, candidates, cluster)
-    return Found(replace(grid, instance=marked), instances, centers, leftover)
+    return Found(replace(given, instance=marked), instances, centers, leftover)
 
 
 def _instances(
@@ -126,14 +131,20 @@ def _instance(
     class_id = int(grid.labels[tuple(cells[0])])
     front = facing(cells, class_id, around)
     low, size = _box_m(grid, cells, class_id, reach)
+    center = low + size / 2
+    askew = askew_rectangle(cells, class_id, grid.voxel_m) if reach else None
+    if askew is not None:
+        center[:2] = grid.origin_m[:2] + askew.middle * grid.voxel_m
+        size[:2] = askew.sides * grid.voxel_m
     own_axes = size[[1, 0, 2]] if front.quarter_turns % 2 else size
+    yaw = 90.0 * front.quarter_turns + (askew.angle_deg if askew else 0.0)
     votes = float(grid.confidence[tuple(cells.T)].astype(np.float64).mean())
     return ObjectInstance(
         id=number,
         class_id=class_id,
-        center_m=np.round(low + size / 2, 9),
+        center_m=np.round(center, 9),
         size_m=np.round(own_axes, 9),
-        yaw_deg=90.0 * front.quarter_turns,
+        yaw_deg=yaw % 360.0,
         cells=cells,
         confidence=round(min(votes, 1.0), 6),
     )

@@ -1,16 +1,21 @@
-"""Which way an object looks, by quarter turns: from its own shape, or away from its wall."""
+"""Which way an object looks, by quarter turns: by its shape, its wall, or the table it is at."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
+from world2minecraft.furniture.seating import look_at
 
 SIDES = ((0, 1), (1, 1), (0, -1), (1, -1))  # (axis, sign) of the fronts at 0, 90, 180, 270 degrees.
 WALL_REACH = 3  # Cells beyond a side in which a wall counts: a 0.2 m gap at 0.08 m.
 UPPER_SHARE = 0.4  # The part of the height that holds a chair's back and a bed's headboard.
 SEATS = (SemanticClass.CHAIR, SemanticClass.SOFA)
 FLAT_SCORE = 0.15  # A lean or wall share under this says nothing.
+TABLE_REACH = 8  # Cells from a chair's side to the edge of its table: 0.64 m at 0.08 m.
+TABLE_BELOW = 5  # A table whose top lies this far below a chair's is a low one: one sits beside it.
+TABLE_WEIGHT = 0.4  # A back that is seen leans by 0.5 to 0.9, one half hidden by 0.3 and less.
+BACK_CELLS = 3  # A chair seen no deeper than this is its back alone, and a back does not lean.
 
 
 class Facing(NamedTuple):
@@ -21,32 +26,39 @@ class Facing(NamedTuple):
 
 
 class Surroundings(NamedTuple):
-    """What a front is judged by: walls and windows, bool [X, Y, Z], and the room's middle cell."""
+    """What a front is judged by: walls and windows, tables and screens, and the room's middle."""
 
-    walls: np.ndarray
-    middle: np.ndarray  # float64 [2]
+    walls: np.ndarray  # bool [X, Y, Z]
+    middle: np.ndarray  # float64 [2], in cells
+    tables: np.ndarray  # int64 [X, Y], the layer on the highest table or screen, 0 without
 
 
 def surroundings(labels: np.ndarray) -> Surroundings:
-    """Return the walls of a grid and the middle of the cells that were seen free."""
+    """Return the walls and tables of a grid, and the middle of the cells that were seen free."""
     walls = (labels == SemanticClass.WALL) | (labels == SemanticClass.WINDOW)
     free = np.argwhere((labels == SemanticClass.EMPTY).any(axis=2))
     shape = np.array(labels.shape[:2], np.float64)
-    return Surroundings(walls, free.mean(axis=0) + 0.5 if len(free) else shape / 2)
+    tables = (labels == SemanticClass.TABLE) | (labels == SemanticClass.TVS)
+    tops = np.where(tables.any(axis=2), labels.shape[2] - tables[:, :, ::-1].argmax(axis=2), 0)
+    return Surroundings(walls, free.mean(axis=0) + 0.5 if len(free) else shape / 2, tops)
 
 
 def facing(cells: np.ndarray, class_id: int, around: Surroundings) -> Facing:
     """Return the front of an object of ``cells``, int32 [N, 3].
 
-    Chairs and sofas: away from their high side. Beds: along the long side, away from the wall
-    or the high side (a headboard). Screens and tables: across their thin side, away from the
-    wall. Others: away from the wall that covers most of a side, rather across their thin side
-    (in a corner), or towards the middle of the room.
+    Chairs: away from their high side, and where no back was seen, or nothing else, to the table
+    or screen they stand at. Sofas: away from their high side or their wall. Beds: along the long
+    side, away from the wall or the high side (a headboard). Screens and tables: across their thin
+    side, away from the wall. Others: away from the wall that covers most of a side, rather across
+    their thin side (in a corner), or towards the middle of the room.
     """
     low, high = cells.min(axis=0), cells.max(axis=0) + 1
     lean = _lean(cells, low, high)
     wall = np.array([_wall_share(low, high, axis, -sign, around) for axis, sign in SIDES])
     inward = _inward(low, high, around)
+    table = _table(cells, around) if class_id == SemanticClass.CHAIR else np.zeros(len(SIDES))
+    if table.any():
+        return _best(_seen_back(lean, low, high) + TABLE_WEIGHT * table + 0.05 * inward)
     if class_id in SEATS:
         return _best(lean + 0.3 * wall + 0.05 * inward)
     if class_id == SemanticClass.TABLE:
@@ -70,6 +82,20 @@ def _lean(cells: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     offset = cells[upper, :2].mean(axis=0) + 0.5 - (low[:2] + high[:2]) / 2
     share = offset / np.maximum((high[:2] - low[:2]) / 2, 1.0)
     return np.array([max(0.0, -sign * share[axis]) for axis, sign in SIDES])
+
+
+def _seen_back(lean: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """The lean; of a chair of which the back alone was seen, that it looks across it."""
+    depth = (high - low)[:2]
+    alone = depth.min() <= BACK_CELLS and depth.min() * 2 <= depth.max()
+    return _across(low, high) if alone else lean
+
+
+def _table(cells: np.ndarray, around: Surroundings) -> np.ndarray:
+    """How far each front looks to the nearest edge of a table, 0 to 1; zeros without one."""
+    high = around.tables > cells[:, 2].max() + 1 - TABLE_BELOW
+    way = look_at(cells, high, TABLE_REACH)
+    return np.array([max(0.0, sign * way[axis]) for axis, sign in SIDES])
 
 
 def _wall_share(

@@ -22,6 +22,7 @@ BESIDE[:, :, 1] = True
 SIDES = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])  # Where a front looks, by quarter turns.
 LOOK_WEIGHT = 0.15  # What looking at its table is worth, as a share of the chair's cells.
 OPEN_TOP = 0.4  # A top layer of which more than this was seen free is hardly there.
+EDGE = 4  # Cells behind the nearest edge of a table that still are that edge.
 MARGIN = np.array((1, 1, 0))
 AROUND = np.array([(x, y, 0) for x in (0, -1, 1) for y in (0, -1, 1)])  # Other forms' places.
 
@@ -170,17 +171,21 @@ def _within(cells: np.ndarray, solid: np.ndarray, corner: np.ndarray) -> np.ndar
 def look_at(cells: np.ndarray, tables: np.ndarray, reach: int) -> np.ndarray:
     """Return the way in plan, float64 [2], from cells to the nearest table; zeros without one.
 
+    The way leads to the middle of what lies about as near as its nearest edge, so that neither
+    the far end of a long table nor another table further off turns it.
+
     Args:
         cells: int [N, 3].
         tables: bool [X, Y], the plan of all tables.
-        reach: how many cells from the middle of the cells a table may be.
+        reach: how many cells from the side of the cells' box a table may be.
     """
-    at = np.argwhere(tables)
-    middle = cells[:, :2].mean(axis=0)
-    apart = np.linalg.norm(at - middle, axis=1)
-    near = at[apart <= reach]
-    if not len(near):
+    low, high = cells[:, :2].min(axis=0), cells[:, :2].max(axis=0) + 1
+    first = np.maximum(low - reach - EDGE, 0)
+    at = np.argwhere(tables[tuple(map(slice, first, high + reach + EDGE))]) + first
+    gaps = np.maximum(np.maximum(low - at, at + 1 - high), 0)
+    apart = np.round(np.hypot(gaps[:, 0], gaps[:, 1]), 9)
+    if not len(at) or apart.min() > reach:
         return np.zeros(2)
-    way = near.mean(axis=0) - middle
+    way = at[apart <= apart.min() + EDGE].mean(axis=0) + 0.5 - (low + high) / 2
     length = float(np.linalg.norm(way))
     return way / length if length else np.zeros(2)
