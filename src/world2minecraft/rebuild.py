@@ -14,6 +14,7 @@ from world2minecraft.run_folder import check_writable
 from world2minecraft.steps import LATER_STEPS
 
 RUN_FILES = ("scan.json", "room.npz", "objects.json", "placements.json")
+ROOMS = "layout.json"  # Runs of the first versions have none.
 
 
 def rebuild(source: Path, out: Path, parameters: Parameters, progress: Progress = silent) -> None:
@@ -47,5 +48,6 @@ def _copy_run(source: Path, out: Path) -> None:
     if missing:
         raise InputError(source, f"is no finished run: {missing[0]} is missing")
     check_writable(out)
-    for name in RUN_FILES:
-        write_bytes(out / name, (source / name).read_bytes())
+    for name in (*RUN_FILES, ROOMS):
+        if (source / name).is_file():
+            write_bytes(out / name, (source / name).read_bytes())
