@@ -48,6 +48,18 @@ def test_a_book_on_a_table_is_lifted_onto_it_not_lost_in_it():
     assert (volume.instance == 3).any()
 
 
+def test_nothing_hovers_half_a_block_over_the_slab_it_lies_on():
+    table = placement("dining_table", TABLE, (2.0, 1.0, 0.44), (0.8, 1.6, 0.88), 1)
+    book = placement("box", OBJS, (2.0, 1.0, 1.0), (0.24, 0.24, 0.24), number=3)
+    sketch = Sketch().put((22, 28), (10, 15), (10, 11), TABLE, WOOD, 1)
+    sketch.put((23, 27), (11, 14), (11, 14), OBJS, RED, 3)
+    volume = build_volume(sketch.grid(), (table, book), (), corner_m=np.array([0.0, 2.0]))
+    x, y, z = np.argwhere(volume.instance == 3)[0]
+    below = volume.palette[volume.states[x, y - 1, z]]
+    assert "type=top" not in volume.palette[volume.states[x, y, z]]
+    assert volume.instance[x, y - 1, z] == 1 and "type=bottom" not in below
+
+
 @pytest.mark.parametrize("scale", [2.0, 4.0])
 def test_furniture_takes_no_floor_window_or_place_outside(scale):
     sketch = furnished()

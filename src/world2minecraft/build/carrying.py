@@ -7,11 +7,12 @@ game such things would float.
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
-from world2minecraft.classes import OBJECT_CLASSES, STRUCTURE_CLASSES
+from world2minecraft.classes import OBJECT_CLASSES, STRUCTURE_CLASSES, SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 
 REACH_M = 1.25  # A cord or a bracket is no longer than this.
 CRUMB_BLOCKS = 2  # A smaller piece beside an object that stands is noise.
+LOWER, UPPER, WHOLE = "type=bottom", "type=top", "type=double"
 CORD = "minecraft:chain[axis=y,waterlogged=false]"
 # Down first: what stands on something seldom hangs; of equal gaps the first wins.
 WAYS = ((0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1))
@@ -37,6 +38,27 @@ def carry_floaters(canvas: Canvas) -> None:
             canvas.put(tuple(blocks.T), 0, 0)
             continue
         carried[number] = True
+
+
+def close_gaps(canvas: Canvas) -> None:
+    """Close, in place, the half blocks of air between things and what they stand on.
+
+    A thing cannot begin in the middle of the block whose lower half a table's top takes. So a
+    lower slab under it is made whole, and an upper slab of its own is put down.
+    """
+    things = np.isin(canvas.semantic, (SemanticClass.OBJS, SemanticClass.TVS))
+    on = things[:, :, 1:] & (canvas.semantic[:, :, :-1] > 0)
+    on &= canvas.instance[:, :, :-1] != canvas.instance[:, :, 1:]
+    _change(canvas.states[:, :, :-1], on, canvas, (LOWER, WHOLE))
+    _change(canvas.states[:, :, 1:], on, canvas, (UPPER, LOWER))
+
+
+def _change(states: np.ndarray, mask: np.ndarray, canvas: Canvas, kinds: tuple[str, str]) -> None:
+    """Turn the slabs of a mask from one kind into another, in place."""
+    names = canvas.palette
+    for number in np.unique(states[mask]).tolist():
+        if kinds[0] in names[number]:
+            states[mask & (states == number)] = canvas.id_of(names[number].replace(*kinds))
 
 
 def _is_crumb(canvas: Canvas, blocks: np.ndarray, stands: np.ndarray) -> bool:

@@ -30,7 +30,8 @@ def shape_of_cells(
         grid: where the cells lie.
         lattice: where the blocks stand.
         share: the least share of a block's face that the cells cover.
-        shift: whether the object may move by up to half a block to fall on the lattice crisply.
+        shift: whether the object may move by up to half a block sideways, and a quarter up or
+            down, to fall on the lattice crisply.
     """
     low_cell, high_cell = cells.min(0), cells.max(0) + 1
     mask = np.zeros(high_cell - low_cell, bool)
@@ -40,6 +41,8 @@ def shape_of_cells(
     ]
     if shift:
         edges = _best_phase(mask, edges)
+        # Its bottom goes to a half block, as a template's does: so a book lies on its table.
+        edges[2] = edges[2] + np.floor(2 * edges[2][0] + 0.5) / 2 - edges[2][0]
     edges[2] = np.maximum(
         edges[2], lattice.ground_under(float(edges[2][0]))
     )  # What dips into the floor stands on it.

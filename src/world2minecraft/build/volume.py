@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
-from world2minecraft.build.carrying import carry_floaters
+from world2minecraft.build.carrying import carry_floaters, close_gaps
 from world2minecraft.build.connect import connect
 from world2minecraft.build.exact import put_cells_exactly
 from world2minecraft.build.hues import cell_colours, one_paint, seen_colours
@@ -85,6 +85,7 @@ def _put_room(
     builder = ObjectBuilder(canvas, grid, painted, coloured, palette, parameters, shell.footprints)
     builder.put_all(placements)
     carry_floaters(canvas)
+    close_gaps(canvas)
     return shell.footprints
 
 
