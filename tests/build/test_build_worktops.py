@@ -3,6 +3,7 @@ from build_samples import DARK, FURN, RED, WHITE, Sketch
 
 from world2minecraft.build import build_volume
 from world2minecraft.build.hues import one_paint
+from world2minecraft.build.worktops import Worktop, joined
 from world2minecraft.coordinates import apply
 from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
 from world2minecraft.minecraft.colours import colour_of
@@ -68,3 +69,26 @@ def test_the_shades_and_hazes_of_a_strong_paint_are_one_colour():
     assert len(np.unique(found[:400], axis=0)) < 0.2 * 400
     few = one_paint(reds[:100])
     assert np.array_equal(few, reds[:100].astype(np.float32))
+
+
+def plate(x, layer, colour):
+    columns = np.zeros((12, 4), bool)
+    columns[x] = True
+    return Worktop(columns, layer, 1, np.array(colour, np.float32))
+
+
+def test_the_arms_of_an_l_wear_one_plate_as_the_larger_says():
+    arms = {3: plate(slice(0, 2), 4, (0.2, 0, 0)), 8: plate(slice(2, 8), 3, (0.1, 0, 0))}
+    found = joined(arms)
+    assert set(found) == {3, 8}
+    assert found[3].layer == found[8].layer == 3
+    np.testing.assert_array_equal(found[3].colour, arms[8].colour)
+    np.testing.assert_array_equal(found[3].columns, arms[3].columns)
+
+
+def test_plates_apart_or_at_other_heights_stay_as_they_are():
+    tops = {1: plate(slice(0, 2), 3, (0.2, 0, 0)), 2: plate(slice(4, 8), 3, (0.1, 0, 0))}
+    higher = {1: tops[1], 2: plate(slice(2, 8), 5, (0.1, 0, 0))}
+    for given in (tops, higher):
+        found = joined(given)
+        assert all(found[number] is given[number] for number in given)

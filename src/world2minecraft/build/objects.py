@@ -21,7 +21,7 @@ from world2minecraft.build.places import LAST, in_order, within_storeys
 from world2minecraft.build.seats import chair_paints
 from world2minecraft.build.surfaces import block_colours, painted
 from world2minecraft.build.tops import top_cells
-from world2minecraft.build.worktops import Worktop, find_worktop
+from world2minecraft.build.worktops import Worktop, find_worktop, joined
 from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.furniture import idiom, template
 from world2minecraft.geometry.colour import oklab_of_srgb
@@ -103,7 +103,9 @@ class ObjectBuilder:
             top = find_worktop(self.grid, cells, self.colours, self.coloured, self.lattice)
             if number and top is not None:
                 self.worktops[int(number)] = top
-                self._put_plate(top, top.columns, int(number))
+        self.worktops = joined(self.worktops)
+        for number, top in self.worktops.items():
+            self._put_plate(top, top.columns, number)
 
     def _put_plate(self, top: Worktop, columns: np.ndarray, number: int) -> None:
         """Set the plate of a worktop over columns, bool [X, Y], where nothing stands."""

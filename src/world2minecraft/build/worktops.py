@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.build.halves import FULL, LOWER
 from world2minecraft.build.lattice import Lattice, overlaps
-from world2minecraft.build.morphology import closed
+from world2minecraft.build.morphology import closed, grown
 from world2minecraft.build.tops import step_cells
 from world2minecraft.types import OccupancyGrid
 
@@ -75,6 +75,27 @@ def find_worktop(
     cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
     columns = cover[0] @ plan.astype(np.float32) @ cover[1].T >= COVERED
     return Worktop(columns, layer, LOWER if at - layer <= 0.75 else FULL, colour)
+
+
+def joined(tops: dict[int, Worktop]) -> dict[int, Worktop]:
+    """Return the worktops with those that touch at about one height of one height and colour.
+
+    The arms of an L are objects of their own, yet one plate lies over both. The larger part says
+    what they all are, since it was seen best.
+    """
+    by_size = sorted(tops, key=lambda number: (-int(tops[number].columns.sum()), number))
+    result: dict[int, Worktop] = {}
+    for number in by_size:
+        near = grown(tops[number].columns, (1, 1))
+        whole = next((one for one in result.values() if _meets(tops[number], one, near)), None)
+        result[number] = tops[number]
+        if whole is not None:
+            result[number] = whole._replace(columns=tops[number].columns)
+    return result
+
+
+def _meets(top: Worktop, other: Worktop, near: np.ndarray) -> bool:
+    return abs(top.layer - other.layer) <= 1 and bool((near & other.columns).any())
 
 
 def _rim_of(
