@@ -1,5 +1,7 @@
 """Placements settled: none outside its room, no two solid in the same place, none lost."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +11,7 @@ from label_grids import grid_of
 from world2minecraft.furnish.bounds import within_rooms
 from world2minecraft.furnish.settling import settle
 from world2minecraft.metrics.layout import collisions, out_of_rooms
-from world2minecraft.metrics.solids import box_m
+from world2minecraft.metrics.solids import box_m, depth_m, solids_m
 from world2minecraft.types import Layout, Placement
 
 VOXEL_M = 0.08
@@ -112,3 +114,21 @@ def test_the_same_placements_settle_the_same():
     placed = [put(n, "chair", 1.0 + 0.1 * n, 1.0, turns=n % 4) for n in range(1, 6)]
     first, again = (settle(placed, EMPTY, [ROOM]) for _ in range(2))
     assert [box_m(a).tolist() for a in first] == [box_m(b).tolist() for b in again]
+
+
+def test_cells_that_stand_out_of_their_thin_box_are_parted_too():
+    """A box of 2 cm holds the middles of cells of 8 cm, which alone meet what stands beside."""
+    instance = np.zeros(EMPTY.shape, np.uint16)
+    instance[20, 10:14, 0:6] = 2
+    grid = replace(EMPTY, instance=instance)
+    x = float(grid.origin_m[0]) + 20.5 * VOXEL_M
+    y = float(grid.origin_m[1]) + 12 * VOXEL_M
+    low = float(grid.origin_m[2])
+    size_m = np.array([0.02, 0.32, 0.48])
+    thin = Placement(2, 11, "cells", np.array([x, y, low + 0.24]), size_m, 0, 1)
+    beside = put(1, "box", x - 0.2 + 0.02, y, low)  # 3 cm into the thin box, 6 into its cells.
+    assert depth_m(solids_m(beside, grid), solids_m(thin, grid)) > 0.05
+    settled = settle([beside, thin], grid)
+    first, second = (solids_m(one, grid) for one in settled)
+    assert depth_m(first, second) <= 0.04
+    assert [one.object_id for one in settled] == [1, 2]

@@ -160,6 +160,8 @@ def _trims(box: np.ndarray, solid: np.ndarray, least: np.ndarray) -> Iterator[np
     """Give a box cut so that it ends before, or begins behind, the solid boxes it meets."""
     ways = np.minimum(box[1] - solid[:, 0], solid[:, 1] - box[0]).min(axis=1)
     met = solid[ways > FORGIVEN_M]
+    if not len(met):  # Its cells stand out of its box, and they alone meet the other.
+        return
     for axis in range(3):
         for end, edge in ((1, met[:, 0, axis].min()), (0, met[:, 1, axis].max())):
             trimmed = box.copy()
