@@ -112,3 +112,13 @@ def test_a_small_thing_between_others_is_never_lost():
     thing = placement("box", OBJS, (0.28, 0.72, 0.76), (0.08, 0.16, 0.08), number=3)
     volume = build_volume(sketch.grid(), (thing,), (), corner_m=np.array([0.0, 2.0]))
     assert (volume.instance == 3).any()
+
+
+def test_a_chair_s_back_without_its_seat_gets_a_leg_and_no_bridge_to_the_chair_beside():
+    sketch = Sketch().put((20, 26), (8, 14), (0, 11), CHAIR, WOOD, 1)
+    sketch.put((34, 40), (8, 10), (8, 11), CHAIR, WOOD, 2)
+    volume = build_volume(sketch.grid(), (), (), corner_m=np.array([0.0, 2.0]))
+    assert floaters(volume.semantic).parts == 0
+    columns = np.unique(np.argwhere(volume.instance == 2)[:, [0, 2]], axis=0)
+    assert np.ptp(columns[:, 0]) <= 2  # Six cells are two blocks; a leg may stand on any of them.
+    assert (volume.instance[:, 2] == 2).any()

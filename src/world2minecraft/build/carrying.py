@@ -10,7 +10,9 @@ from world2minecraft.build.canvas import Canvas
 from world2minecraft.classes import OBJECT_CLASSES, STRUCTURE_CLASSES, SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 
-REACH_M = 1.25  # A cord or a bracket is no longer than this.
+REACH_M = 1.25  # A cord is no longer than this,
+SIDE_M = 0.5  # nor a bracket than this.
+STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
 CRUMB_BLOCKS = 2  # A smaller piece beside an object that stands is noise.
 LOWER, UPPER, WHOLE = "type=bottom", "type=top", "type=double"
 CORD = "minecraft:chain[axis=y,waterlogged=false]"
@@ -70,11 +72,17 @@ def _is_crumb(canvas: Canvas, blocks: np.ndarray, stands: np.ndarray) -> bool:
 
 
 def _join(canvas: Canvas, blocks: np.ndarray, stands: np.ndarray, parts: np.ndarray) -> bool:
-    """Fill the shortest way from a part to something carried; False where there is none."""
-    reach = max(1, round(REACH_M * canvas.lattice.blocks_per_metre))
-    found = _shortest(blocks, stands, parts, reach) or _shortest(
-        blocks, stands, parts, stands.shape[2], WAYS[:1]
-    )
+    """Fill the shortest way from a part to something carried; False where there is none.
+
+    What stands on the floor gets a leg, and never a bracket.
+    """
+    scale = canvas.lattice.blocks_per_metre
+    up, aside = (max(1, round(length * scale)) for length in (REACH_M, SIDE_M))
+    reach = {way: up if way[2] else aside for way in WAYS}
+    down = {WAYS[0]: stands.shape[2]}
+    stood = np.isin(canvas.semantic[tuple(blocks.T)], STANDING).all()
+    found = None if stood else _shortest(blocks, stands, parts, reach)
+    found = found or _shortest(blocks, stands, parts, down)
     if found is None:
         return False
     start, way, gap = found
@@ -91,16 +99,18 @@ def _shortest(
     blocks: np.ndarray,
     stands: np.ndarray,
     parts: np.ndarray,
-    reach: int,
-    ways: tuple[tuple[int, int, int], ...] = WAYS,
+    reach: dict[tuple[int, int, int], int],
 ) -> tuple[np.ndarray, tuple[int, int, int], int] | None:
-    """Return the block to start from, the way and the number of blocks between, or None."""
+    """Return the block to start from, the way and the number of blocks between, or None.
+
+    ``reach`` holds the ways, earlier ones winning ties, and the most blocks between along each.
+    """
     shape = np.array(stands.shape)
     middle = blocks.mean(axis=0)
     best: tuple[tuple[float, ...], np.ndarray, tuple[int, int, int], int] | None = None
-    for order, way in enumerate(ways):
+    for order, (way, most) in enumerate(reach.items()):
         for start in blocks:
-            for gap in range(1, reach + 1):
+            for gap in range(1, most + 1):
                 place = start + np.array(way) * (gap + 1)
                 between = start + np.array(way) * gap
                 if (place < 0).any() or (place >= shape).any() or parts[tuple(between)]:

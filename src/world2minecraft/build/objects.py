@@ -219,8 +219,13 @@ class ObjectBuilder:
         return float((self.open_share[tuple(filled.T)] > OPEN).mean()) if len(filled) else 0.0
 
     def _with_tops(self, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return an object's cells with its top closed, and the cells that colour them."""
+        """Return an object's cells with its top closed, and the cells that colour them.
+
+        A chair has none: what is unseen beside its back lies under the table before it.
+        """
         if not (self.parameters.close_tops and len(cells)):
+            return cells, cells
+        if np.bincount(self.grid.labels[tuple(cells.T)]).argmax() == SemanticClass.CHAIR:
             return cells, cells
         added, alike = top_cells(self.grid, cells)
         return np.concatenate([cells, added]), np.concatenate([cells, alike])
