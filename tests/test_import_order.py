@@ -16,6 +16,7 @@ ROWS: tuple[tuple[str, ...], ...] = (
     ("geometry",),
     ("minecraft",),
     ("exchange",),
+    ("fit",),
     ("furniture",),
     ("render",),
     ("walk",),

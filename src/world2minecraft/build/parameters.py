@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from world2minecraft.errors import UsageError
 
 EDGES = ("barrier", "none")
+STYLES = ("blocks", "display", "voxels")
 _DISTANCES = (
     "saturation",
     "preference",
@@ -24,6 +25,9 @@ class BuildParameters:
     """How a room is built. Each default is a decision; its origin stands beside it.
 
     palette: the palette file; see docs/building.md.
+    style: what furniture is made of: ``blocks``, designs in vanilla blocks; ``display``, fine
+        geometry in block_display entities over invisible colliders; ``voxels``, each object's own
+        cells by the best fitting block states.
     ceiling: build the ceiling where it was seen; without it one looks in from above.
     lights: put invisible light blocks, so that the room is lit and safe at night.
     edge: what stands where the floor ends and no wall was seen: invisible ``barrier`` blocks, so
@@ -65,6 +69,7 @@ class BuildParameters:
     """
 
     palette: str = "vanilla"
+    style: str = "blocks"
     ceiling: bool = True
     lights: bool = True
     edge: str = "barrier"
@@ -91,6 +96,8 @@ class BuildParameters:
     def __post_init__(self):
         if self.edge not in EDGES:
             raise UsageError(f"build.edge must be {' or '.join(EDGES)}, not {self.edge!r}")
+        if self.style not in STYLES:
+            raise UsageError(f"build.style must be {', '.join(STYLES)}, not {self.style!r}")
         for name in ("structure_colours", "object_colours"):
             if getattr(self, name) < 1:
                 raise UsageError(f"build.{name} must be 1 or more, not {getattr(self, name)}")

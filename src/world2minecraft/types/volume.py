@@ -22,11 +22,13 @@ class BlockEntity:
 
 @dataclass(frozen=True)
 class Entity:
-    """A thing that stands free of the block grid."""
+    """A thing that stands free of the block grid; part of an object, where it says of which."""
 
     position: tuple[float, float, float]  # world block coordinates, not whole
     id: str
     nbt: Mapping[str, Any] = field(default_factory=dict)
+    class_id: int = 0
+    instance: int = 0
 
 
 @dataclass(frozen=True, eq=False)

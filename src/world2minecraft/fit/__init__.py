@@ -1,0 +1,1 @@
+"""Shape fitting: fine occupancy to block states, object by object."""
