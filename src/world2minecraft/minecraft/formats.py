@@ -1,14 +1,16 @@
 """The formats that hold blocks, found by a file's suffix or a folder's content.
 
-A format is one class and one line of ``FORMATS``.
+A format is one class and one line of ``FORMATS``. A reader and a writer count in ``losses`` what
+they could not carry; ``write_blocks`` itself counts the labels, which no format of the game holds.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 from world2minecraft.errors import InputError, UsageError
+from world2minecraft.minecraft.losses import Losses
 from world2minecraft.registry import Registry
 from world2minecraft.types import BlockVolume
 
@@ -23,20 +25,27 @@ FORMATS = Registry(
 
 
 class BlockFormat(Protocol):
-    """A format that holds blocks. ``suffix`` is empty for a format that is a folder."""
+    """A format that holds blocks. ``suffix`` is empty for a format that is a world folder.
+
+    ``keeps_labels`` says whether a file holds what its blocks are (class and object).
+    """
 
     suffix: str
     can_read: bool
+    can_write: bool
+    keeps_labels: bool
 
     def is_at(self, path: Path) -> bool:
         """Whether the file or folder at ``path`` is of this format, by its name or content."""
         ...
 
-    def read(self, path: Path) -> BlockVolume:
+    def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read the blocks. Raises ``InputError`` or one of its kinds."""
         ...
 
-    def write(self, volume: BlockVolume, path: Path, options: "WriteOptions") -> None:
+    def write(
+        self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
+    ) -> None:
         """Write the blocks. Raises ``OutputError`` or ``UsageError``."""
         ...
 
@@ -53,8 +62,12 @@ class WriteOptions:
     other: Mapping[str, Any] = field(default_factory=dict)
 
 
-def read_blocks(path: str | Path) -> BlockVolume:
+def read_blocks(path: str | Path, losses: Losses | None = None) -> BlockVolume:
     """Read blocks from any known format.
+
+    Args:
+        path: a file or a folder.
+        losses: what the file holds and the volume cannot is counted here.
 
     Raises:
         InputError: nothing is there or no format knows it, or one of its kinds from the reader.
@@ -62,26 +75,59 @@ def read_blocks(path: str | Path) -> BlockVolume:
     source = Path(path)
     if not source.exists():
         raise InputError(source, "is not there")
-    for format_ in _formats():
+    for format_ in block_formats():
         if format_.can_read and format_.is_at(source):
-            return format_.read(source)
-    raise InputError(source, f"is no block file that is read; known: {_known(reading=True)}")
+            return format_.read(source, Losses() if losses is None else losses)
+    raise InputError(source, f"is no block file that is read; known: {known_formats('read')}")
 
 
 def write_blocks(
-    volume: BlockVolume, path: str | Path, options: WriteOptions | None = None
+    volume: BlockVolume,
+    path: str | Path,
+    options: WriteOptions | None = None,
+    losses: Losses | None = None,
 ) -> None:
     """Write blocks in the format that the path's suffix names; without one, as a world folder.
+
+    Args:
+        volume: the blocks.
+        path: the file or folder to write.
+        options: the game's version and more.
+        losses: what the volume holds and the file cannot is counted here.
 
     Raises:
         UsageError: no format has this suffix. OutputError: the path cannot be written.
     """
     target = Path(path)
-    for format_ in _formats():
-        if target.suffix.lower() == format_.suffix:
-            format_.write(volume, target, options or WriteOptions())
-            return
-    raise UsageError(f"{target}: no block format ends so; known: {_known(reading=False)}")
+    format_ = format_to_write(target)
+    told = Losses() if losses is None else losses
+    format_.write(volume, target, options or WriteOptions(), told)
+    if not format_.keeps_labels:
+        told.add("blocks' labels (class and object)", int((volume.semantic > 0).sum()))
+
+
+def format_to_write(path: str | Path) -> BlockFormat:
+    """Return the format that a path's suffix names.
+
+    Raises:
+        UsageError: no format that is written has it.
+    """
+    suffix = Path(path).suffix.lower()
+    for format_ in block_formats():
+        if format_.can_write and suffix == format_.suffix:
+            return format_
+    raise UsageError(f"{path}: no block format ends so; known: {known_formats('write')}")
+
+
+def block_formats() -> list[BlockFormat]:
+    """Return all formats, the program's own first."""
+    return [FORMATS.load(name)() for name in FORMATS.names()]
+
+
+def known_formats(verb: Literal["read", "write"]) -> str:
+    """Return the suffixes that are read or written, as an error's end."""
+    able = [f for f in block_formats() if (f.can_read if verb == "read" else f.can_write)]
+    return ", ".join(f.suffix or "a world folder" for f in able)
 
 
 class WorldFormat:
@@ -89,18 +135,20 @@ class WorldFormat:
 
     suffix = ""
     can_read = True
+    can_write = True
+    keeps_labels = False
 
     def is_at(self, path: Path) -> bool:
         """Whether a ``level.dat`` is there."""
         return (path / "level.dat").is_file()
 
-    def read(self, path: Path) -> BlockVolume:
+    def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read the overworld."""
         from world2minecraft.minecraft.world import read_world  # noqa: PLC0415  # It needs numba.
 
         return read_world(path)
 
-    def write(self, volume: BlockVolume, path: Path, options: WriteOptions) -> None:
+    def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write a world whose player starts at ``spawn``, or on top of the middle."""
         from world2minecraft.minecraft.spawn import top_of_middle  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
@@ -121,18 +169,20 @@ class SchemFormat:
 
     suffix = ".schem"
     can_read = True
+    can_write = True
+    keeps_labels = False
 
     def is_at(self, path: Path) -> bool:
         """Whether the name ends so."""
         return path.is_file() and path.suffix.lower() == self.suffix
 
-    def read(self, path: Path) -> BlockVolume:
+    def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read version 1, 2 or 3."""
         from world2minecraft.minecraft.schem import read_schem  # noqa: PLC0415  # It needs numba.
 
         return read_schem(path)
 
-    def write(self, volume: BlockVolume, path: Path, options: WriteOptions) -> None:
+    def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write version 2, or 3 where the options say so."""
         from world2minecraft.minecraft.schem import write_schem  # noqa: PLC0415  # numba.
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
@@ -152,28 +202,21 @@ class DatapackFormat:
 
     suffix = ".zip"
     can_read = False
+    can_write = True
+    keeps_labels = False
 
     def is_at(self, path: Path) -> bool:
         """Whether the name ends so."""
         return path.suffix.lower() == self.suffix
 
-    def read(self, path: Path) -> BlockVolume:
+    def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Refuse: commands are no volume."""
         raise InputError(path, "is a data pack, which is written and not read")
 
-    def write(self, volume: BlockVolume, path: Path, options: WriteOptions) -> None:
+    def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write the pack under the namespace of the options' name."""
         from world2minecraft.minecraft.datapack import write_datapack  # noqa: PLC0415  # numba.
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         version = game_version(options.mc_version)
         write_datapack(volume, path, version=version, name=options.name)
-
-
-def _formats() -> list[BlockFormat]:
-    return [FORMATS.load(name)() for name in FORMATS.names()]
-
-
-def _known(*, reading: bool) -> str:
-    suffixes = [f.suffix or "a world folder" for f in _formats() if f.can_read or not reading]
-    return ", ".join(suffixes)
