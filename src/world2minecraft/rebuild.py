@@ -1,5 +1,6 @@
-"""From an occupancy grid to a world, without its capture."""
+"""From an occupancy grid to blocks, without its capture: in a folder, or as they are."""
 
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -8,10 +9,12 @@ from world2minecraft.errors import InputError, UsageError
 from world2minecraft.exchange.occupancy import read_occupancy
 from world2minecraft.exchange.room import write_room
 from world2minecraft.files import write_bytes
+from world2minecraft.minecraft.formats import FORMATS, read_blocks
 from world2minecraft.parameters import Parameters
 from world2minecraft.progress import Progress, silent
 from world2minecraft.run_folder import check_writable
-from world2minecraft.steps import LATER_STEPS
+from world2minecraft.steps import LATER_STEPS, built_volume
+from world2minecraft.types import BlockVolume
 
 RUN_FILES = ("scan.json", "room.npz", "objects.json", "placements.json")
 ROOMS = "layout.json"  # Runs of the first versions have none.
@@ -37,16 +40,57 @@ def rebuild(source: Path, out: Path, parameters: Parameters, progress: Progress 
         check_writable(out)
         write_room(out / "room.npz", grid, np.eye(4))
         stages = ("find", "furnish", "build")
+    _run_stages(stages, out, parameters, progress)
+
+
+def blocks_of(source: Path, parameters: Parameters, progress: Progress = silent) -> BlockVolume:
+    """Return the blocks that ``rebuild`` would write; ``source`` may hold blocks already.
+
+    Args:
+        source: a run's folder, an occupancy file, or any file or world that holds blocks; the
+            last are returned as they are, whatever the parameters.
+        parameters: how to build.
+        progress: told of each step.
+
+    Raises:
+        InputError: ``source`` cannot be read.
+    """
+    if is_block_file(source):
+        return read_blocks(source)
+    if source.is_dir():
+        _check_run(source)
+        return built_volume(source, parameters)
+    grid = read_occupancy(source)
+    with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
+        folder = Path(scratch)
+        write_room(folder / "room.npz", grid, np.eye(4))
+        _run_stages(("find", "furnish"), folder, parameters, progress)
+        return built_volume(folder, parameters)
+
+
+def is_block_file(source: Path) -> bool:
+    """Whether a known format finds blocks at ``source``."""
+    found = (FORMATS.load(name)() for name in FORMATS.names())
+    return any(format_.can_read and format_.is_at(source) for format_ in found)
+
+
+def _run_stages(
+    stages: tuple[str, ...], folder: Path, parameters: Parameters, progress: Progress
+) -> None:
     for stage in stages:
         progress(stage, 0, 1)
-        LATER_STEPS[stage](out, parameters)
+        LATER_STEPS[stage](folder, parameters)
         progress(stage, 1, 1)
 
 
-def _copy_run(source: Path, out: Path) -> None:
+def _check_run(source: Path) -> None:
     missing = [name for name in RUN_FILES if not (source / name).is_file()]
     if missing:
         raise InputError(source, f"is no finished run: {missing[0]} is missing")
+
+
+def _copy_run(source: Path, out: Path) -> None:
+    _check_run(source)
     check_writable(out)
     for name in (*RUN_FILES, ROOMS):
         if (source / name).is_file():

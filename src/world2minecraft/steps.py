@@ -34,7 +34,7 @@ from world2minecraft.fuse import (
 )
 from world2minecraft.label import find_structure, labeller
 from world2minecraft.parameters import Parameters
-from world2minecraft.types import FusedEvidence, OccupancyGrid
+from world2minecraft.types import BlockVolume, FusedEvidence, OccupancyGrid
 
 
 def label_stage(folder: Path, chosen: Parameters) -> None:
@@ -75,8 +75,13 @@ def furnish_stage(folder: Path, chosen: Parameters) -> None:
 
 def build_stage(folder: Path, chosen: Parameters) -> None:
     """``room.npz`` and ``placements.json`` -> the world and its other forms in ``build``."""
+    write_build(folder / "build", built_volume(folder, chosen), mc_version=chosen.mc_version)
+
+
+def built_volume(folder: Path, chosen: Parameters) -> BlockVolume:
+    """``room.npz``, ``objects.json`` and ``placements.json`` -> the blocks; nothing is written."""
     grid, _ = read_room(folder / "room.npz")
-    volume = build_volume(
+    return build_volume(
         grid,
         read_placements(folder / "placements.json"),
         read_objects(folder / "objects.json", grid),
@@ -84,7 +89,6 @@ def build_stage(folder: Path, chosen: Parameters) -> None:
         blocks_per_metre=chosen.blocks_per_metre,
         parameters=chosen.build,
     )
-    write_build(folder / "build", volume, mc_version=chosen.mc_version)
 
 
 def corner_m(folder: Path, grid: OccupancyGrid) -> np.ndarray:

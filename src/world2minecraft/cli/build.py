@@ -1,54 +1,142 @@
-"""``w2m build``: any occupancy file becomes a Minecraft world."""
+"""``w2m build``: any occupancy file becomes blocks: in a folder, in a world, or both."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from world2minecraft.errors import UsageError
+
+if TYPE_CHECKING:
+    from world2minecraft.parameters import Parameters
+    from world2minecraft.types import BlockVolume
 
 EXAMPLES = """\
 w2m build OUT --out second --blocks-per-metre 2     a finished run at another scale
 w2m build room.npz --out world_of_room              an occupancy grid alone
 w2m build labels.npy --out world_of_labels          an array of class ids [x, y, z]
+w2m build OUT --into saves/Home --at 100 64 -20     into a world of yours; w2m undo takes it back
+w2m build house.schem --into saves/Home --at 0 70 0
 """
 
 
+Source = Annotated[
+    Path,
+    typer.Argument(
+        metavar="ROOM", help="A run's folder, room.npz, occ.json, .npy; or blocks (.schem ...)."
+    ),
+]
+Out = Annotated[
+    Path | None, typer.Option("--out", help="The folder of the results: a world of its own.")
+]
+Into = Annotated[
+    Path | None, typer.Option("--into", metavar="WORLD", help="Build into this world.")
+]
+Place = Annotated[
+    tuple[int, int, int] | None,
+    typer.Option("--at", metavar="X Y Z", help="Where the room's corner comes to stand."),
+]
+Turns = Annotated[
+    int, typer.Option("--turns", help="With --at: quarter turns, counter-clockwise from above.")
+]
+Air = Annotated[
+    str, typer.Option("--air", help="With --into: which air is built: room, box or none.")
+]
+NewChunks = Annotated[
+    bool, typer.Option("--new-chunks", help="With --into: make what the game never generated.")
+]
+Scale = Annotated[float, typer.Option("--blocks-per-metre", help="Scale: 1, 2, 4 or 12.5.")]
+Version = Annotated[str, typer.Option("--mc-version", help="The game version to write for.")]
+Settings = Annotated[
+    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any parameter.")
+]
+
+
 def run(
-    source: Annotated[
-        Path, typer.Argument(metavar="ROOM", help="A run's folder, room.npz, occ.json or .npy.")
-    ],
-    out: Annotated[Path, typer.Option("--out", help="The folder of the results.")],
-    blocks_per_metre: Annotated[
-        float, typer.Option("--blocks-per-metre", help="Scale: 1, 2, 4 or 12.5.")
-    ] = 4.0,
-    mc_version: Annotated[
-        str, typer.Option("--mc-version", help="The game version to write for.")
-    ] = "1.20.1",
-    settings: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any parameter.")
-    ] = None,
+    source: Source,
+    out: Out = None,
+    into: Into = None,
+    at: Place = None,
+    turns: Turns = 0,
+    air: Air = "room",
+    new_chunks: NewChunks = False,
+    blocks_per_metre: Scale = 4.0,
+    mc_version: Version = "1.20.1",
+    settings: Settings = None,
 ) -> None:
-    """Build a world from an occupancy grid.
+    """Build a world from an occupancy grid, or build into a world that exists.
 
     A run's folder is built from its objects and placements as they stand; from a grid alone the
-    objects are found and matched first.
+    objects are found and matched first. With --into, the corner of the room's floor comes to
+    stand at X Y Z, so that one stands on the floor at height Y; every file that is touched is
+    backed up first, and `w2m undo WORLD` brings it back.
 
     Args:
         source: what to build.
         out: the folder to write.
+        into: the world to build into.
+        at: where the room's corner goes, in blocks of that world.
+        turns: quarter turns before that.
+        air: which air of the room replaces blocks of the world.
+        new_chunks: whether chunks that the game never generated are made.
         blocks_per_metre: the scale.
         mc_version: the game version.
         settings: further parameters.
+
+    Raises:
+        UsageError: nothing says where to build, or an option needs another.
     """
-    from world2minecraft.cli.outcome import compiling_note, say_how_to_play
-    from world2minecraft.cli.progress import shown
+    check_targets(out, into, at, turns)
     from world2minecraft.parameters import Parameters, with_settings
-    from world2minecraft.rebuild import rebuild
 
     chosen = with_settings(
         Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version), settings or []
     )
+    if out is not None:
+        into_folder(source, out, chosen)
+    if into is not None and at is not None:
+        from world2minecraft.cli.into_world import into_world
+
+        into_world(volume_of(source, chosen), into, at, turns, air, new_chunks)
+
+
+def check_targets(
+    out: Path | None, into: Path | None, at: tuple[int, int, int] | None, turns: int
+) -> None:
+    """Check, before any work, that the options say where to build.
+
+    Raises:
+        UsageError: they do not.
+    """
+    if out is None and into is None:
+        raise UsageError("say where to build: --out FOLDER, or --into WORLD --at X Y Z")
+    if into is not None and at is None:
+        raise UsageError("--into needs a place: add --at X Y Z, such as the F3 screen shows")
+    if into is None and (at is not None or turns):
+        raise UsageError("--at and --turns go with --into WORLD; add it or leave them out")
+
+
+def into_folder(source: Path, out: Path, chosen: "Parameters") -> None:
+    """Build a world of its own and its other forms under ``out``, and say how to play."""
+    from world2minecraft.cli.outcome import compiling_note, say_how_to_play
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.rebuild import rebuild
+
     compiling_note()
     with shown() as progress:
         rebuild(source, out, chosen, progress)
     print()
     say_how_to_play(out / "build")
+
+
+def volume_of(source: Path, chosen: "Parameters") -> "BlockVolume":
+    """Return the blocks of a room for a target that is no folder; nothing is written."""
+    from world2minecraft.cli.outcome import compiling_note
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.rebuild import blocks_of
+
+    compiling_note()
+    with shown() as progress:
+        volume = blocks_of(source, chosen, progress)
+    print()
+    return volume
