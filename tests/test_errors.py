@@ -30,6 +30,7 @@ GOLDEN = [
     (errors.CaptureError("cap", "has no poses"), "cap: has no poses", 3),
     (errors.OutputError("out", "is a file"), "out: is a file", 3),
     (errors.UsageError("give one"), "give one", 2),
+    (errors.ServerError("gone"), "gone", 1),
     (errors.World2MinecraftError("failed"), "failed", 1),
 ]
 

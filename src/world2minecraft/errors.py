@@ -6,6 +6,7 @@
     ├── UsageError                  2   the command or a parameter is wrong
     │   ├── UnknownNameError        2   a name that no registry holds
     │   └── MissingExtraError       2   an optional dependency is not installed
+    ├── ServerError                 1   a running server refuses, or cannot be reached
     └── InputError                  3   a file or folder cannot be used
         ├── DamagedFileError        3   a file is not what its format says
         ├── LimitError              3   a file asks for more than the program allows
@@ -47,6 +48,10 @@ class MissingExtraError(UsageError):
 
     def __init__(self, feature: str, extra: str):
         super().__init__(f"{feature} needs an extra: pip install 'world2minecraft[{extra}]'")
+
+
+class ServerError(World2MinecraftError):
+    """A running server cannot be reached, refuses, or does not do what it was told."""
 
 
 class InputError(World2MinecraftError):

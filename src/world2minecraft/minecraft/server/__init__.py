@@ -1,0 +1,1 @@
+"""A running server: the RCON protocol, and building a volume through it."""

@@ -1,0 +1,216 @@
+"""Building a volume on a running server, through cuts of the connection, and checking that it is.
+
+What was done is noted in a small file, so that a second run goes on where the first was stopped.
+"""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from world2minecraft.errors import InputError, ServerError
+from world2minecraft.files import read_json, write_json
+from world2minecraft.minecraft.server.plan import BuildPlan, Probe
+from world2minecraft.minecraft.server.rcon import RconClient
+from world2minecraft.progress import Progress, silent
+
+NOTE_EVERY_S = 0.5
+LOAD_TRIES, LOAD_WAIT_S = 60, 0.5  # Half a minute for the chunks to come.
+RETRIES, FIRST_WAIT_S, MOST_WAIT_S = 6, 0.5, 8.0  # Half a minute for a server to come back.
+SHOWN = 3  # So many wrong blocks are named.
+
+# How the game says that a command was wrong; what it says of one that changed nothing is fine.
+_WRONG = (
+    "<--[HERE]",
+    "Unknown ",
+    "Incorrect ",
+    "Invalid ",
+    "Expected ",
+    "Too many blocks",
+    "An unexpected error",
+    "out of this world",
+    "outside of the world",
+)
+_NOT_LOADED = "not loaded"
+_WERE_LOADED = "No chunks were marked"
+_PASSED = "Test passed"
+
+
+@dataclass(frozen=True)
+class LiveResult:
+    """What came of it: commands sent, cuts survived, places asked for, blocks set again."""
+
+    commands: int
+    reconnects: int
+    checked: int
+    repaired: int
+
+
+class LiveBuilder:
+    """Carries a plan out on one server.
+
+    Args:
+        client: where to; it is connected when it is used.
+        plan: what to say.
+        note: the file that remembers how far it is; None remembers nothing.
+        progress: told of the commands done.
+        sleep: how to wait; tests do not.
+    """
+
+    def __init__(
+        self,
+        client: RconClient,
+        plan: BuildPlan,
+        note: Path | None = None,
+        progress: Progress = silent,
+        sleep: Callable[[float], None] = time.sleep,
+    ):
+        self._client, self._plan, self._note = client, plan, note
+        self._progress, self._sleep = progress, sleep
+        self._commands = self._reconnects = self._done = 0
+        self._connected = False
+        self._noted_at = 0.0
+        self._to_release: tuple[str, ...] = plan.release
+
+    def run(self) -> LiveResult:
+        """Build, check, and mend what is wrong.
+
+        Raises:
+            ServerError: the server cannot be reached, refuses, does not load the chunks, or does
+                not hold the blocks in the end. What was done is noted; a second run goes on.
+        """
+        try:
+            self._done = self._noted()
+            self._load()
+            for index in range(self._done, len(self._plan.work)):
+                self._progress("build", index, len(self._plan.work))
+                self._do(self._plan.work[index])
+                self._remember(index + 1)
+            self._progress("build", len(self._plan.work), len(self._plan.work))
+            repaired = self._check()
+            for command in self._to_release:
+                self._say(command)
+        except BaseException:
+            self._keep_note()
+            raise
+        finally:
+            self._client.close()
+        if self._note is not None:
+            self._note.unlink(missing_ok=True)
+        return LiveResult(self._commands, self._reconnects, len(self._plan.probes), repaired)
+
+    def _load(self) -> None:
+        """Have the chunks loaded, and wait until they are; those that were stay so in the end."""
+        said = [self._say(command) for command in self._plan.load]
+        if not self._done:
+            rows = zip(said, self._plan.release, strict=True)
+            self._to_release = tuple(row for reply, row in rows if _WERE_LOADED not in reply)
+        for done, (x, y, z) in enumerate(self._plan.loaded):
+            self._progress("load", done, len(self._plan.loaded))
+            self._wait_for(x, y, z)
+        self._progress("load", len(self._plan.loaded), len(self._plan.loaded))
+
+    def _wait_for(self, x: int, y: int, z: int) -> None:
+        for _ in range(LOAD_TRIES):
+            if _PASSED in self._say(f"execute if loaded {x} {y} {z}"):
+                return
+            self._sleep(LOAD_WAIT_S)
+        raise ServerError(f"the server has not loaded the chunk at {x} {z}; try again later")
+
+    def _do(self, command: str) -> None:
+        """Say a command that must work, again while its chunk is not loaded."""
+        for _ in range(LOAD_TRIES):
+            reply = self._say(command)
+            if _NOT_LOADED not in reply:
+                if any(sign in reply for sign in _WRONG):
+                    short = command if len(command) < 120 else command[:117] + "..."
+                    said = " ".join(reply.split())[:200]
+                    raise ServerError(
+                        f"the server refused {short!r}: {said}; is --mc-version its version?"
+                    )
+                return
+            self._sleep(LOAD_WAIT_S)
+        raise ServerError(f"the server has not loaded the place of {command[:80]!r}")
+
+    def _say(self, command: str) -> str:
+        """Say a command and return the reply; connect anew where the connection is cut."""
+        wait = FIRST_WAIT_S
+        for tries in range(RETRIES + 1):
+            try:
+                if not self._connected:
+                    self._client.connect()
+                    self._connected = True
+                reply = self._client.command(command)
+            except OSError as error:
+                self._reconnects += self._connected
+                self._connected = False
+                if tries == RETRIES:
+                    raise self._gone(error) from error
+                self._keep_note()
+                self._sleep(wait)
+                wait = min(2 * wait, MOST_WAIT_S)
+            else:
+                self._commands += 1
+                return reply
+        raise AssertionError("the last try returns or raises")
+
+    def _gone(self, error: OSError) -> ServerError:
+        where = f"{self._client.host}:{self._client.port}"
+        return ServerError(
+            f"{where} does not answer ({error.strerror or error}); it needs enable-rcon=true in "
+            "server.properties. Run the same command again to go on"
+        )
+
+    def _check(self) -> int:
+        """Ask for the probes; where one is wrong, build once more and ask for it again."""
+        wrong = self._wrong(self._plan.probes)
+        if not wrong:
+            return 0
+        for command in self._plan.work[: self._plan.entities_from]:
+            self._do(command)
+        left = self._wrong(wrong)
+        if left:
+            named = "; ".join(f"{x} {y} {z} is not {state}" for x, y, z, state in left[:SHOWN])
+            count = f"{len(left)} of {len(self._plan.probes)} blocks"
+            raise ServerError(
+                f"{count} are not as they were set: {named}. A plugin "
+                "that protects the place may forbid it"
+            )
+        return len(wrong)
+
+    def _wrong(self, probes: Sequence[Probe]) -> list[Probe]:
+        found = []
+        for done, (x, y, z, state) in enumerate(probes):
+            self._progress("check", done, len(probes))
+            if _PASSED not in self._say(f"execute if block {x} {y} {z} {state}"):
+                found.append((x, y, z, state))
+        self._progress("check", len(probes), len(probes))
+        return found
+
+    def _noted(self) -> int:
+        """Return how many commands a former run of this plan on this server has done."""
+        if self._note is None or not self._note.is_file():
+            return 0
+        try:
+            held = read_json(self._note)
+            known = {key: held[key] for key in ("server", "plan")}
+            done = int(held["done"])
+        except (InputError, KeyError, TypeError, ValueError):
+            return 0
+        if known != self._key() or not 0 <= done <= len(self._plan.work):
+            return 0
+        # Entities would stand there twice: they are set from their first one on.
+        return min(done, self._plan.entities_from)
+
+    def _remember(self, done: int) -> None:
+        self._done = done
+        if time.monotonic() - self._noted_at > NOTE_EVERY_S:
+            self._keep_note()
+
+    def _keep_note(self) -> None:
+        self._noted_at = time.monotonic()
+        if self._note is not None and self._done:
+            write_json(self._note, {**self._key(), "done": self._done})
+
+    def _key(self) -> dict[str, str]:
+        return {"server": f"{self._client.host}:{self._client.port}", "plan": self._plan.digest}

@@ -1,0 +1,154 @@
+"""What is to be said to a server so that a volume stands there, in order."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from world2minecraft.errors import UsageError
+from world2minecraft.minecraft.commands import (
+    block_commands,
+    chunk_rows,
+    clear_commands,
+    data_commands,
+    entity_commands,
+    entity_tag,
+    state_in_version,
+)
+from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES
+from world2minecraft.minecraft.versions import GameVersion
+from world2minecraft.types import BlockVolume
+
+PROBE_STEP = 64  # Blocks between the places at which it is asked whether chunks are loaded.
+Probe = tuple[int, int, int, str]  # x, y, z and the state that must be there
+
+
+@dataclass(frozen=True)
+class BuildPlan:
+    """Commands by phase. Whatever was run twice in its order leaves the same blocks.
+
+    load, release: forceload of the chunks, and its end.
+    loaded: places (x, y, z) all of which must be loaded before anything is set.
+    work: what empties and sets blocks, their data and the entities, in order.
+    entities_from: the index in ``work`` from which entities are set: these would be doubled when
+        run twice, so it begins with the command that takes them away.
+    probes: what must be there in the end.
+    """
+
+    load: tuple[str, ...]
+    loaded: tuple[tuple[int, int, int], ...]
+    work: tuple[str, ...]
+    entities_from: int
+    probes: tuple[Probe, ...]
+    release: tuple[str, ...]
+
+    @property
+    def digest(self) -> str:
+        """What two plans share that do the same: the SHA-256 of their work."""
+        return hashlib.sha256("\n".join(self.work).encode()).hexdigest()
+
+
+def plan_build(
+    volume: BlockVolume,
+    version: GameVersion,
+    *,
+    clear: bool = True,
+    samples: int = 256,
+    losses: Losses | None = None,
+) -> BuildPlan:
+    """Return what builds a volume at its own world position.
+
+    Args:
+        volume: the blocks.
+        version: the game of the server, for the names of blocks.
+        clear: empty the volume's box first.
+        samples: how many of its blocks to ask for in the end; half of them not air. The places
+            depend on the volume alone.
+        losses: told of data and entities that are too long for a command.
+
+    Raises:
+        UsageError: a state or an entity's id is none, or the box leaves the world's layers.
+    """
+    _check_layers(volume, version)
+    lost = Losses() if losses is None else losses
+    blocks = [*(clear_commands(volume) if clear else ()), *block_commands(volume, version)]
+    data = _short("block entities whose data is too long for RCON", data_commands(volume), lost)
+    entities = _short("entities too long for RCON", entity_commands(volume), lost)
+    gone = [f"kill @e[tag={entity_tag(volume)}]"] if entities else []
+    rows = chunk_rows(volume)
+    return BuildPlan(
+        load=tuple(f"forceload add {row}" for row in rows),
+        loaded=_corners(volume),
+        work=(*blocks, *data, *gone, *entities),
+        entities_from=len(blocks) + len(data),
+        probes=_probes(volume, version, samples, with_air=clear),
+        release=tuple(f"forceload remove {row}" for row in rows),
+    )
+
+
+def moved(volume: BlockVolume, by: tuple[int, int, int]) -> BlockVolume:
+    """Return a volume shifted by whole blocks, with all that stands in it."""
+    x, y, z = by
+    to_room = volume.block_to_room.copy()
+    to_room[:3, 3] -= to_room[:3, :3] @ np.array(by, np.float64)
+    east, up, south = volume.corner
+    return replace(
+        volume,
+        corner=(east + x, up + y, south + z),
+        block_to_room=to_room,
+        block_entities=tuple(
+            replace(e, block_pos=(e.block_pos[0] + x, e.block_pos[1] + y, e.block_pos[2] + z))
+            for e in volume.block_entities
+        ),
+        entities=tuple(
+            replace(e, position=(e.position[0] + x, e.position[1] + y, e.position[2] + z))
+            for e in volume.entities
+        ),
+    )
+
+
+def _check_layers(volume: BlockVolume, version: GameVersion) -> None:
+    low, high = volume.corner[1], volume.corner[1] + volume.states.shape[1] - 1
+    if low < version.min_y or high > version.max_y:
+        raise UsageError(
+            f"the build reaches from layer {low} to {high}, but the world has {version.min_y} to "
+            f"{version.max_y}; choose another --at or fewer blocks per metre"
+        )
+
+
+def _short(what: str, commands: Sequence[str], losses: Losses) -> list[str]:
+    kept = [command for command in commands if len(command.encode()) <= MAX_COMMAND_BYTES]
+    losses.add(what, len(commands) - len(kept))
+    return kept
+
+
+def _corners(volume: BlockVolume) -> tuple[tuple[int, int, int], ...]:
+    """Return the corners of the box's plan and places between them, one a few chunks."""
+    x, y, z = volume.corner
+    x1, z1 = x + volume.states.shape[0] - 1, z + volume.states.shape[2] - 1
+    xs = sorted({*range(x, x1, PROBE_STEP), x1})
+    zs = sorted({*range(z, z1, PROBE_STEP), z1})
+    return tuple((px, y, pz) for px in xs for pz in zs)
+
+
+def _probes(
+    volume: BlockVolume, version: GameVersion, samples: int, *, with_air: bool
+) -> tuple[Probe, ...]:
+    rng = np.random.default_rng(0)
+    flat = volume.states.ravel()
+    chosen = []
+    for kind in (
+        np.flatnonzero(flat),
+        np.flatnonzero(flat == 0) if with_air else np.array([], int),
+    ):
+        count = min(len(kind), samples // 2)
+        chosen.append(np.sort(rng.choice(kind, count, replace=False)) if count else kind[:0])
+    names = [state_in_version(state, version) for state in volume.palette]
+    cells = np.column_stack(np.unravel_index(np.concatenate(chosen), volume.states.shape))
+    places = (cells + np.array(volume.corner)).tolist()
+    return tuple(
+        (x, y, z, names[volume.states[tuple(cell)]])
+        for (x, y, z), cell in zip(places, cells.tolist(), strict=True)
+    )
