@@ -1,13 +1,15 @@
 """The furniture library: parametric templates with a named front, as parts, cells and blocks.
 
-A template of your own is one file in ``templates/``, one line in ``library`` and one test, or an
-entry point of the group ``world2minecraft.template``; see docs/furniture.md.
+A design of your own is one data file in ``designs/``, or an entry point of the group
+``world2minecraft.template``; see docs/furniture.md.
 """
 
 from world2minecraft.furniture.checking import check_template
 from world2minecraft.furniture.facing import Facing, facing, surroundings
 from world2minecraft.furniture.idiom import Idiom, IdiomBlock, idiom
-from world2minecraft.furniture.library import TEMPLATES, template, templates_of
+from world2minecraft.furniture.library import TEMPLATES, template, templates_of, variants_of
+from world2minecraft.furniture.look import Look
+from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.raster import cells_of, raster, size_in_cells, surface
 from world2minecraft.furniture.template import Part, Span, Template
 
@@ -16,6 +18,8 @@ __all__ = [
     "Facing",
     "Idiom",
     "IdiomBlock",
+    "Look",
+    "Material",
     "Part",
     "Span",
     "Template",
@@ -29,4 +33,5 @@ __all__ = [
     "surroundings",
     "template",
     "templates_of",
+    "variants_of",
 ]

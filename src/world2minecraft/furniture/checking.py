@@ -11,7 +11,7 @@ from world2minecraft.furniture.template import Part, Template
 
 GAP_M = 1e-6  # Parts nearer than this touch.
 FINE_VOXEL_M = 0.02
-DESIGN_SCALES = (1.0, 2.0)
+DESIGN_SCALES = (1.0, 2.0, 4.0)
 
 
 def check_template(template: Template) -> tuple[str, ...]:
@@ -20,7 +20,7 @@ def check_template(template: Template) -> tuple[str, ...]:
     At its smallest, usual and largest size and with each parameter at either end of its span:
     parts have a volume and lie in the box, they reach its bottom, top and sides, and none
     floats: each hangs together with one on the floor (for a wall's, at the back). The turns it
-    states are those of its shape. Its block design stays in its box at 1 and 2 blocks per metre.
+    states are those of its shape. Its block design stays in its box at 1, 2 and 4 blocks per metre.
     """
     problems: dict[str, None] = {}
     for size, parameters in _cases(template):
@@ -88,7 +88,7 @@ def _check_design(template: Template) -> Iterator[str]:
 
     for scale in DESIGN_SCALES:
         size = block_size(np.array(template.typical_m), scale)
-        blocks = template.design(size, template.complete())
+        blocks = template.blocks(size)
         cells = [block.cell for block in blocks]
         if not cells:
             yield f"its design at {scale:g} blocks per metre has no block"

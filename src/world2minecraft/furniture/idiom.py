@@ -1,7 +1,7 @@
-"""Furniture as vanilla blocks, for scales at which its parts would crumble.
+"""Furniture as vanilla blocks, as players build it: a chair is a stair, a table has fences as legs.
 
-Under three blocks per metre a leg, a seat and a back are thinner than any block, so a chair is
-said with a stair, a table with a fence and a plate, as players do.
+At few blocks per metre a leg, a seat and a back are thinner than any block; from six on, the parts
+themselves are fitted block by block, and no design by hand is needed.
 """
 
 from dataclasses import dataclass
@@ -38,8 +38,9 @@ def idiom(placement: Placement, blocks_per_metre: float) -> Idiom | None:
     """Return the vanilla design of a placement, turned as it stands.
 
     Returns:
-        The design, or None where parts are built instead: at three blocks per metre or more, and
-        for an object that is built from its own cells.
+        The design, or None where parts are built instead: at six blocks per metre or more, where
+        the template has no design for the scale, and for an object that is built from its own
+        cells.
 
     Raises:
         UnknownNameError: the library has no such template.
@@ -48,15 +49,15 @@ def idiom(placement: Placement, blocks_per_metre: float) -> Idiom | None:
         return None
     found = template(placement.template)
     size = block_size(placement.size_m, blocks_per_metre)
-    local = found.design(size, found.complete(placement.parameters))
-    return _turned(local, placement.quarter_turns)
+    local = found.blocks(size, placement.parameters)
+    return _turned(local, placement.quarter_turns) if local else None
 
 
 def block_size(size_m: np.ndarray, blocks_per_metre: float) -> BlockSize:
     """Return a template's size in metres, float64 [3], in blocks: at least one each way."""
     depth, width, height = (float(side) * blocks_per_metre for side in size_m)
     whole = (max(1, int(side + 0.5)) for side in (depth, width, height))
-    return BlockSize(*whole, exact=(depth, width, height))
+    return BlockSize(*whole, exact=(depth, width, height), per_metre=float(blocks_per_metre))
 
 
 def _turned(local: list[LocalBlock], quarter_turns: int) -> Idiom:

@@ -1,45 +1,78 @@
-"""The furniture library L of the paper: names to templates, one line each.
+"""The furniture library L of the paper: names to templates.
 
-A package outside adds its own through the entry point group ``world2minecraft.template``; the
-entry point names a ``Template``.
+A template is a data file in ``designs/`` (one file each), a file of the user's own, or comes from
+a package outside through the entry point group ``world2minecraft.template``, which names a
+``Template``. Objects are matched against those that say so; the others of a family are chosen
+after the match.
 """
 
 from functools import cache
+from importlib.resources import files
+from pathlib import Path
 
+from world2minecraft.furniture.reading import read_design
 from world2minecraft.furniture.template import Template
 from world2minecraft.registry import Registry
 
-_FOLDER = "world2minecraft.furniture.templates"
-
-TEMPLATES = Registry(
-    "template",
-    {
-        "chair": f"{_FOLDER}.chair:TEMPLATE",
-        "armchair": f"{_FOLDER}.armchair:TEMPLATE",
-        "office_chair": f"{_FOLDER}.office_chair:TEMPLATE",
-        "stool": f"{_FOLDER}.stool:TEMPLATE",
-        "single_bed": f"{_FOLDER}.single_bed:TEMPLATE",
-        "double_bed": f"{_FOLDER}.double_bed:TEMPLATE",
-        "bunk_bed": f"{_FOLDER}.bunk_bed:TEMPLATE",
-        "sofa": f"{_FOLDER}.sofa:TEMPLATE",
-        "corner_sofa": f"{_FOLDER}.corner_sofa:TEMPLATE",
-        "bench": f"{_FOLDER}.bench:TEMPLATE",
-        "dining_table": f"{_FOLDER}.dining_table:TEMPLATE",
-        "round_table": f"{_FOLDER}.round_table:TEMPLATE",
-        "desk": f"{_FOLDER}.desk:TEMPLATE",
-        "coffee_table": f"{_FOLDER}.coffee_table:TEMPLATE",
-        "wall_tv": f"{_FOLDER}.wall_tv:TEMPLATE",
-        "monitor": f"{_FOLDER}.monitor:TEMPLATE",
-        "cabinet": f"{_FOLDER}.cabinet:TEMPLATE",
-        "wall_cabinet": f"{_FOLDER}.wall_cabinet:TEMPLATE",
-        "counter": f"{_FOLDER}.counter:TEMPLATE",
-        "bookcase": f"{_FOLDER}.bookcase:TEMPLATE",
-        "wardrobe": f"{_FOLDER}.wardrobe:TEMPLATE",
-        "lamp": f"{_FOLDER}.lamp:TEMPLATE",
-        "plant": f"{_FOLDER}.plant:TEMPLATE",
-        "box": f"{_FOLDER}.box:TEMPLATE",
-    },
+# Of templates that match equally well the first is taken: the plainer one.
+FIRST = (
+    "chair",
+    "armchair",
+    "office_chair",
+    "stool",
+    "single_bed",
+    "double_bed",
+    "bunk_bed",
+    "sofa",
+    "corner_sofa",
+    "bench",
+    "dining_table",
+    "round_table",
+    "desk",
+    "coffee_table",
+    "wall_tv",
+    "monitor",
+    "cabinet",
+    "wall_cabinet",
+    "counter",
+    "bookcase",
+    "wardrobe",
+    "lamp",
+    "plant",
+    "box",
 )
+
+
+class Library(Registry):
+    """Templates by name: the library's design files, then those of other packages."""
+
+    def __init__(self):
+        super().__init__("template", {})
+
+    def names(self) -> tuple[str, ...]:
+        """All names: those that are matched first in their order, then the others, sorted."""
+        own = design_files()
+        rest = sorted({*own, *super().names()} - set(FIRST))
+        return (*(name for name in FIRST if name in own), *rest)
+
+    def load(self, name: str) -> Template:
+        """Return the template of this name.
+
+        Raises:
+            UnknownNameError: there is none. InputError: its file is no design.
+        """
+        found = design_files().get(name)
+        return super().load(name) if found is None else read_design(found)
+
+
+@cache
+def design_files() -> dict[str, Path]:
+    """Return the library's design files by name, sorted."""
+    folder = Path(str(files("world2minecraft.furniture"))) / "designs"
+    return {path.stem: path for path in sorted(folder.glob("*.json"))}
+
+
+TEMPLATES = Library()
 
 
 @cache
@@ -54,6 +87,13 @@ def template(name: str) -> Template:
 
 @cache
 def templates_of(class_id: int) -> tuple[Template, ...]:
-    """Return the templates of an object class, in the library's order."""
+    """Return the templates of a class that objects are matched against, in the library's order."""
     every = (template(name) for name in TEMPLATES.names())
-    return tuple(one for one in every if one.class_id == class_id)
+    return tuple(one for one in every if one.class_id == class_id and one.matched)
+
+
+@cache
+def variants_of(family: str) -> tuple[Template, ...]:
+    """Return all templates of a family, in the library's order."""
+    every = (template(name) for name in TEMPLATES.names())
+    return tuple(one for one in every if one.family == family)

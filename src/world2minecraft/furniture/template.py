@@ -4,7 +4,7 @@ A template's frame: origin in the middle of its footprint, z = 0 at its bottom, 
 +x. Sizes are in the order of ``Placement.size_m``: front-to-back (x), side (y), height (z).
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal, NamedTuple
@@ -13,8 +13,11 @@ import numpy as np
 
 from world2minecraft.classes import OBJECT_CLASSES
 from world2minecraft.errors import UsageError
+from world2minecraft.furniture.look import Look
+from world2minecraft.furniture.materials import Material
 from world2minecraft.types import checks
 
+Mount = Literal["floor", "wall", "ceiling", "any"]
 STALE = "; placements.json of another version is made anew by --from furnish"
 
 
@@ -50,17 +53,18 @@ class LocalBlock(NamedTuple):
 
 
 class BlockSize(NamedTuple):
-    """A template's size in blocks: whole blocks that a design fills, and the exact size."""
+    """A template's size in blocks: whole blocks that a design fills, the exact size, the scale."""
 
     depth: int
     width: int
     height: int
     exact: tuple[float, float, float]
+    per_metre: float = 1.0
 
 
 Parameters = Mapping[str, float]
-Build = Callable[[float, float, float, Parameters], list[Part]]
-Design = Callable[[BlockSize, Parameters], list[LocalBlock]]
+Build = Callable[[float, float, float, Look], list[Part]]
+Design = Callable[[BlockSize, Look], Sequence[LocalBlock]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,11 +74,20 @@ class Template:
     name: as in ``Placement.template``.
     class_id: its object class, 5 to 11.
     size_m: how deep, wide and high such furniture is; a match looks no further.
-    build: parts of a given depth, width, height and parameters.
-    design: its vanilla blocks for scales where parts would crumble.
+    build: parts of a given depth, width, height and look.
+    design: its vanilla blocks; none where its parts are to be built instead.
     parameters: the names that ``build`` knows.
     turns: how many quarter turns give different shapes: 4, 2 (its half turn is itself), or 1.
-    mount: ``floor`` (stands on the floor), ``wall`` (hangs on one) or ``any``.
+    mount: ``floor`` (stands on the floor), ``wall`` (hangs on one), ``ceiling`` (hangs from it)
+        or ``any``.
+    title: what people call it; the name in words where none is given.
+    family: which templates are of one shape, so that one may stand for another.
+    materials: what each role is made of; without any, blocks are recoloured by their names.
+    options: the choices that its family offers, as this template makes them.
+    clearance_m: the room that it needs before its front, behind it and at each side.
+    matched: whether objects are matched against it; others are chosen after the match.
+    suits: the colours, sRGB, of things that rather are of this design than of another of its
+        family; empty suits all.
     """
 
     name: str
@@ -84,17 +97,29 @@ class Template:
     design: Design
     parameters: Mapping[str, Span] = field(default_factory=dict)
     turns: Literal[1, 2, 4] = 4
-    mount: Literal["floor", "wall", "any"] = "floor"
+    mount: Mount = "floor"
+    title: str = ""
+    family: str = ""
+    materials: Mapping[str, Material] = field(default_factory=dict)
+    options: Mapping[str, str] = field(default_factory=dict)
+    clearance_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    matched: bool = True
+    suits: tuple[tuple[int, int, int], ...] = ()
 
     def __post_init__(self):
         checks.identifier("name", self.name)
+        put = object.__setattr__
+        put(self, "title", self.title or self.name.replace("_", " "))
+        put(self, "family", self.family or self.name)
+        put(self, "materials", MappingProxyType(dict(self.materials)))
+        put(self, "options", MappingProxyType(dict(self.options)))
         if self.class_id not in OBJECT_CLASSES:
             raise ValueError(f"class_id must be an object class, 5 to 11, not {self.class_id}")
         for span in (*self.size_m, *self.parameters.values()):
             if not span.minimum <= span.typical <= span.maximum:
                 raise ValueError(f"a span must rise from minimum to maximum, not {tuple(span)}")
         sorted_parameters = dict(sorted(self.parameters.items()))
-        object.__setattr__(self, "parameters", MappingProxyType(sorted_parameters))
+        put(self, "parameters", MappingProxyType(sorted_parameters))
 
     @property
     def typical_m(self) -> tuple[float, float, float]:
@@ -137,4 +162,20 @@ class Template:
             ValueError: a size is not above 0. ParameterError: ``complete`` refuses a parameter.
         """
         depth, width, height = (checks.positive("size_m", float(side)) for side in size_m)
-        return tuple(self.build(depth, width, height, self.complete(parameters)))
+        return tuple(self.build(depth, width, height, self.look(parameters)))
+
+    def look(self, parameters: Parameters | None = None) -> Look:
+        """Return what its build and its design go by: parameters, options and materials.
+
+        Raises:
+            ParameterError: ``complete`` refuses a parameter.
+        """
+        return Look(self.name, self.complete(parameters), self.options, self.materials)
+
+    def blocks(self, size: BlockSize, parameters: Parameters | None = None) -> list[LocalBlock]:
+        """Return its vanilla blocks at a size; none where its parts are to be built instead.
+
+        Raises:
+            ParameterError: ``complete`` refuses a parameter.
+        """
+        return list(self.design(size, self.look(parameters)))

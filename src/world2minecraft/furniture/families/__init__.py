@@ -1,0 +1,1 @@
+"""The shapes of furniture, as metric parts and as vanilla blocks; ``family.py`` names each."""

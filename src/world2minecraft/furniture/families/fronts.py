@@ -1,0 +1,62 @@
+"""Fronts that stand out a little: how deep the solid body is, and what is put on its face.
+
+A cupboard of 0.6 m is 1.2 blocks deep at two blocks a metre: one block of body, and a plate or a
+handle in the cell before it, which is as deep as the rest. So a front needs no depth of its own.
+"""
+
+from typing import NamedTuple
+
+from world2minecraft.furniture.plan import Numbers, Plan, panel_properties
+from world2minecraft.furniture.template import BlockSize
+
+LEAST_REST, MOST_REST = 0.08, 0.62  # Of a block: what a front stands in; more is body.
+
+
+class Body(NamedTuple):
+    """The cells of a body: how many are solid, front to back, and the cell of its front."""
+
+    depth: int
+    front: int | None  # i of the cell before the body, None where the size leaves none
+
+    @property
+    def face(self) -> int:
+        """The i of the foremost solid cell."""
+        return self.depth - 1
+
+
+def body_of(size: BlockSize) -> Body:
+    """Return how deep the solid body of a size is, and where its front stands."""
+    whole = int(size.exact[0])
+    rest = size.exact[0] - whole
+    if whole and LEAST_REST <= rest <= MOST_REST:
+        return Body(whole, whole)
+    return Body(size.depth, None)
+
+
+def handles(plan: Plan, body: Body, role: str, j: Numbers, k: Numbers) -> None:
+    """Put buttons on the face of a body, where the size leaves room for them."""
+    if body.front is not None:
+        properties = {"face": "wall", "facing": "east", "powered": "false"}
+        plan.put(role, body.front, j, k, "button", **properties)
+
+
+def panels(plan: Plan, body: Body, role: str, j: Numbers, k: Numbers) -> None:
+    """Hang upright plates on the face of a body; where there is no room, the face itself is it."""
+    if body.front is None:
+        plan.put(role, body.face, j, k)
+    else:
+        plan.put(role, body.front, j, k, "trapdoor", **panel_properties("back"))
+
+
+def door_columns(width: int, per_metre: float) -> list[int]:
+    """Return the columns j with a handle: one for each door, doors in pairs about their middle."""
+    if per_metre < 3:
+        return list(range(width))
+    if width < 4:
+        return [width // 2]
+    columns = []
+    for start in range(0, width - width % 4, 4):
+        columns += [start + 1, start + 2]
+    if width % 4:
+        columns.append(width - 1 - (width % 4) // 2)
+    return columns

@@ -1,0 +1,144 @@
+"""What a role of a piece of furniture is made of, and which vanilla block that is in a shape.
+
+``data/materials.json`` holds the kinds: wood, cloth, paint, glass, stone and metal, each with its
+values (oak, red, smooth_quartz) and the block of every shape. ``plain`` is whatever full block
+has the right colour; ``fixed`` is one block for good. A shape that the game lacks is none.
+"""
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import NamedTuple
+
+from world2minecraft.minecraft.states import known_blocks
+
+PLAIN, FIXED = "plain", "fixed"
+PLAIN_KINDS = ("paint", "stone", "wood")
+
+
+class Swatch(NamedTuple):
+    """One material that a role may be made of, and the block whose colour shows it."""
+
+    kind: str
+    value: str
+    sample: str
+
+
+class Kind(NamedTuple):
+    """A kind of material: its values, the block of each shape, and those chosen by colour."""
+
+    blocks: Mapping[str, Mapping[str, str]]  # value -> shape -> block
+    chosen: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Material:
+    """What a role is made of.
+
+    kind: one of ``kinds()``, ``plain`` or ``fixed``.
+    value: which of the kind; the full block's name for ``plain`` and ``fixed``.
+    takes_colour: whether it takes the real object's colour, by another value of the kind.
+    shapes: the blocks of a ``fixed`` one by shape, beside its full block.
+    """
+
+    kind: str
+    value: str
+    takes_colour: bool = False
+    shapes: tuple[tuple[str, str], ...] = ()
+
+    def __post_init__(self):
+        if self.kind in (PLAIN, FIXED):
+            for name in (self.value, *(block for _, block in self.shapes)):
+                if f"minecraft:{name}" not in known_blocks():
+                    raise ValueError(f"no block is named {name!r}")
+            if self.kind == FIXED and self.takes_colour:
+                raise ValueError("a fixed material takes no colour")
+        elif self.kind not in kinds():
+            known = ", ".join((*kinds(), PLAIN, FIXED))
+            raise ValueError(f"no kind of material is named {self.kind!r}; known: {known}")
+        elif self.value not in kinds()[self.kind].blocks:
+            known = ", ".join(kinds()[self.kind].blocks)
+            raise ValueError(f"no {self.kind} is named {self.value!r}; known: {known}")
+
+    def block(self, shape: str) -> str | None:
+        """Return the name of its block of a shape, such as ``minecraft:oak_slab``, or None."""
+        if self.kind == FIXED:
+            name = dict(self.shapes).get(shape, self.value if shape == "full" else None)
+            return name and f"minecraft:{name}"
+        if self.kind != PLAIN:
+            return kinds()[self.kind].blocks[self.value].get(shape)
+        whole = f"minecraft:{self.value}"
+        found = [place for place in places_of(whole) if place.shape == "full"]
+        if shape == "full":
+            return whole
+        held = (kinds()[place.kind].blocks[place.value].get(shape) for place in found)
+        return next((block for block in held if block), None)
+
+
+class Place(NamedTuple):
+    """Where a block stands in the table of materials."""
+
+    kind: str
+    value: str
+    shape: str
+
+
+@cache
+def kinds() -> Mapping[str, Kind]:
+    """Return the kinds of materials of ``data/materials.json``, blocks that the game has alone."""
+    source = files("world2minecraft.furniture") / "data" / "materials.json"
+    return {name: _kind(raw) for name, raw in json.loads(source.read_text("utf-8")).items()}
+
+
+def _kind(raw: Mapping) -> Kind:
+    known = set(known_blocks())
+    blocks = {}
+    for value, own in raw["values"].items():
+        names = {shape: pattern.format(value) for shape, pattern in raw["names"].items()} | own
+        named = {shape: f"minecraft:{name}" for shape, name in names.items()}
+        blocks[value] = {shape: name for shape, name in named.items() if name in known}
+    return Kind(blocks, tuple(raw.get("chosen", blocks)))
+
+
+@cache
+def places_of(block: str) -> tuple[Place, ...]:
+    """Return every place of a block, such as ``minecraft:oak_slab``, in the table."""
+    return tuple(
+        Place(name, value, shape)
+        for name, kind in kinds().items()
+        for value, shapes in kind.blocks.items()
+        for shape, held in shapes.items()
+        if held == block
+    )
+
+
+@cache
+def swatches(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
+    """Return the materials of a kind that have all the shapes; ``plain`` has those of three."""
+    names = PLAIN_KINDS if kind == PLAIN else (kind,) if kind in kinds() else ()
+    return tuple(
+        Swatch(name, value, kinds()[name].blocks[value]["full"])
+        for name in names
+        for value in kinds()[name].chosen
+        if shapes <= set(kinds()[name].blocks[value])
+    )
+
+
+def shape_of(state: str, kind: str) -> str | None:
+    """Return the shape of a state of a kind of material, None where the kind has no such block."""
+    names = PLAIN_KINDS if kind == PLAIN else (kind,)
+    block = state.partition("[")[0]
+    return next((place.shape for place in places_of(block) if place.kind in names), None)
+
+
+def restated(state: str, shape: str, swatch: Swatch) -> str:
+    """Return a state of a shape in another material; its properties stay."""
+    _, bracket, properties = state.partition("[")
+    return f"{kinds()[swatch.kind].blocks[swatch.value][shape]}{bracket}{properties}"
+
+
+def shapes_of(states: Iterable[str], kind: str) -> frozenset[str]:
+    """Return the shapes of those states that are of a kind of material."""
+    return frozenset(shape for state in states if (shape := shape_of(state, kind)))

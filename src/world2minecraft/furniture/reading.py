@@ -1,0 +1,179 @@
+"""Designs as data files: what a design's JSON says, read and checked.
+
+Every key is checked before it is used, for people write such files: a wrong one is refused with
+one line that says what was expected and what was given.
+"""
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.errors import InputError, UnknownNameError
+from world2minecraft.furniture.family import FAMILIES, Family
+from world2minecraft.furniture.materials import Material
+from world2minecraft.furniture.template import Span, Template
+
+MAX_BYTES = 65_536  # A design has a thousand at most.
+LARGEST_M = 20.0
+SIZES = ("depth", "width", "height")
+CLEARANCES = ("front", "back", "side")
+MOUNTS = ("floor", "wall", "ceiling", "any")
+NEEDED = ("name", "title", "class", "family", "size_m", "front", "clearance_m", "materials")
+OPTIONAL = ("mount", "turns", "parameters", "options", "match", "suits")
+
+
+def read_design(path: Path) -> Template:
+    """Return the design that a JSON file holds.
+
+    Raises:
+        InputError: the file cannot be read, or says something that no design may.
+    """
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise InputError(path, f"a design has {MAX_BYTES} bytes at most")
+        raw = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise InputError(path, f"this is no design: {error}") from error
+    try:
+        found = design_of(raw)
+    except (ValueError, UnknownNameError) as error:
+        raise InputError(path, str(error)) from error
+    if found.name != path.stem:
+        raise InputError(path, f"its name must be that of its file, not {found.name!r}")
+    return found
+
+
+def design_of(raw: Any) -> Template:
+    """Return the template that the content of a design file describes.
+
+    Raises:
+        ValueError: a key is missing, unknown or wrong. UnknownNameError: a family is unknown.
+    """
+    known = _keys("a design", raw, NEEDED, OPTIONAL)
+    family: Family = FAMILIES.load(_text("family", known["family"]))
+    kind = _text("class", known["class"])
+    if kind not in [CLASS_NAMES[number] for number in OBJECT_CLASSES]:
+        listed = ", ".join(CLASS_NAMES[number] for number in OBJECT_CLASSES)
+        raise ValueError(f"class must be one of {listed}, not {kind!r}")
+    _text("front", known["front"])
+    sizes = _keys("size_m", known["size_m"], SIZES)
+    free = _keys("clearance_m", known["clearance_m"], CLEARANCES)
+    return Template(
+        name=_text("name", known["name"]),
+        title=_text("title", known["title"]),
+        class_id=CLASS_NAMES.index(kind),
+        family=_text("family", known["family"]),
+        size_m=(_size("depth", sizes), _size("width", sizes), _size("height", sizes)),
+        build=family.build,
+        design=family.design,
+        parameters=_parameters(family, known.get("parameters", {})),
+        options=_options(family, known.get("options", {})),
+        materials=_materials(family, known["materials"]),
+        turns=_one_of("turns", known.get("turns", 4), (1, 2, 4)),
+        mount=_one_of("mount", known.get("mount", "floor"), MOUNTS),
+        clearance_m=tuple(_number(key, free[key], 0.0) for key in CLEARANCES),  # pyright: ignore
+        matched=_one_of("match", known.get("match", False), (True, False)),
+        suits=tuple(_colour(one) for one in _list("suits", known.get("suits", []))),
+    )
+
+
+def _keys(
+    what: str, raw: Any, needed: Iterable[str], optional: Iterable[str] = ()
+) -> dict[str, Any]:
+    if not isinstance(raw, dict):
+        raise ValueError(f"{what} must be an object of keys, not {_short(raw)}")
+    missing = [key for key in needed if key not in raw]
+    if missing:
+        raise ValueError(f"{what} lacks {missing[0]!r}")
+    known = (*needed, *optional)
+    strange = [key for key in raw if key not in known]
+    if strange:
+        raise ValueError(f"{what} has no {_short(strange[0])}; it has: {', '.join(known)}")
+    return raw
+
+
+def _text(key: str, value: Any) -> str:
+    if not isinstance(value, str) or not 0 < len(value) <= 200:
+        raise ValueError(f"{key} must be a text of 1 to 200 letters, not {_short(value)}")
+    return value
+
+
+def _list(key: str, value: Any) -> list:
+    if not isinstance(value, list) or len(value) > 16:
+        raise ValueError(f"{key} must be a list of 16 at most, not {_short(value)}")
+    return value
+
+
+def _one_of(key: str, value: Any, choices: tuple) -> Any:
+    if not any(value == one and type(value) is type(one) for one in choices):
+        listed = ", ".join(json.dumps(one) for one in choices)
+        raise ValueError(f"{key} must be one of {listed}, not {_short(value)}")
+    return value
+
+
+def _number(key: str, value: Any, least: float = -math.inf, most: float = LARGEST_M) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"{key} must be a number, not {_short(value)}")
+    if not (math.isfinite(value) and least <= value <= most):
+        raise ValueError(f"{key} must lie between {max(least, -most):g} and {most:g}, not {value}")
+    return float(value)
+
+
+def _span(key: str, value: Any, least: float = -math.inf) -> Span:
+    if not isinstance(value, list) or len(value) != 3:
+        raise ValueError(f"{key} must be [smallest, usual, largest], not {_short(value)}")
+    span = Span(*(_number(key, one, least) for one in value))
+    if not span.minimum <= span.typical <= span.maximum:
+        raise ValueError(f"{key} must rise from smallest to largest, not {_short(value)}")
+    return span
+
+
+def _size(key: str, sizes: Mapping[str, Any]) -> Span:
+    return _span(key, sizes[key], 0.01)
+
+
+def _parameters(family: Family, raw: Any) -> dict[str, Span]:
+    given = _keys("parameters", raw, (), family.parameters)
+    return dict(family.parameters) | {key: _span(key, value) for key, value in given.items()}
+
+
+def _options(family: Family, raw: Any) -> dict[str, str]:
+    given = _keys("options", raw, (), family.options)
+    return {
+        key: _one_of(key, given.get(key, choices[0]), choices)
+        for key, choices in family.options.items()
+    }
+
+
+def _materials(family: Family, raw: Any) -> dict[str, Material]:
+    given = _keys("materials", raw, family.roles)
+    return {role: _material(role, given[role]) for role in sorted(family.roles)}
+
+
+def _material(role: str, raw: Any) -> Material:
+    known = _keys(f"the material of {role}", raw, ("kind", "of"), ("colour", "shapes"))
+    shapes = _keys(f"the shapes of {role}", known.get("shapes", {}), (), known.get("shapes", {}))
+    colour = _one_of("colour", known.get("colour", "own"), ("own", "object"))
+    return Material(
+        _text("kind", known["kind"]),
+        _text("of", known["of"]),
+        colour == "object",
+        tuple(sorted((shape, _text(shape, block)) for shape, block in shapes.items())),
+    )
+
+
+def _colour(value: Any) -> tuple[int, int, int]:
+    text = _text("a colour of suits", value)
+    digits = text.removeprefix("#")
+    if len(digits) != 6 or text == digits or not all(c in "0123456789abcdef" for c in digits):
+        raise ValueError(f"a colour of suits must be like #8a3b2c, not {_short(value)}")
+    red, green, blue = (int(digits[at : at + 2], 16) for at in (0, 2, 4))
+    return red, green, blue
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,1 +1,0 @@
-"""One template a file; each is named in the registry of ``furniture``."""
