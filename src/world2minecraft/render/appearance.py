@@ -5,16 +5,13 @@ from functools import lru_cache
 import numpy as np
 
 from world2minecraft.minecraft.colours import colour_of
+from world2minecraft.minecraft.glow import is_luminous
 from world2minecraft.minecraft.visual import visual_boxes_of
 
 INVISIBLE = frozenset(
     f"minecraft:{name}"
     for name in ("air", "cave_air", "void_air", "barrier", "light", "structure_void")
 )
-_LUMINOUS = (
-    "sea_lantern", "glowstone", "shroomlight", "froglight", "lantern", "torch", "end_rod",
-    "redstone_lamp[lit=true", "beacon", "candle",
-)  # fmt: skip
 
 
 @lru_cache(maxsize=4096)
@@ -23,11 +20,6 @@ def visible_boxes(state: str) -> np.ndarray:
     if state.partition("[")[0] in INVISIBLE:
         return np.empty((0, 6), np.float32)
     return visual_boxes_of(state)
-
-
-def is_luminous(state: str) -> bool:
-    """Tell whether a state is drawn at full brightness."""
-    return any(part in state for part in _LUMINOUS)
 
 
 def palette_colours(palette: tuple[str, ...]) -> np.ndarray:
