@@ -28,6 +28,7 @@ GOLDEN = [
     (errors.DamagedFileError("a.nbt", "ends early"), "a.nbt: ends early", 3),
     (errors.LimitError("a.png", "has 400 megapixels"), "a.png: has 400 megapixels", 3),
     (errors.CaptureError("cap", "has no poses"), "cap: has no poses", 3),
+    (errors.ConflictError("saves/Home", "is open"), "saves/Home: is open", 3),
     (errors.OutputError("out", "is a file"), "out: is a file", 3),
     (errors.UsageError("give one"), "give one", 2),
     (errors.ServerError("gone"), "gone", 1),

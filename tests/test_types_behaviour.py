@@ -79,6 +79,20 @@ def test_an_operation_undone_twice_is_itself():
     assert np.array_equal(undone.inverse().after, done.after)
 
 
+def test_an_edit_of_blocks_undone_twice_is_itself():
+    done = make(types.BlockEdit, reason="floats", class_id=5, instance=3)
+    undone = done.inverse()
+    assert (undone.before, undone.after) == (done.after, done.before)
+    again = undone.inverse()
+    assert np.array_equal(again.cells, done.cells)
+    assert (again.before, again.reason, again.class_id, again.instance) == (
+        done.before,
+        "floats",
+        5,
+        3,
+    )
+
+
 @pytest.mark.parametrize("scale", [0.5, 1.0, 2.0, 4.0, 12.5])
 def test_a_volume_knows_its_scale(scale):
     transform = co.block_to_room(np.array([0.3, 4.1]), scale)

@@ -97,6 +97,18 @@ GOOD = {
         before=np.array([0, 255], np.uint8),
         after=np.array([3, 3], np.uint8),
     ),
+    types.Blocks: dict(
+        states=np.array([0, 1], np.uint16),
+        semantic=zeros(2),
+        instance=zeros(2, dtype=np.uint16),
+    ),
+    types.BlockEdit: dict(
+        kind="drop",
+        cells=np.array([[0, 64, 0], [1, 64, 0]], np.int32),
+        palette=(types.AIR, "minecraft:stone"),
+        before=types.Blocks(np.ones(2, np.uint16), zeros(2), zeros(2, dtype=np.uint16)),
+        after=types.Blocks(zeros(2, dtype=np.uint16), zeros(2), zeros(2, dtype=np.uint16)),
+    ),
 }
 
 BAD = [
@@ -296,6 +308,30 @@ BAD = [
         types.Operation,
         dict(kind=""),
         "kind must be a short printable name without slashes, not ''",
+    ),
+    (types.Blocks, dict(semantic=zeros(3)), "semantic must have shape 2, not (3,)"),
+    (
+        types.BlockEdit,
+        dict(cells=zeros(2, 3, dtype=np.int32)),
+        "cells must be named once each",
+    ),
+    (
+        types.BlockEdit,
+        dict(cells=np.array([[0, 64, 0]], np.int32)),
+        "before must hold the blocks of 1 cells, not 2",
+    ),
+    (types.BlockEdit, dict(palette=(types.AIR,)), "before goes to 1, the palette has 1"),
+    (
+        types.BlockEdit,
+        dict(
+            after=types.Blocks(
+                zeros(2, dtype=np.uint16),
+                zeros(2),
+                zeros(2, dtype=np.uint16),
+                (types.BlockEntity((9, 9, 9), "minecraft:sign"),),
+            )
+        ),
+        "after has data of (9, 9, 9), which is no cell of it",
     ),
 ]
 

@@ -11,6 +11,7 @@
         ├── DamagedFileError        3   a file is not what its format says
         ├── LimitError              3   a file asks for more than the program allows
         ├── CaptureError            3   a capture lacks what a reconstruction needs
+        ├── ConflictError           3   something changed since, so that a step would destroy it
         └── OutputError             3   the output folder cannot be written
 
 Each message says what was expected, what was given and what to type next, on one line.
@@ -74,6 +75,10 @@ class LimitError(InputError):
 
 class CaptureError(InputError):
     """A capture lacks what a reconstruction needs, or contradicts itself."""
+
+
+class ConflictError(InputError):
+    """Something changed, or is in use, since a step was prepared or done."""
 
 
 class OutputError(InputError):

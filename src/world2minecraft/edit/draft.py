@@ -1,0 +1,201 @@
+"""A volume while it is edited: every change is an edit that can be taken back."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.errors import ConflictError, LimitError
+from world2minecraft.minecraft.nbt import write_nbt
+from world2minecraft.types import AIR, BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
+
+MAX_STATES = 1 << 16
+Position = tuple[int, int, int]
+
+
+class Draft:
+    """The blocks of a volume, writable only through edits. Arrays are [X, Y, Z], block axes."""
+
+    def __init__(self, volume: BlockVolume):
+        self.start = volume
+        self.corner = np.array(volume.corner, np.int64)
+        self.states = volume.states.copy()
+        self.semantic = volume.semantic.copy()
+        self.instance = volume.instance.copy()
+        self.edits: list[BlockEdit] = []
+        self._ids = {state: number for number, state in reversed([*enumerate(volume.palette)])}
+        self._palette = list(volume.palette)
+        self._data = {entity.block_pos: entity for entity in volume.block_entities}
+        self._entities = {entity_key(entity): entity for entity in volume.entities}
+
+    @property
+    def palette(self) -> tuple[str, ...]:
+        """The block states that ``states`` indexes; edits add to its end."""
+        return tuple(self._palette)
+
+    @property
+    def entities(self) -> tuple[Entity, ...]:
+        """What stands free of the grid now."""
+        return tuple(self._entities.values())
+
+    def id_of(self, state: str) -> int:
+        """Return the number of a block state.
+
+        Raises:
+            LimitError: the palette is full.
+        """
+        if state not in self._ids:
+            if len(self._palette) >= MAX_STATES:
+                raise LimitError("palette", f"has more than {MAX_STATES:,} block states")
+            self._ids[state] = len(self._palette)
+            self._palette.append(state)
+        return self._ids[state]
+
+    def held(self, cells: np.ndarray, entities: Sequence[Entity] = ()) -> Blocks:
+        """Return what some cells hold now.
+
+        Args:
+            cells: int [N, 3], indices into the arrays.
+            entities: those that belong to the cells.
+        """
+        at = tuple(cells.T)
+        places = map(_position, cells + self.corner) if self._data else ()
+        data = tuple(self._data[place] for place in places if place in self._data)
+        found = self.states[at], self.semantic[at], self.instance[at]
+        return Blocks(*found, data, tuple(entities))
+
+    def change(self, kind: str, cells: np.ndarray, after: Blocks, **told: Any) -> BlockEdit:
+        """Set cells and record the edit.
+
+        Args:
+            kind: a verb.
+            cells: int [N, 3], indices into the arrays.
+            after: what they become; states index ``palette``.
+            told: ``reason``, ``class_id``, ``instance`` of the edit, and ``entities``, those that
+                go with what was there before.
+        """
+        before = self.held(cells, told.pop("entities", ()))
+        used = np.unique(np.concatenate([before.states, after.states]))
+        numbers = np.zeros(len(self._palette), np.uint16)
+        numbers[used] = np.arange(len(used))
+        edit = BlockEdit(
+            kind,
+            (cells + self.corner).astype(np.int32),
+            tuple(self._palette[number] for number in used.tolist()),
+            replace(before, states=numbers[before.states]),
+            replace(after, states=numbers[after.states]),
+            **told,
+        )
+        self._set(cells, edit)
+        self.edits.append(edit)
+        return edit
+
+    def fill(self, kind: str, cells: np.ndarray, state: str, **told: Any) -> BlockEdit:
+        """Set all cells to one block state and record the edit.
+
+        Args:
+            kind: a verb.
+            cells: int [N, 3], indices into the arrays.
+            state: what they become.
+            told: as in ``change``, and ``as_class`` and ``as_instance``, what they count as: 0
+                where left out.
+        """
+        numbers = np.full(len(cells), self.id_of(state), np.uint16)
+        semantic = np.full(len(cells), told.pop("as_class", 0), np.uint8)
+        instance = np.full(len(cells), told.pop("as_instance", 0), np.uint16)
+        return self.change(kind, cells, Blocks(numbers, semantic, instance), **told)
+
+    def apply(self, edit: BlockEdit) -> None:
+        """Do an edit.
+
+        Raises:
+            ConflictError: the cells do not hold what it says they held; nothing is changed.
+        """
+        if reason := self._against(edit):
+            raise ConflictError(f"edit {edit.kind}", reason)
+        self._set(edit.cells - self.corner, edit)
+        self.edits.append(edit)
+
+    def holds(self, edit: BlockEdit) -> bool:
+        """Whether the cells hold what an edit says they held before it."""
+        return not self._against(edit)
+
+    def volume(self) -> BlockVolume:
+        """Return the blocks as they are now; the palette sorted, without unused states."""
+        names = sorted({self._palette[number] for number in np.unique(self.states)} - {AIR})
+        order = {AIR: 0} | {name: number for number, name in enumerate(names, 1)}
+        numbers = np.array([order.get(state, 0) for state in self._palette], np.uint16)
+        return replace(
+            self.start,
+            states=numbers[self.states],
+            palette=(AIR, *names),
+            semantic=self.semantic,
+            instance=self.instance,
+            block_entities=tuple(self._data[place] for place in sorted(self._data)),
+            entities=self.entities,
+        )
+
+    def _against(self, edit: BlockEdit) -> str:
+        """Why an edit cannot be done here; empty where it can."""
+        cells = edit.cells - self.corner
+        inside = ((cells >= 0) & (cells < self.states.shape)).all(axis=1)
+        if not inside.all():
+            return f"block {_position(edit.cells[~inside][0])} lies outside the volume"
+        now, names = self.held(cells), np.array(edit.palette, object)
+        wrong = np.array(self._palette, object)[now.states] != names[edit.before.states]
+        wrong |= now.semantic != edit.before.semantic
+        wrong |= now.instance != edit.before.instance
+        if wrong.any():
+            at = int(np.argmax(wrong))
+            place, was = _position(edit.cells[at]), names[edit.before.states[at]]
+            held = self._palette[now.states[at]]
+            return f"block {place} holds {held} now, not {was} as before the edit"
+        gone = {entity_key(entity) for entity in edit.before.entities} - self._entities.keys()
+        if gone or data_keys(now.block_entities) != data_keys(edit.before.block_entities):
+            return "a sign, a chest or an entity changed since"
+        return ""
+
+    def _set(self, cells: np.ndarray, edit: BlockEdit) -> None:
+        at = tuple(cells.T)
+        numbers = np.array([self.id_of(state) for state in edit.palette], np.uint16)
+        self.states[at] = numbers[edit.after.states]
+        self.semantic[at], self.instance[at] = edit.after.semantic, edit.after.instance
+        for place in map(_position, edit.cells) if self._data else ():
+            self._data.pop(place, None)
+        for data in edit.after.block_entities:
+            self._data[data.block_pos] = data
+        for entity in edit.before.entities:
+            self._entities.pop(entity_key(entity), None)
+        for entity in edit.after.entities:
+            self._entities[entity_key(entity)] = entity
+
+
+def applied(volume: BlockVolume, *edits: BlockEdit) -> BlockVolume:
+    """Return a volume with edits done, one after the other.
+
+    Raises:
+        ConflictError: a cell does not hold what an edit says it held.
+    """
+    draft = Draft(volume)
+    for edit in edits:
+        draft.apply(edit)
+    return draft.volume()
+
+
+def entity_key(entity: Entity) -> bytes:
+    """Return bytes that are the same for two entities of the same place, kind and data."""
+    held = {"id": entity.id, "Pos": [float(v) for v in entity.position], "nbt": entity.nbt}
+    return write_nbt(held)
+
+
+def data_keys(entities: Sequence[BlockEntity]) -> set[bytes]:
+    """Return bytes for each block entity, the same for the same place, kind and data."""
+    return {
+        write_nbt({"id": e.id, "pos": list(map(int, e.block_pos)), "nbt": e.nbt}) for e in entities
+    }
+
+
+def _position(cell: Any) -> Position:
+    x, y, z = (int(value) for value in cell)
+    return x, y, z
