@@ -16,8 +16,9 @@ from world2minecraft.run_folder import check_writable
 from world2minecraft.steps import LATER_STEPS, built_volume
 from world2minecraft.types import BlockVolume
 
-RUN_FILES = ("scan.json", "room.npz", "objects.json", "placements.json")
-ROOMS = "layout.json"  # Runs of the first versions have none.
+RUN_FILES = ("room.npz", "objects.json", "placements.json")
+# Runs from a grid alone have no scan, those of the first versions no rooms.
+MORE_FILES = ("scan.json", "layout.json")
 
 
 def rebuild(source: Path, out: Path, parameters: Parameters, progress: Progress = silent) -> None:
@@ -92,6 +93,6 @@ def _check_run(source: Path) -> None:
 def _copy_run(source: Path, out: Path) -> None:
     _check_run(source)
     check_writable(out)
-    for name in (*RUN_FILES, ROOMS):
+    for name in (*RUN_FILES, *MORE_FILES):
         if (source / name).is_file():
             write_bytes(out / name, (source / name).read_bytes())

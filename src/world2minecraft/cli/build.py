@@ -17,6 +17,7 @@ w2m build room.npz --out world_of_room              an occupancy grid alone
 w2m build labels.npy --out world_of_labels          an array of class ids [x, y, z]
 w2m build OUT --into saves/Home --at 100 64 -20     into a world of yours; w2m undo takes it back
 w2m build house.schem --into saves/Home --at 0 70 0
+w2m build OUT --rcon localhost:25575 --at 0 70 0    on a running server
 """
 
 
@@ -35,6 +36,9 @@ Into = Annotated[
 Place = Annotated[
     tuple[int, int, int] | None,
     typer.Option("--at", metavar="X Y Z", help="Where the room's corner comes to stand."),
+]
+Rcon = Annotated[
+    str | None, typer.Option("--rcon", metavar="HOST:PORT", help="Build on a running server.")
 ]
 Turns = Annotated[
     int, typer.Option("--turns", help="With --at: quarter turns, counter-clockwise from above.")
@@ -56,6 +60,7 @@ def run(
     source: Source,
     out: Out = None,
     into: Into = None,
+    rcon: Rcon = None,
     at: Place = None,
     turns: Turns = 0,
     air: Air = "room",
@@ -69,12 +74,14 @@ def run(
     A run's folder is built from its objects and placements as they stand; from a grid alone the
     objects are found and matched first. With --into, the corner of the room's floor comes to
     stand at X Y Z, so that one stands on the floor at height Y; every file that is touched is
-    backed up first, and `w2m undo WORLD` brings it back.
+    backed up first, and `w2m undo WORLD` brings it back. With --rcon the blocks are set on a
+    running server, whose password is read from W2M_RCON_PASSWORD; that cannot be undone.
 
     Args:
         source: what to build.
         out: the folder to write.
         into: the world to build into.
+        rcon: the server's remote console.
         at: where the room's corner goes, in blocks of that world.
         turns: quarter turns before that.
         air: which air of the room replaces blocks of the world.
@@ -86,7 +93,7 @@ def run(
     Raises:
         UsageError: nothing says where to build, or an option needs another.
     """
-    check_targets(out, into, at, turns)
+    check_targets(out, into, rcon, at, turns)
     from world2minecraft.parameters import Parameters, with_settings
 
     chosen = with_settings(
@@ -98,22 +105,37 @@ def run(
         from world2minecraft.cli.into_world import into_world
 
         into_world(volume_of(source, chosen), into, at, turns, air, new_chunks)
+    if rcon is not None:
+        from world2minecraft.cli.on_server import on_server, parse_address, password_of_environment
+
+        parse_address(rcon)  # Before the work.
+        password_of_environment()
+        volume = volume_of(source, chosen)
+        on_server(volume, rcon, at, clear=air != "none", mc_version=mc_version)
 
 
 def check_targets(
-    out: Path | None, into: Path | None, at: tuple[int, int, int] | None, turns: int
+    out: Path | None,
+    into: Path | None,
+    rcon: str | None,
+    at: tuple[int, int, int] | None,
+    turns: int,
 ) -> None:
     """Check, before any work, that the options say where to build.
 
     Raises:
         UsageError: they do not.
     """
-    if out is None and into is None:
-        raise UsageError("say where to build: --out FOLDER, or --into WORLD --at X Y Z")
+    if out is None and into is None and rcon is None:
+        raise UsageError(
+            "say where to build: --out FOLDER, --into WORLD --at X Y Z, or --rcon HOST:PORT"
+        )
     if into is not None and at is None:
         raise UsageError("--into needs a place: add --at X Y Z, such as the F3 screen shows")
-    if into is None and (at is not None or turns):
-        raise UsageError("--at and --turns go with --into WORLD; add it or leave them out")
+    if into is None and rcon is None and (at is not None or turns):
+        raise UsageError(
+            "--at and --turns go with --into WORLD or --rcon; add it or leave them out"
+        )
 
 
 def into_folder(source: Path, out: Path, chosen: "Parameters") -> None:

@@ -1,0 +1,102 @@
+"""What ``w2m build --rcon`` does: build on a running server, and say what came of it."""
+
+import hashlib
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from world2minecraft.errors import UsageError
+
+if TYPE_CHECKING:
+    from world2minecraft.types import BlockVolume
+
+PASSWORD = "W2M_RCON_PASSWORD"
+PORT = 25575
+_ADDRESS = re.compile(r"(?P<host>\[[0-9A-Fa-f:.%]+\]|[A-Za-z0-9.-]+)(?::(?P<port>[0-9]{1,5}))?")
+
+
+def on_server(
+    volume: "BlockVolume",
+    address: str,
+    at: tuple[int, int, int] | None,
+    *,
+    clear: bool,
+    mc_version: str,
+) -> None:
+    """Build a volume on a server.
+
+    Args:
+        volume: the blocks.
+        address: ``HOST`` or ``HOST:PORT`` of its remote console.
+        at: where the corner of the room's floor comes to stand; None is 0 64 0.
+        clear: whether the volume's box is emptied first.
+        mc_version: the server's game.
+
+    Raises:
+        UsageError: the address or the environment lacks something.
+        ServerError: the server refuses, or cannot be reached.
+    """
+    host, port = parse_address(address)
+    password = password_of_environment()
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.coordinates import ROOM_CORNER_BLOCK
+    from world2minecraft.minecraft.losses import Losses
+    from world2minecraft.minecraft.server.building import LiveBuilder
+    from world2minecraft.minecraft.server.plan import moved, plan_build
+    from world2minecraft.minecraft.server.rcon import RconClient
+    from world2minecraft.minecraft.versions import game_version
+
+    if at is not None:
+        volume = moved(volume, tuple(a - b for a, b in zip(at, ROOM_CORNER_BLOCK, strict=True)))
+    losses = Losses()
+    plan = plan_build(volume, game_version(mc_version), clear=clear, losses=losses)
+    note = note_of(f"{host}:{port}", plan.digest)
+    if note.is_file():
+        print("An earlier run of this build was stopped; this one goes on from there.")
+    client = RconClient(host, port, password)
+    with shown() as progress:
+        result = LiveBuilder(client, plan, note, progress).run()
+    x, y, z = at or ROOM_CORNER_BLOCK
+    size = " x ".join(str(side) for side in volume.states.shape)
+    print(f"\nBuilt {int((volume.states > 0).sum()):,} blocks at {x} {y} {z} ({size}).")
+    cuts = f", {result.reconnects} lost connections survived" if result.reconnects else ""
+    print(f"  {result.commands:,} commands{cuts}; {result.checked} places asked for, all right")
+    for what, count in losses:
+        print(f"  left out: {count} {what}")
+    print(f"  look   /tp @s {x} {y} {z}, or a few blocks into the room")
+
+
+def parse_address(text: str) -> tuple[str, int]:
+    """Return host and port of ``HOST:PORT``; the port is 25575 where it is left out.
+
+    Raises:
+        UsageError: it is no address.
+    """
+    found = _ADDRESS.fullmatch(text)
+    port = int(found["port"] or PORT) if found else 0
+    if not found or not 1 <= port <= 65535:
+        raise UsageError(f"--rcon must be HOST:PORT, such as localhost:{PORT}, not {text!r}")
+    return found["host"].strip("[]"), port
+
+
+def password_of_environment() -> str:
+    """Return the console's password.
+
+    Raises:
+        UsageError: it is not set. An option would show it to everyone on the machine.
+    """
+    if not os.environ.get(PASSWORD):
+        raise UsageError(
+            f"--rcon takes the password from the environment: export {PASSWORD}=... "
+            "(rcon.password in server.properties)"
+        )
+    return os.environ[PASSWORD]
+
+
+def note_of(server: str, digest: str) -> Path:
+    """Return the file that remembers how far a build on a server is."""
+    from world2minecraft.jit import user_cache_dir
+
+    name = hashlib.sha256(f"{server} {digest}".encode()).hexdigest()[:24]
+    return user_cache_dir() / "rcon" / f"{name}.json"
