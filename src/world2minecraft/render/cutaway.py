@@ -14,6 +14,7 @@ import numpy as np
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.render.standing import entities_within, kept_entities, moved_entities
 from world2minecraft.types import BlockVolume
 
 RIM_M = 0.25  # So much of a near wall stays, to show where it is.
@@ -77,8 +78,13 @@ def side_by_side(volumes: Sequence[BlockVolume]) -> BlockVolume:
     axis = 0 if first.states.shape[0] <= first.states.shape[2] else 2
     height = max(one.states.shape[1] for one in volumes)
     gap = round(APART_M * first.blocks_per_metre)
+    entities, moved = [], np.zeros(3)
+    for one in volumes:
+        entities += moved_entities(one, moved + np.subtract(first.corner, one.corner))
+        moved[axis] += one.states.shape[axis] + gap
     return replace(
         first,
+        entities=tuple(entities),
         states=_in_a_row([one.states for one in volumes], axis, height, gap),
         semantic=_in_a_row([one.semantic for one in volumes], axis, height, gap),
         instance=_in_a_row([one.instance for one in volumes], axis, height, gap),
@@ -193,6 +199,7 @@ def _layers(volume: BlockVolume, low: int, high: int) -> BlockVolume:
         semantic=volume.semantic[:, low:high],
         instance=volume.instance[:, low:high],
         corner=(x, y + low, z),
+        entities=entities_within(volume, low, high),
     )
 
 
@@ -225,4 +232,5 @@ def _without(volume: BlockVolume, drop: np.ndarray) -> BlockVolume:
         states=np.where(drop, np.uint16(0), volume.states),
         semantic=np.where(drop, np.uint8(0), volume.semantic),
         instance=np.where(drop, np.uint16(0), volume.instance),
+        entities=kept_entities(volume, drop),
     )

@@ -7,6 +7,7 @@ from multiprocessing.pool import ThreadPool
 
 import numpy as np
 
+from world2minecraft.render.cubes import draw_cubes, pixel_bounds
 from world2minecraft.render.scene import RayScene, prepare_scene
 from world2minecraft.render.shade import TILE, draw_rows
 from world2minecraft.types import BlockVolume, Camera
@@ -22,7 +23,8 @@ class Picture:
     """What one look at a volume gives; arrays that were not asked for are None.
 
     Where a ray meets nothing, depth and range are 0, ``block_index`` is -1, ``face`` is 255,
-    ``semantic`` and ``instance`` are 0.
+    ``semantic`` and ``instance`` are 0. Where it meets a display entity ``block_index`` is -1 too,
+    ``cube_index`` is 0 or more, and ``face`` the one of a block that looks most like it.
     """
 
     depth_m: np.ndarray  # float32 [H, W], z-depth
@@ -32,6 +34,7 @@ class Picture:
     colour: np.ndarray | None = None  # uint8 [H, W, 3]
     semantic: np.ndarray | None = None  # uint8 [H, W]
     instance: np.ndarray | None = None  # uint16 [H, W]
+    cube_index: np.ndarray | None = None  # int32 [H, W], into the scene's cubes; -1 for none
 
 
 def render_volume(
@@ -93,11 +96,21 @@ def _draw(volume, rays, spread, camera_to_room, size, outputs, threads, backgrou
     with_colour = "colour" in outputs
     colour = np.empty((*size, 3) if with_colour else (1, 1, 3), np.uint8)
 
+    cubes = scene.cubes
+    cube = np.full(size, -1, np.int32)
+    bounds = pixel_bounds(cubes, pose, rays, spread, size)
+    to_cube, normals = cubes.from_camera(pose), cubes.normals
+
     def band(rows: tuple[int, int]) -> None:
         draw_rows(
             scene.cells, scene.states, scene.box_start, scene.boxes, scene.colours, pose, rays,
             spread, rows[0], rows[1], with_colour, sky, depth, distance, index, face, colour,
         )  # fmt: skip
+        if len(cubes):
+            draw_cubes(
+                to_cube, normals, cubes.sides, cubes.colours, bounds, pose, rays, spread,
+                rows[0], rows[1], with_colour, depth, distance, index, face, colour, cube,
+            )  # fmt: skip
 
     run_bands(band, size[0], threads)
     return Picture(
@@ -106,8 +119,13 @@ def _draw(volume, rays, spread, camera_to_room, size, outputs, threads, backgrou
         block_index=index,
         face=face,
         colour=colour if with_colour else None,
-        semantic=_look_up(scene.semantic, index) if "semantic" in outputs else None,
-        instance=_look_up(scene.instance, index) if "instance" in outputs else None,
+        semantic=_labels(scene.semantic, index, cubes.semantic, cube)
+        if "semantic" in outputs
+        else None,
+        instance=_labels(scene.instance, index, cubes.instance, cube)
+        if "instance" in outputs
+        else None,
+        cube_index=cube,
     )
 
 
@@ -122,8 +140,13 @@ def run_bands(band: Callable[[tuple[int, int]], None], rows: int, threads: int) 
         pool.map(band, pairwise(edges))
 
 
-def _look_up(values: np.ndarray, index: np.ndarray) -> np.ndarray:
-    """Return the values of the cells of a picture, 0 where there is none."""
+def _labels(
+    values: np.ndarray, index: np.ndarray, cube_values: np.ndarray, cube: np.ndarray
+) -> np.ndarray:
+    """Return the values of the cells and boxes of a picture, 0 where there is neither."""
     found = values.reshape(-1)[np.maximum(index, 0)]
     found[index < 0] = 0
+    if len(cube_values):
+        shown = cube >= 0
+        found[shown] = cube_values[cube[shown]]
     return found

@@ -1,14 +1,15 @@
-"""A block volume made ready for rays: one byte a cell, box tables and colours by state.
+"""A block volume made ready for rays: one byte a cell, tables of boxes, colours by state.
 
 Making it costs one sweep over the volume; whoever takes many pictures of one volume makes the
 scene once and passes it in the volume's place.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from world2minecraft.render.appearance import palette_colours, visible_boxes
+from world2minecraft.render.cubes import CubeTable, cube_table
 from world2minecraft.render.trace import BOXES, FULL, NEAR_AIR, fill_distances
 from world2minecraft.types import BlockVolume
 
@@ -28,6 +29,7 @@ class RayScene:
     instance: np.ndarray  # uint16 [X, Y, Z]
     room_to_grid: np.ndarray  # float64 [4, 4]: room metres to cells of this grid
     cells_per_metre: float
+    cubes: CubeTable = field(default_factory=lambda: cube_table((), (0, 0, 0)))
 
 
 def prepare_scene(volume: BlockVolume) -> RayScene:
@@ -49,6 +51,7 @@ def prepare_scene(volume: BlockVolume) -> RayScene:
         instance=volume.instance,
         room_to_grid=np.linalg.inv(volume.block_to_room @ grid_to_world),
         cells_per_metre=volume.blocks_per_metre,
+        cubes=cube_table(volume.entities, volume.corner),
     )
 
 
