@@ -5,6 +5,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from world2minecraft.cli.build_options import (
+    PaletteName,
+    Scale,
+    Settings,
+    Style,
+    Version,
+    with_build_options,
+)
 from world2minecraft.errors import UsageError
 
 if TYPE_CHECKING:
@@ -13,6 +21,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
 w2m build OUT --out second --blocks-per-metre 2     a finished run at another scale
+w2m build OUT --out fine --style display            furniture as fine as a mod's, without a mod
 w2m build room.npz --out world_of_room              an occupancy grid alone
 w2m build labels.npy --out world_of_labels          an array of class ids [x, y, z]
 w2m build OUT --into saves/Home --at 100 64 -20     into a world of yours; w2m undo takes it back
@@ -49,11 +58,6 @@ Air = Annotated[
 NewChunks = Annotated[
     bool, typer.Option("--new-chunks", help="With --into: make what the game never generated.")
 ]
-Scale = Annotated[float, typer.Option("--blocks-per-metre", help="Scale: 1, 2, 4 or 12.5.")]
-Version = Annotated[str, typer.Option("--mc-version", help="The game version to write for.")]
-Settings = Annotated[
-    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any parameter.")
-]
 
 
 def run(
@@ -66,6 +70,8 @@ def run(
     air: Air = "room",
     new_chunks: NewChunks = False,
     blocks_per_metre: Scale = 4.0,
+    style: Style = None,
+    palette: PaletteName = None,
     mc_version: Version = "1.20.1",
     settings: Settings = None,
 ) -> None:
@@ -87,6 +93,8 @@ def run(
         air: which air of the room replaces blocks of the world.
         new_chunks: whether chunks that the game never generated are made.
         blocks_per_metre: the scale.
+        style: what furniture is made of.
+        palette: which blocks may be used.
         mc_version: the game version.
         settings: further parameters.
 
@@ -96,9 +104,8 @@ def run(
     check_targets(out, into, rcon, at, turns)
     from world2minecraft.parameters import Parameters, with_settings
 
-    chosen = with_settings(
-        Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version), settings or []
-    )
+    chosen = Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version)
+    chosen = with_settings(with_build_options(chosen, style, palette), settings or [])
     if out is not None:
         into_folder(source, out, chosen)
     if into is not None and at is not None:

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from world2minecraft.cli.build_options import PaletteName, Scale, Style, with_build_options
+
 EXAMPLES = """\
 w2m demo                        a living room, to OUT/
 w2m demo --kind kitchen         another room
@@ -21,9 +23,9 @@ def run(
     ] = "living",
     seed: Annotated[int, typer.Option("--seed", help="Which room of its kind.")] = DEMO_SEED,
     frames: Annotated[int, typer.Option("--frames", help="Frames of the scan.")] = DEMO_FRAMES,
-    blocks_per_metre: Annotated[
-        float, typer.Option("--blocks-per-metre", help="The scale of the world.")
-    ] = 4.0,
+    blocks_per_metre: Scale = 4.0,
+    style: Style = None,
+    palette: PaletteName = None,
 ) -> None:
     """Generate a room, scan it with a virtual depth camera and build it as a world.
 
@@ -36,6 +38,8 @@ def run(
         seed: the room's seed.
         frames: how many frames the virtual camera takes.
         blocks_per_metre: the scale.
+        style: what furniture is made of.
+        palette: which blocks may be used.
     """
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
@@ -52,5 +56,6 @@ def run(
         progress("room", 1, 1, f"a {kind} room, seed {seed}")
         scan_room(room, out / "capture", frames=frames, seed=seed, progress=progress)
         chosen = Parameters(blocks_per_metre=blocks_per_metre)
+        chosen = with_build_options(chosen, style, palette)
         facts = make(out / "capture", out, chosen, None, None, progress)
     say_where(out, facts)

@@ -5,6 +5,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from world2minecraft.cli.build_options import (
+    PaletteName,
+    Scale,
+    Settings,
+    Style,
+    Version,
+    with_build_options,
+)
+
 if TYPE_CHECKING:
     from world2minecraft.parameters import Parameters
     from world2minecraft.progress import Progress
@@ -20,12 +29,6 @@ w2m reconstruct my_scan --out OUT --follow                while the scan still g
 """
 
 
-BlocksPerMetre = Annotated[
-    float,
-    typer.Option(
-        "--blocks-per-metre", help="Scale: 1 true size, 2, 4 or 12.5 (one voxel, one block)."
-    ),
-]
 Start = Annotated[
     str | None,
     typer.Option("--from", metavar="STAGE", help="scan, register, fuse, ... or report."),
@@ -44,17 +47,15 @@ def run(
     capture: Annotated[Path, typer.Argument(help="A folder of posed RGB-D frames.")],
     out: Annotated[Path, typer.Option("--out", help="The folder of the results.")],
     voxel: Annotated[float, typer.Option("--voxel", help="Size of a cell, in metres.")] = 0.08,
-    blocks_per_metre: BlocksPerMetre = 4.0,
+    blocks_per_metre: Scale = 4.0,
+    style: Style = None,
+    palette: PaletteName = None,
     start: Start = None,
     labels: LabelImages = None,
     labeller: Annotated[str, typer.Option("--labeller", help="auto, votes or geometric.")] = "auto",
     method: Method = "best",
-    mc_version: Annotated[
-        str, typer.Option("--mc-version", help="The game version to write for.")
-    ] = "1.20.1",
-    settings: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any parameter.")
-    ] = None,
+    mc_version: Version = "1.20.1",
+    settings: Settings = None,
     follow: Follow = False,
     follow_idle_s: Annotated[
         float,
@@ -71,6 +72,8 @@ def run(
         out: the folder to write.
         voxel: the cell's size in metres.
         blocks_per_metre: the scale.
+        style: what furniture is made of.
+        palette: which blocks may be used.
         start: the stage to begin at.
         labels: 2D label images.
         labeller: how cells are labelled.
@@ -86,7 +89,8 @@ def run(
     from world2minecraft.parameters import Parameters, with_method, with_settings
 
     chosen = Parameters(voxel, blocks_per_metre, labeller=labeller, mc_version=mc_version)
-    chosen = with_settings(with_method(chosen, method), settings or [])
+    chosen = with_build_options(with_method(chosen, method), style, palette)
+    chosen = with_settings(chosen, settings or [])
     if follow and start is not None:
         raise UsageError("--follow reads a whole capture; leave out --from")
     compiling_note()

@@ -1,0 +1,50 @@
+"""The options of every verb that builds: scale, style, palette, version and further settings."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from world2minecraft.parameters import Parameters
+
+Scale = Annotated[
+    float,
+    typer.Option(
+        "--blocks-per-metre", help="Scale: 1 true size, 2, 4 or 12.5 (one voxel, one block)."
+    ),
+]
+Style = Annotated[
+    str | None,
+    typer.Option("--style", help="Furniture of blocks (usual), display entities, or voxels."),
+]
+PaletteName = Annotated[
+    str | None,
+    typer.Option("--palette", help="vanilla (usual), a mod's, or a YAML file of yours."),
+]
+Version = Annotated[str, typer.Option("--mc-version", help="The game version to write for.")]
+Settings = Annotated[
+    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any parameter.")
+]
+
+
+def with_build_options(
+    parameters: "Parameters", style: str | None, palette: str | None
+) -> "Parameters":
+    """Return the parameters with what the options name; what is None stays as it is.
+
+    Raises:
+        UsageError: there is no such style or palette.
+    """
+    from world2minecraft.parameters import with_settings
+
+    chosen = {"style": style, "palette": _whole(palette)}
+    return with_settings(
+        parameters, [f"build.{key}={value}" for key, value in chosen.items() if value is not None]
+    )
+
+
+def _whole(palette: str | None) -> str | None:
+    """Return a palette's name as it is, and its file by its whole path."""
+    is_file = palette is not None and Path(palette).is_file()
+    return str(Path(palette).resolve()) if palette is not None and is_file else palette
