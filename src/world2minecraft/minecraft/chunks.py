@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.minecraft.entries import state_entry, state_text
 from world2minecraft.minecraft.nbt import (
     BYTE,
     COMPOUND,
@@ -21,8 +22,7 @@ from world2minecraft.minecraft.nbt import (
     write_nbt,
 )
 from world2minecraft.minecraft.packing import SECTION, pack_section, skip_texts
-from world2minecraft.minecraft.states import BlockState, parse_state
-from world2minecraft.minecraft.versions import GameVersion, name_in_version
+from world2minecraft.minecraft.versions import GameVersion
 
 FIRST_DATA_VERSION = 2860  # 1.18, the first game with this layout.
 VOID_BIOME = "minecraft:the_void"
@@ -43,7 +43,8 @@ class ChunkWriter:
 
     def __init__(self, states: np.ndarray, palette: Sequence[str], version: GameVersion):
         self._states = states
-        self._entries = [_palette_entry(state, version) for state in palette]
+        level = version.level_data_version
+        self._entries = [write_nbt(state_entry(state, level))[3:] for state in palette]
         self._version = version
         self._numbers = np.full(len(palette), -1, np.int32)
         self._met = np.zeros(SECTION, np.uint16)
@@ -186,19 +187,6 @@ def _sections(root: dict[str, Any], place: tuple[int, int], path: Path) -> Itera
             yield Section((place[0], y, place[1]), palette, words)
 
 
-def state_text(entry: Mapping[str, Any]) -> str:
-    """Return the canonical text of a palette entry of NBT, with Name and Properties.
-
-    Raises:
-        UsageError: the entry names no block state.
-    """
-    name, properties = entry.get("Name"), entry.get("Properties", {})
-    texts = isinstance(properties, dict) and all(isinstance(v, str) for v in properties.values())
-    if not isinstance(name, str) or not texts:
-        raise UsageError("a block state without a name, or with properties that are no text")
-    return str(BlockState(name, properties))
-
-
 def _text_of(entry: str | Mapping[str, Any]) -> str:
     return entry if isinstance(entry, str) else state_text(entry)
 
@@ -208,15 +196,6 @@ def _word_count(states: int) -> int:
         return 0
     per_word = 64 // max(4, (states - 1).bit_length())
     return -(-SECTION // per_word)
-
-
-def _palette_entry(state: str, version: GameVersion) -> bytes:
-    parsed = parse_state(state)
-    name = name_in_version(parsed.name, version.level_data_version)
-    entry: dict[str, Any] = {"Name": name}
-    if parsed.properties:
-        entry["Properties"] = dict(parsed.properties)
-    return write_nbt(entry)[3:]
 
 
 def _named(tag: int, name: str, payload: bytes) -> bytes:

@@ -61,12 +61,12 @@ def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict
         *data_commands(volume),
         *entity_commands(volume),
     ]
-    files |= _job(volume, name, "build", commands, "built")
-    files |= _job(volume, name, "clear", clear_commands(volume), "cleared")
+    files |= job_files(volume, name, "build", commands, "built")
+    files |= job_files(volume, name, "clear", clear_commands(volume), "cleared")
     return files
 
 
-def _job(
+def job_files(
     volume: BlockVolume, name: str, verb: str, commands: list[str], done: str
 ) -> dict[str, str]:
     """Return the functions of one job: load the chunks, wait, run the parts, let go."""

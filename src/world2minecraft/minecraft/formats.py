@@ -20,6 +20,8 @@ FORMATS = Registry(
         "world": "world2minecraft.minecraft.formats:WorldFormat",
         "schem": "world2minecraft.minecraft.formats:SchemFormat",
         "datapack": "world2minecraft.minecraft.formats:DatapackFormat",
+        "litematic": "world2minecraft.minecraft.shared_formats:LitematicFormat",
+        "structure": "world2minecraft.minecraft.shared_formats:StructureFormat",
     },
 )
 

@@ -230,7 +230,7 @@ class NbtReader:
         self._hold(count, dtype.itemsize)
         raw = np.frombuffer(self.data, dtype, count, self.at)
         self.at += raw.nbytes
-        return raw.astype(dtype.newbyteorder("="))
+        return raw.astype(dtype.newbyteorder("="), copy=False)  # Bytes stay where they are.
 
     def _hold(self, count: int, size: int) -> None:
         if count < 0 or count * size > len(self.data) - self.at:

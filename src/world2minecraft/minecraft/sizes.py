@@ -80,15 +80,17 @@ def pack_mcmeta(description: str, version: GameVersion | None = None) -> str:
     return json.dumps({"pack": pack, "overlays": {"entries": entries}}, indent=1) + "\n"
 
 
-def pack_zip(files: Mapping[str, str]) -> bytes:
-    """Return a zip whose bytes depend on the files alone."""
+def pack_zip(files: Mapping[str, str | bytes]) -> bytes:
+    """Return a zip of texts and bytes, whose bytes depend on the files alone."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
         for name in sorted(files):
             entry = zipfile.ZipInfo(name, FIXED_DATE)
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = 0o644 << 16
-            archive.writestr(entry, files[name].encode(), compresslevel=6)
+            held = files[name]
+            data = held.encode() if isinstance(held, str) else held
+            archive.writestr(entry, data, compresslevel=6)
     return buffer.getvalue()
 
 

@@ -1,0 +1,102 @@
+"""The files by which players share builds, as formats: Litematica, structures, old schematics."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from world2minecraft.errors import UsageError
+from world2minecraft.minecraft.losses import Losses
+from world2minecraft.types import BlockVolume
+
+if TYPE_CHECKING:
+    from world2minecraft.minecraft.formats import WriteOptions
+
+
+class LitematicFormat:
+    """A Litematica file."""
+
+    suffix = ".litematic"
+    can_read = True
+    can_write = True
+    keeps_labels = False
+
+    def is_at(self, path: Path) -> bool:
+        """Whether the name ends so."""
+        return path.is_file() and path.suffix.lower() == self.suffix
+
+    def read(self, path: Path, losses: Losses) -> BlockVolume:
+        """Read version 4 to 7, its regions joined."""
+        from world2minecraft.minecraft.litematic import read_litematic  # noqa: PLC0415  # numba.
+
+        return read_litematic(path, losses)
+
+    def write(
+        self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
+    ) -> None:
+        """Write one region under the options' name."""
+        from world2minecraft.minecraft.litematic import write_litematic  # noqa: PLC0415
+        from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
+
+        version = game_version(options.mc_version)
+        write_litematic(volume, path, name=options.name, version=version)
+
+
+class StructureFormat:
+    """A structure file of the game."""
+
+    suffix = ".nbt"
+    can_read = True
+    can_write = True
+    keeps_labels = False
+
+    def is_at(self, path: Path) -> bool:
+        """Whether the name ends so."""
+        return path.is_file() and path.suffix.lower() == self.suffix
+
+    def read(self, path: Path, losses: Losses) -> BlockVolume:
+        """Read the structure, of several palettes the first."""
+        from world2minecraft.minecraft.structure import read_structure  # noqa: PLC0415  # numba.
+
+        return read_structure(path, losses)
+
+    def write(
+        self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
+    ) -> None:
+        """Write one structure; one too large for a structure block gets a pack of pieces too."""
+        from world2minecraft.minecraft.structure import write_structure  # noqa: PLC0415
+        from world2minecraft.minecraft.structure_pack import (  # noqa: PLC0415
+            PACK_SUFFIX,
+            is_too_large,
+            write_structure_pack,
+        )
+        from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
+
+        version = game_version(options.mc_version)
+        write_structure(volume, path, version=version)
+        if is_too_large(volume, version):
+            pack = path.with_name(path.stem + PACK_SUFFIX)
+            write_structure_pack(volume, pack, name=options.name, version=version)
+
+
+class LegacySchematicFormat:
+    """A schematic of MCEdit, WorldEdit or Schematica from before 1.13; it is read only."""
+
+    suffix = ".schematic"
+    can_read = True
+    can_write = False
+    keeps_labels = False
+
+    def is_at(self, path: Path) -> bool:
+        """Whether the name ends so."""
+        return path.is_file() and path.suffix.lower() == self.suffix
+
+    def read(self, path: Path, losses: Losses) -> BlockVolume:
+        """Read it, its numbers as today's states."""
+        from world2minecraft.minecraft.mcedit import read_schematic  # noqa: PLC0415  # numba.
+
+        return read_schematic(path, losses)
+
+    def write(
+        self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
+    ) -> None:
+        """Refuse: numbers of 1.12 name a fraction of today's blocks."""
+        raise UsageError(f"{path}: .schematic is read and not written; write a .schem instead")
