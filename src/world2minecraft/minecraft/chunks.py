@@ -1,14 +1,13 @@
-"""Chunks of 1.18 and later: columns of sections, each with a palette of its own."""
+"""Chunks, columns of sections: written as since 1.18, read as since 1.13."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from world2minecraft.errors import DamagedFileError, InputError, UsageError
-from world2minecraft.minecraft.entries import state_entry, state_text
+from world2minecraft.minecraft.entries import state_text
 from world2minecraft.minecraft.nbt import (
     BYTE,
     COMPOUND,
@@ -21,34 +20,29 @@ from world2minecraft.minecraft.nbt import (
     NbtReader,
     write_nbt,
 )
-from world2minecraft.minecraft.packing import SECTION, pack_section, skip_texts
+from world2minecraft.minecraft.old_chunks import (
+    FIRST_DATA_VERSION,
+    FIRST_WITHOUT_LEVEL,
+    flattened,
+    old_sections,
+)
+from world2minecraft.minecraft.packing import skip_texts
+from world2minecraft.minecraft.sections import Section, SectionPacker, section_of
 from world2minecraft.minecraft.versions import GameVersion
 
-FIRST_DATA_VERSION = 2860  # 1.18, the first game with this layout.
+PALETTES = ("palette", "Palette")  # Since 1.18, and before.
 VOID_BIOME = "minecraft:the_void"
 CHUNK_LIMITS = NbtLimits(depth=64, values=500_000, bytes=16 << 20)
-
-
-@dataclass(frozen=True)
-class Section:
-    """One packed section: ``place`` counts sections along x, y, z in the world."""
-
-    place: tuple[int, int, int]
-    palette: tuple[str, ...]
-    words: np.ndarray  # uint64 [N], N = 0 where one state fills it
 
 
 class ChunkWriter:
     """Writes the chunks of one volume."""
 
     def __init__(self, states: np.ndarray, palette: Sequence[str], version: GameVersion):
-        self._states = states
-        level = version.level_data_version
-        self._entries = [write_nbt(state_entry(state, level))[3:] for state in palette]
+        self._packer = SectionPacker(states, palette, version.level_data_version)
+        self._entries = [write_nbt(entry)[3:] for entry in self._packer.entries]
+        self._height = states.shape[1]
         self._version = version
-        self._numbers = np.full(len(palette), -1, np.int32)
-        self._met = np.zeros(SECTION, np.uint16)
-        self._words = np.zeros(SECTION // 4, np.uint64)
         self._biomes = _named(COMPOUND, "biomes", write_nbt({"palette": [VOID_BIOME]})[3:])
 
     def chunk(
@@ -65,7 +59,7 @@ class ChunkWriter:
             block_entities: NBT of the block entities in this chunk.
         """
         low = corner[1] >> 4
-        high = (corner[1] + self._states.shape[1] - 1) >> 4
+        high = (corner[1] + self._height - 1) >> 4
         sections = []
         for y in range(low, high + 1):
             at = (place[0] * 16 - corner[0], y * 16 - corner[1], place[1] * 16 - corner[2])
@@ -94,18 +88,19 @@ class ChunkWriter:
         return b"".join([write_nbt(root)[:-1], head, *sections, bytes([END])])
 
     def _section(self, y: int, origin: np.ndarray) -> bytes | None:
-        count, used = pack_section(self._states, origin, self._numbers, self._met, self._words)
-        if count == 1 and self._met[0] == 0:
+        packed = self._packer.numbers(origin)
+        if packed is None:
             return None
+        met, words = packed
         parts = [
             _named(BYTE, "Y", (y & 255).to_bytes(1, "big")),
             _named(COMPOUND, "block_states", b""),
-            _named(LIST, "palette", bytes([COMPOUND]) + count.to_bytes(4, "big")),
-            *[self._entries[number] for number in self._met[:count].tolist()],
+            _named(LIST, "palette", bytes([COMPOUND]) + len(met).to_bytes(4, "big")),
+            *[self._entries[number] for number in met],
         ]
-        if used:
-            words = self._words[:used].astype(">u8").tobytes()
-            parts += [_named(LONGS, "data", used.to_bytes(4, "big")), words]
+        if len(words):
+            parts += [_named(LONGS, "data", len(words).to_bytes(4, "big"))]
+            parts += [words.astype(">u8").tobytes()]
         return b"".join([*parts, bytes([END]), self._biomes, bytes([END])])
 
 
@@ -124,7 +119,7 @@ class _ChunkReader(NbtReader):
 
     def elements(self, tag: int, count: int, depth: int) -> list[Any]:
         """Read a list's elements; of a palette those seen before are not parsed again."""
-        ends = np.empty(count if tag == COMPOUND and self.key == "palette" else 0, np.int64)
+        ends = np.empty(count if tag == COMPOUND and self.key in PALETTES else 0, np.int64)
         if not len(ends) or not skip_texts(np.frombuffer(self.data, np.uint8), self.at, ends):
             return super().elements(tag, count, depth)
         found = []
@@ -150,7 +145,7 @@ def read_chunk(
 
     Raises:
         DamagedFileError: it is no chunk, or lies in another place than it says.
-        LimitError: it asks for too much. InputError: it is of a game before 1.18.
+        LimitError: it asks for too much. InputError: it is of a game before 1.13.
     """
     try:
         _, root = _ChunkReader(data, path, known).root()
@@ -158,44 +153,29 @@ def read_chunk(
         raise DamagedFileError(path, f"chunk {place} has a palette with {error}") from error
     version = root.get("DataVersion", 0)
     if not isinstance(version, int) or version < FIRST_DATA_VERSION:
-        reason = f"chunk {place} is of a game before 1.18 (data version {version})"
+        reason = f"chunk {place} is of a game before 1.13 (data version {version})"
         raise InputError(path, f"{reason}; open the world once in a newer game, then try again")
+    is_old = version < FIRST_WITHOUT_LEVEL or "Level" in root
+    if is_old:
+        root = flattened(root, place, path)
     if (root.get("xPos"), root.get("zPos")) != place:
         stated = (root.get("xPos"), root.get("zPos"))
         raise DamagedFileError(path, f"chunk {place} says that it is chunk {stated}")
-    return root, _sections(root, place, path)
-
-
-def _sections(root: dict[str, Any], place: tuple[int, int], path: Path) -> Iterator[Section]:
-    sections = root.get("sections", [])
-    if not isinstance(sections, list):
+    if not isinstance(root.get("sections", []), list):
         raise DamagedFileError(path, f"chunk {place} has sections that are no list")
-    for section in sections:
-        try:
-            blocks = section.get("block_states")
-            if blocks is None:
-                continue
-            palette = tuple(map(_text_of, blocks["palette"]))
-            words = blocks.get("data", np.zeros(0, np.int64)).view(np.uint64)
-            y = int(section["Y"])
-        except (KeyError, TypeError, AttributeError, ValueError, UsageError) as error:
-            raise DamagedFileError(path, f"chunk {place} has a broken section") from error
-        if not 1 <= len(palette) <= SECTION or len(words) != _word_count(len(palette)):
-            reason = f"{len(palette)} states in {len(words)} words"
-            raise DamagedFileError(path, f"chunk {place}, section {y} has {reason}")
-        if palette != ("minecraft:air",):
-            yield Section((place[0], y, place[1]), palette, words)
+    return root, (old_sections if is_old else _sections)(root, place, path)
 
 
-def _text_of(entry: str | Mapping[str, Any]) -> str:
-    return entry if isinstance(entry, str) else state_text(entry)
-
-
-def _word_count(states: int) -> int:
-    if states == 1:
-        return 0
-    per_word = 64 // max(4, (states - 1).bit_length())
-    return -(-SECTION // per_word)
+def _sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> Iterator[Section]:
+    for section in root.get("sections", []):
+        if not isinstance(section, dict):
+            raise DamagedFileError(path, f"chunk {place} has a broken section")
+        blocks = section.get("block_states")
+        if blocks is not None:
+            height = section.get("Y")
+            found = section_of(blocks, "palette", "data", place, path, y=height)
+            if found is not None:
+                yield found
 
 
 def _named(tag: int, name: str, payload: bytes) -> bytes:

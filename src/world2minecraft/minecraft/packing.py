@@ -116,30 +116,33 @@ def read_varints(data, lookup, out):  # pragma: no cover
     Args:
         data: uint8 [N].
         lookup: int32 [M], -1 for a number that means nothing.
-        out: uint16 out, filled whole.
+        out: uint16 [Y, Z, X] out, filled whole, the last axis fastest.
 
     Returns:
         The bytes used, or -1 where the data ends too early, or -2 where a number has more than
         four bytes, or -3 - n where the number n is not in ``lookup``.
     """
     at = 0
-    for index in range(len(out)):
-        value = np.int64(0)
-        shift = 0
-        while True:
-            if at >= len(data):
-                return -1
-            byte = np.int64(data[at])
-            at += 1
-            value |= (byte & 127) << shift
-            if byte < 128:
-                break
-            shift += 7
-            if shift > 21:
-                return -2
-        if value >= len(lookup) or lookup[value] < 0:
-            return -3 - value
-        out[index] = lookup[value]
+    size_y, size_z, size_x = out.shape
+    for y in range(size_y):
+        for z in range(size_z):
+            for x in range(size_x):
+                value = np.int64(0)
+                shift = 0
+                while True:
+                    if at >= len(data):
+                        return -1
+                    byte = np.int64(data[at])
+                    at += 1
+                    value |= (byte & 127) << shift
+                    if byte < 128:
+                        break
+                    shift += 7
+                    if shift > 21:
+                        return -2
+                if value >= len(lookup) or lookup[value] < 0:
+                    return -3 - value
+                out[y, z, x] = lookup[value]
     return at
 
 

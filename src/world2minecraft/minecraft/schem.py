@@ -1,13 +1,13 @@
 """Sponge schematics, versions 2 and 3: what WorldEdit and most tools read."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.files import read_bytes, write_bytes
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.nbt import (
@@ -20,11 +20,11 @@ from world2minecraft.minecraft.nbt import (
 )
 from world2minecraft.minecraft.packing import read_varints, write_varints
 from world2minecraft.minecraft.states import parse_state
+from world2minecraft.minecraft.unlabelled import check_size, palette_of, unlabelled
 from world2minecraft.minecraft.versions import GameVersion, game_version, name_in_version
-from world2minecraft.minecraft.world_reading import MAX_CELLS
-from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
+from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
-LIMITS = NbtLimits(bytes=256 << 20)
+LIMITS = NbtLimits(bytes=192 << 20)  # 67 million blocks in three bytes each.
 
 
 def write_schem(
@@ -160,30 +160,25 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
     version = tree["Version"]
     if version not in (1, 2, 3):
         raise InputError(source, f"is a Sponge schematic of version {version}; 1 to 3 are read")
-    size = np.array([int(tree[key]) & 0xFFFF for key in ("Width", "Height", "Length")])
-    cell_count = int(size.prod())
-    if not 0 < cell_count <= MAX_CELLS:
-        shown = " x ".join(map(str, size.tolist()))
-        raise LimitError(source, f"says {shown} blocks; 1 to {MAX_CELLS:,} are read")
+    sides = (int(tree[key]) & 0xFFFF for key in ("Width", "Height", "Length"))
+    size = check_size(sides, source)
+    cell_count = math.prod(size)
     blocks = tree["Blocks"] if version == 3 else tree
     data = blocks["Data" if version == 3 else "BlockData"].view(np.uint8)
     if len(data) < cell_count:
         raise DamagedFileError(source, f"says {cell_count:,} blocks and holds fewer")
     palette, number_of = _palette(blocks["Palette"], source)
-    states = _cells(data, number_of, cell_count, source)
-    x, y, z = _corner(tree)
-    shape = (int(size[1]), int(size[2]), int(size[0]))
-    states = np.ascontiguousarray(states.reshape(shape).transpose(2, 0, 1))
+    width, height, length = size
+    states = np.empty((width, height, length), np.uint16)
+    _fill(states.transpose(1, 2, 0), data, number_of, source)
+    corner = _corner(tree)
     held = blocks.get("BlockEntities", tree.get("TileEntities", []))
-    return BlockVolume(
-        states=states,
-        palette=palette,
-        semantic=np.zeros(states.shape, np.uint8),
-        instance=np.zeros(states.shape, np.uint16),
-        corner=(x, y, z),
-        block_to_room=block_to_room(np.zeros(2), 1.0),
-        block_entities=tuple(_block_entity(nbt, (x, y, z), version) for nbt in held),
-        entities=tuple(_entity(nbt, (x, y, z), version) for nbt in tree.get("Entities", [])),
+    return unlabelled(
+        states,
+        palette,
+        corner,
+        [_block_entity(nbt, corner, version) for nbt in held],
+        [_entity(nbt, corner, version) for nbt in tree.get("Entities", [])],
     )
 
 
@@ -205,19 +200,17 @@ def _palette(stated: Mapping[str, int], source: Path) -> tuple[tuple[str, ...], 
         if not 0 <= number <= 0xFFFF or number in text_of:
             raise DamagedFileError(source, f"its palette has a bad or repeated number {number}")
         text_of[int(number)] = state
-    palette = [AIR, *sorted(set(text_of.values()) - {AIR})]
-    if len(palette) > 0xFFFF:
-        raise LimitError(source, f"has {len(palette):,} block states; at most 65,535 are read")
-    number_of = {state: number for number, state in enumerate(palette)}
-    return tuple(palette), {number: number_of[state] for number, state in text_of.items()}
+    palette, number_of = palette_of(text_of.values(), source)
+    return palette, {number: number_of[state] for number, state in text_of.items()}
 
 
-def _cells(data: np.ndarray, number_of: Mapping[int, int], count: int, source: Path) -> np.ndarray:
-    """Return uint16 [count] in our palette from the file's varints."""
+def _fill(
+    cells: np.ndarray, data: np.ndarray, number_of: Mapping[int, int], source: Path
+) -> None:
+    """Fill uint16 [Y, Z, X] with our numbers of the file's varints."""
     lookup = np.full(max(number_of, default=0) + 1, -1, np.int32)
     for number, ours in number_of.items():
         lookup[number] = ours
-    cells = np.empty(count, np.uint16)
     used = int(read_varints(data, lookup, cells))
     if used <= -3:
         raise DamagedFileError(
@@ -228,7 +221,6 @@ def _cells(data: np.ndarray, number_of: Mapping[int, int], count: int, source: P
         raise DamagedFileError(
             source, f"its block data {reason.get(used, 'goes on after the last block')}"
         )
-    return cells
 
 
 def _block_entity(nbt: dict[str, Any], corner: tuple[int, int, int], version: int) -> BlockEntity:

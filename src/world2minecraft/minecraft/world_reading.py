@@ -6,24 +6,26 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.coordinates import block_to_room
 from world2minecraft.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.files import read_bytes
 from world2minecraft.minecraft.anvil import read_region
-from world2minecraft.minecraft.chunks import Section, read_chunk
+from world2minecraft.minecraft.chunks import read_chunk
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, unpack
-from world2minecraft.minecraft.packing import unpack_section
-from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
+from world2minecraft.minecraft.packing import SECTION, unpack_section
+from world2minecraft.minecraft.sections import Section
+from world2minecraft.minecraft.unlabelled import MAX_CELLS, palette_of, unlabelled
+from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
-MAX_CELLS = 64 << 20  # 400 blocks a side; a volume of this size takes 340 MB.
+MAX_SECTIONS = MAX_CELLS // SECTION  # Held before the volume's size is known.
 MAX_UNPACKED_BYTES = 2 << 30  # All chunks of one world together.
+MAX_ENTITY_BYTES = 64 << 20
 LEVEL_LIMITS = NbtLimits(values=200_000, bytes=32 << 20)
 Place = tuple[int, int]
 Box = tuple[int, int, int, int, int, int]
 
 
 def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
-    """Read the overworld of a world folder, of 1.18 or later.
+    """Read the overworld of a world folder, of 1.13 or later.
 
     Args:
         folder: the folder that holds ``level.dat``.
@@ -42,10 +44,8 @@ def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
     regions = _region_files(root)
     if not regions:
         raise InputError(root, "holds no region files of an overworld; nothing to read")
-    sections, block_entities = _gather(regions, box)
-    palette = [AIR, *sorted({s for part in sections for s in part.palette} - {AIR})]
-    if len(palette) > 65_535:
-        raise LimitError(root, f"holds {len(palette):,} block states; at most 65,535 are read")
+    sections, block_entities, entities = _gather(regions, box)
+    palette, _ = palette_of((state for part in sections for state in part.palette), root)
     states, corner = _fill(root, sections, palette, box)
     if box is None:
         states, corner = _trimmed(states, corner)
@@ -54,16 +54,13 @@ def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
     def inside(position: Any) -> bool:
         return bool((np.array(corner) <= position).all() and (position < high).all())
 
-    entities = _read_entities(regions)
-    return BlockVolume(
-        states=states,
-        palette=tuple(palette),
-        semantic=np.zeros(states.shape, np.uint8),
-        instance=np.zeros(states.shape, np.uint16),
-        corner=corner,
-        block_to_room=block_to_room(np.zeros(2), 1.0),
-        block_entities=tuple(e for e in block_entities if inside(e.block_pos)),
-        entities=tuple(e for e in entities if box is None or inside(e.position)),
+    entities += _entity_files(regions)
+    return unlabelled(
+        states,
+        palette,
+        corner,
+        (e for e in block_entities if inside(e.block_pos)),
+        (e for e in entities if box is None or inside(e.position)),
     )
 
 
@@ -92,9 +89,12 @@ def _region_files(root: Path) -> list[Path]:
     return []
 
 
-def _gather(regions: list[Path], box: Box | None) -> tuple[list[Section], list[BlockEntity]]:
+def _gather(
+    regions: list[Path], box: Box | None
+) -> tuple[list[Section], list[BlockEntity], list[Entity]]:
     sections: list[Section] = []
-    entities: list[BlockEntity] = []
+    block_entities: list[BlockEntity] = []
+    entities: list[Entity] = []
     known: dict[bytes, str] = {}
     unpacked = 0
     for path in regions:
@@ -102,13 +102,18 @@ def _gather(regions: list[Path], box: Box | None) -> tuple[list[Section], list[B
             if box is not None and not _meets(place, box):
                 continue
             unpacked += len(data)
-            if unpacked > MAX_UNPACKED_BYTES:
-                reason = f"the world unpacks to more than {MAX_UNPACKED_BYTES:,} bytes"
-                raise LimitError(path, f"{reason}; give a box of it")
             root, found = read_chunk(data, place, path, known)
-            sections.extend(found)
-            entities.extend(_block_entities(root, path))
-    return sections, entities
+            sections.extend(found if box is None else (s for s in found if _is_level(s, box)))
+            if unpacked > MAX_UNPACKED_BYTES or len(sections) > MAX_SECTIONS:
+                reason = f"the world has more than {MAX_CELLS:,} blocks"
+                raise LimitError(path, f"{reason}, or takes too much memory; give a box of it")
+            block_entities.extend(_block_entities(root, path))
+            entities.extend(_entities(root.get("Entities", []), path))
+    return sections, block_entities, entities
+
+
+def _is_level(section: Section, box: Box) -> bool:
+    return box[1] < section.place[1] * 16 + 16 and section.place[1] * 16 < box[4]
 
 
 def _meets(place: Place, box: Box) -> bool:
@@ -127,7 +132,7 @@ def _block_entities(root: dict[str, Any], path: Path) -> Iterator[BlockEntity]:
 
 
 def _fill(
-    root: Path, sections: list[Section], palette: list[str], box: Box | None
+    root: Path, sections: list[Section], palette: tuple[str, ...], box: Box | None
 ) -> tuple[np.ndarray, tuple[int, int, int]]:
     if box is None:
         places = np.array([section.place for section in sections] or [(0, 4, 0)])
@@ -161,17 +166,30 @@ def _trimmed(
     return np.ascontiguousarray(states[tuple(cuts)]), (x, y, z)
 
 
-def _read_entities(regions: list[Path]) -> list[Entity]:
-    folder = regions[0].parent.parent / "entities"
+def _entity_files(regions: list[Path]) -> list[Entity]:
+    """Return the entities beside the regions; since 1.17 they lie in files of their own."""
     found: list[Entity] = []
-    for path in sorted(folder.glob("r.*.mca")):
+    unpacked = 0
+    for path in sorted((regions[0].parent.parent / "entities").glob("r.*.mca")):
         for _, data in read_region(path):
+            unpacked += len(data)
+            if unpacked > MAX_ENTITY_BYTES:
+                reason = f"the world's entities unpack to more than {MAX_ENTITY_BYTES:,} bytes"
+                raise LimitError(path, f"{reason}; at most that is read")
             _, root = read_nbt(data, path)
-            try:
-                for nbt in root["Entities"]:
-                    x, y, z = (float(value) for value in nbt["Pos"])
-                    rest = {key: nbt[key] for key in nbt if key not in ("id", "Pos")}
-                    found.append(Entity((x, y, z), str(nbt["id"]), rest))
-            except (KeyError, TypeError, ValueError, AttributeError) as error:
-                raise DamagedFileError(path, "has an entity without id and place") from error
+            found.extend(_entities(root.get("Entities"), path))
     return found
+
+
+def _entities(held: Any, path: Path) -> list[Entity]:
+    """Return the entities of a list of NBT."""
+    try:
+        return [_entity(nbt) for nbt in held]
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise DamagedFileError(path, "has an entity without id and place") from error
+
+
+def _entity(nbt: dict[str, Any]) -> Entity:
+    x, y, z = (float(value) for value in nbt["Pos"])
+    rest = {key: nbt[key] for key in nbt if key not in ("id", "Pos")}
+    return Entity((x, y, z), str(nbt["id"]), rest)
