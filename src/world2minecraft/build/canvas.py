@@ -8,7 +8,7 @@ from world2minecraft.build.lattice import Lattice
 from world2minecraft.coordinates import block_to_room, grid_to_block_axes
 from world2minecraft.errors import LimitError
 from world2minecraft.minecraft.states import complete, parse_state
-from world2minecraft.types import AIR, BlockVolume
+from world2minecraft.types import AIR, BlockVolume, Entity
 
 # Blocks that nobody sees; they are no surface, so they carry class 0.
 LIGHT = "minecraft:light[level=15,waterlogged=false]"
@@ -24,6 +24,7 @@ class Canvas:
         self.states = np.zeros(lattice.shape, np.uint16)
         self.semantic = np.zeros(lattice.shape, np.uint8)
         self.instance = np.zeros(lattice.shape, np.uint16)
+        self.entities: list[Entity] = []
         self._ids: dict[str, int] = {AIR: 0}
 
     def id_of(self, state: str) -> int:
@@ -80,4 +81,5 @@ class Canvas:
             instance=grid_to_block_axes(self.instance),
             corner=self.lattice.corner,
             block_to_room=frame,
+            entities=tuple(self.entities),
         )

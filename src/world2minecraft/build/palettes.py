@@ -30,6 +30,10 @@ class Palette:
     glass: str
     pane: str
 
+    def allows(self, state: str) -> bool:
+        """Whether a full block may be used at all; a palette of its own kind may say no."""
+        return True
+
 
 @cache
 def load_palette(name: str) -> Palette:

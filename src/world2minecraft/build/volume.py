@@ -7,6 +7,7 @@ import numpy as np
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.carrying import carry_floaters, close_gaps
 from world2minecraft.build.connect import connect
+from world2minecraft.build.display.builder import DisplayBuilder
 from world2minecraft.build.exact import put_cells_exactly
 from world2minecraft.build.hues import cell_colours, one_paint, seen_colours
 from world2minecraft.build.lattice import is_exact, lattice_over, snapped_corner_m
@@ -58,7 +59,7 @@ def build_volume(
     if is_exact(grid, blocks_per_metre):
         footprints = put_cells_exactly(canvas, *source)
     else:
-        footprints = _put_room(canvas, placements, *source)
+        footprints = _put_room(canvas, placements, instances, *source)
     connect(canvas)
     if chosen.edge == "barrier":
         put_edge(canvas, footprints)
@@ -70,6 +71,7 @@ def build_volume(
 def _put_room(
     canvas: Canvas,
     placements: Sequence[Placement],
+    instances: Sequence[ObjectInstance],
     grid: OccupancyGrid,
     colours: np.ndarray,
     coloured: np.ndarray,
@@ -82,6 +84,10 @@ def _put_room(
     things = coloured & np.isin(grid.labels, OBJECT_CLASSES)
     painted = colours.copy()
     painted[things] = one_paint(colours[things])
+    if parameters.style == "display":
+        source = (grid, painted, coloured, palette, parameters)
+        DisplayBuilder(canvas, *source, instances).put_all(placements)
+        return shell.footprints
     builder = ObjectBuilder(canvas, grid, painted, coloured, palette, parameters, shell.footprints)
     builder.put_all(placements)
     carry_floaters(canvas)

@@ -26,12 +26,14 @@ PILLAR_CELLS = 3  # Own cells that go on so far above and below are no top.
 
 
 class Worktop(NamedTuple):
-    """One plate: its blocks, and its colour in Oklab."""
+    """One plate: its blocks, its colour in Oklab, and the height of its top in the room."""
 
     columns: np.ndarray  # bool [X, Y] of the lattice
     layer: int
     half: int  # LOWER or FULL
     colour: np.ndarray  # float32 [3]
+    top_m: float = 0.0
+    plan: np.ndarray | None = None  # bool [X, Y] of the grid
 
 
 def find_worktop(
@@ -74,7 +76,8 @@ def find_worktop(
     plan = _plan(grid, cells, steps, level)
     cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
     columns = cover[0] @ plan.astype(np.float32) @ cover[1].T >= COVERED
-    return Worktop(columns, layer, LOWER if at - layer <= 0.75 else FULL, colour)
+    half = LOWER if at - layer <= 0.75 else FULL
+    return Worktop(columns, layer, half, colour, float(top), plan)
 
 
 def joined(tops: dict[int, Worktop]) -> dict[int, Worktop]:
@@ -90,7 +93,8 @@ def joined(tops: dict[int, Worktop]) -> dict[int, Worktop]:
         whole = next((one for one in result.values() if _meets(tops[number], one, near)), None)
         result[number] = tops[number]
         if whole is not None:
-            result[number] = whole._replace(columns=tops[number].columns)
+            own = tops[number]
+            result[number] = whole._replace(columns=own.columns, plan=own.plan)
     return result
 
 
