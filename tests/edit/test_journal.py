@@ -1,5 +1,6 @@
 """The journal: whatever the moment of a kill, the whole records before it are there."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -58,10 +59,8 @@ def test_a_changed_byte_is_seen(tmp_path_factory, place, change):
     data = bytearray(path.read_bytes())
     data[place] ^= change
     path.write_bytes(bytes(data))
-    try:
+    with contextlib.suppress(DamagedFileError):
         assert len(Journal(path).edits) < 3  # A wrong length may reach over the end.
-    except DamagedFileError:
-        pass
 
 
 def test_another_file_is_no_journal(tmp_path):

@@ -109,9 +109,12 @@ def run(
     if out is not None:
         into_folder(source, out, chosen)
     if into is not None and at is not None:
-        from world2minecraft.cli.into_world import into_world
+        from world2minecraft.cli.into_world import check_world, into_world
 
-        into_world(volume_of(source, chosen), into, at, turns, air, new_chunks)
+        check_world(into, air)  # Before the work.
+        is_room = holds_room(source)
+        volume = volume_of(source, chosen)
+        into_world(volume, into, at, turns, air=air, new_chunks=new_chunks, is_room=is_room)
     if rcon is not None:
         from world2minecraft.cli.on_server import on_server, parse_address, password_of_environment
 
@@ -156,6 +159,13 @@ def into_folder(source: Path, out: Path, chosen: "Parameters") -> None:
         rebuild(source, out, chosen, progress)
     print()
     say_how_to_play(out / "build")
+
+
+def holds_room(source: Path) -> bool:
+    """Whether ``source`` is a room, whose floor is known, and not blocks made elsewhere."""
+    from world2minecraft.rebuild import is_block_file
+
+    return not is_block_file(source)
 
 
 def volume_of(source: Path, chosen: "Parameters") -> "BlockVolume":

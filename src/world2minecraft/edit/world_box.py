@@ -1,0 +1,227 @@
+"""A box of a world that exists: its blocks, read so that some of them can be set.
+
+Nothing is written here: ``changed_files`` returns what the files become.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.minecraft.chunk_edit import (
+    StateNumbers,
+    data_of,
+    forget_light,
+    new_chunk,
+    open_chunk,
+    read_sections,
+    set_data,
+    set_section,
+)
+from world2minecraft.minecraft.nbt import write_nbt
+from world2minecraft.minecraft.region_edit import RegionFile, read_region_file
+from world2minecraft.minecraft.versions import game_version
+from world2minecraft.minecraft.world_reading import read_level
+from world2minecraft.types import BlockEntity
+
+MAX_CELLS = 64 << 20
+MODERN_FOLDER = Path("dimensions/minecraft/overworld")  # From 26.1 on.
+Place = tuple[int, int]
+Corner = tuple[int, int, int]
+
+
+@dataclass
+class WorldBox:
+    """The blocks of a world from ``low`` on, as far as ``states`` goes.
+
+    ``states`` [X, Y, Z] are numbers of ``numbers``; ``data`` are the block entities in the box.
+    ``missing`` are the chunks, of those that the box touches, which the game never finished.
+    """
+
+    world: Path
+    low: Corner
+    states: np.ndarray
+    numbers: StateNumbers
+    data: tuple[BlockEntity, ...]
+    data_version: int
+    missing: list[Place] = field(default_factory=list)
+    _regions: dict[Place, RegionFile] = field(default_factory=dict)
+    _chunks: dict[Place, dict[str, Any]] = field(default_factory=dict)
+
+    def changed_files(
+        self, states: np.ndarray, data: Sequence[BlockEntity]
+    ) -> dict[str, bytes | None]:
+        """Return the files, by path in the world, that differ when the box holds other blocks.
+
+        Args:
+            states: uint16 [X, Y, Z], numbers of ``numbers``.
+            data: all block entities of the box.
+        """
+        changed = self._changed_chunks(states, data)
+        regions: dict[Place, dict[Place, bytes]] = defaultdict(dict)
+        for place in changed:
+            regions[region_of(place)][place] = self._rewritten(place, states, data)
+        files = {}
+        for region, chunks in sorted(regions.items()):
+            found = self._regions[region]
+            folder = found.path.parent.relative_to(self.world).as_posix()
+            for name, content in found.with_chunks(chunks).items():
+                files[f"{folder}/{name}"] = content
+        return files
+
+    def _changed_chunks(self, states: np.ndarray, data: Sequence[BlockEntity]) -> list[Place]:
+        before, after = self._data_by_chunk(self.data), self._data_by_chunk(data)
+        found = []
+        for place in chunks_of(self.low, states.shape):
+            part = self._part(place)
+            if not np.array_equal(states[part], self.states[part]) or before.get(
+                place
+            ) != after.get(place):
+                found.append(place)
+        return found
+
+    def _rewritten(self, place: Place, states: np.ndarray, data: Sequence[BlockEntity]) -> bytes:
+        root = self._chunks.get(place)
+        if root is None:
+            lowest = game_version().min_y >> 4
+            root = new_chunk(place, self.data_version, lowest)
+        path = self._regions[region_of(place)].path
+        old = read_sections(root, path, self.numbers)
+        first, last = self.low[1], self.low[1] + states.shape[1] - 1
+        for section in range(first >> 4, (last >> 4) + 1):
+            cells = old.get(section, np.zeros((16, 16, 16), np.uint16))
+            new = cells.copy()
+            here, there = _overlap((place[0] * 16, section * 16, place[1] * 16), self.low, states)
+            new[here] = states[there]
+            if not np.array_equal(new, cells):
+                set_section(root, section, new, self.numbers)
+        others = [e for e in data_of(root, path) if not self._holds(e.block_pos)]
+        mine = [e for e in data if (e.block_pos[0] >> 4, e.block_pos[2] >> 4) == place]
+        set_data(root, [*others, *sorted(mine, key=lambda entity: entity.block_pos)])
+        forget_light(root)
+        return write_nbt(root)
+
+    def _part(self, place: Place) -> tuple[slice, ...]:
+        """The cells of the box that lie in a chunk."""
+        sides = [slice(None)] * 3
+        for axis, chunk in ((0, place[0]), (2, place[1])):
+            start = chunk * 16 - self.low[axis]
+            sides[axis] = slice(max(start, 0), min(start + 16, self.states.shape[axis]))
+        return tuple(sides)
+
+    def _holds(self, position: Sequence[int]) -> bool:
+        offset = np.array(position) - self.low
+        return bool(((offset >= 0) & (offset < self.states.shape)).all())
+
+    def _data_by_chunk(self, data: Sequence[BlockEntity]) -> Mapping[Place, set[bytes]]:
+        found: dict[Place, set[bytes]] = defaultdict(set)
+        for entity in data:
+            x, y, z = (int(value) for value in entity.block_pos)
+            key = write_nbt({"id": entity.id, "pos": [x, y, z], "nbt": entity.nbt})
+            found[x >> 4, z >> 4].add(key)
+        return found
+
+
+def read_world_box(world: Path, low: Corner, size: Sequence[int]) -> WorldBox:
+    """Read the blocks of a box of a world.
+
+    Args:
+        world: its folder.
+        low: the lowest block.
+        size: blocks along x, y, z.
+
+    Raises:
+        InputError: there is no world, or one of a game before 1.18. UsageError: the box reaches
+            out of the world's heights. DamagedFileError: a file of it is broken.
+    """
+    level = read_level(world)
+    version = level.get("DataVersion")
+    if not isinstance(version, int):
+        raise DamagedFileError(world / "level.dat", "does not say which game it is of")
+    _check_box(low, size)
+    box = WorldBox(world, low, np.zeros(tuple(size), np.uint16), StateNumbers(), (), version)
+    folder = overworld_folder(world)
+    data: list[BlockEntity] = []
+    for place in chunks_of(low, size):
+        region = region_of(place)
+        if region not in box._regions:
+            path = folder / "region" / f"r.{region[0]}.{region[1]}.mca"
+            box._regions[region] = read_region_file(path)
+        data += _read_chunk(box, place, box._regions[region])
+    box.data = tuple(entity for entity in data if box._holds(entity.block_pos))
+    return box
+
+
+def _read_chunk(box: WorldBox, place: Place, region: RegionFile) -> list[BlockEntity]:
+    raw = region.chunk(place)
+    root = None if raw is None else open_chunk(raw, place, region.path)
+    if root is None:
+        box.missing.append(place)
+        return []
+    box._chunks[place] = root
+    for section, cells in read_sections(root, region.path, box.numbers).items():
+        corner = (place[0] * 16, section * 16, place[1] * 16)
+        here, there = _overlap(corner, box.low, box.states)
+        box.states[there] = cells[here]
+    return data_of(root, region.path)
+
+
+def overworld_folder(world: Path) -> Path:
+    """Return the folder of a world that holds the overworld's ``region`` and ``entities``."""
+    modern = world / MODERN_FOLDER
+    return modern if (modern / "region").is_dir() else world
+
+
+def chunks_of(low: Sequence[int], size: Sequence[int]) -> Iterator[Place]:
+    """Yield the chunks that a box touches, sorted."""
+    for x in range(low[0] >> 4, ((low[0] + size[0] - 1) >> 4) + 1):
+        for z in range(low[2] >> 4, ((low[2] + size[2] - 1) >> 4) + 1):
+            yield x, z
+
+
+def region_of(place: Place) -> Place:
+    """Return the region that a chunk lies in."""
+    return place[0] >> 5, place[1] >> 5
+
+
+def is_void(level: Mapping[str, Any]) -> bool:
+    """Whether the game makes nothing but air in the overworld of a ``level.dat``."""
+    try:
+        overworld = level["WorldGenSettings"]["dimensions"]["minecraft:overworld"]
+        settings = overworld["generator"]["settings"]
+        layers = [layer["block"] for layer in settings["layers"]]
+    except (KeyError, TypeError):
+        return False
+    flat = overworld["generator"].get("type") == "minecraft:flat"
+    return flat and all(block == "minecraft:air" for block in layers)
+
+
+def _check_box(low: Corner, size: Sequence[int]) -> None:
+    version = game_version()
+    high = low[1] + size[1] - 1
+    if low[1] < version.min_y or high > version.max_y:
+        raise UsageError(
+            f"the build would reach from layer {low[1]} to {high}, but the world has "
+            f"{version.min_y} to {version.max_y}; choose another Y, or fewer blocks per metre"
+        )
+    if max(abs(low[0]), abs(low[2])) > 29_000_000:
+        raise UsageError(f"x {low[0]}, z {low[2]} lie beyond the world's border at 29,999,984")
+    if float(np.prod(np.array(size, float))) > MAX_CELLS:
+        shown = " x ".join(map(str, size))
+        raise InputError("build", f"has {shown} blocks; at most {MAX_CELLS:,} are built at once")
+
+
+def _overlap(
+    corner: Sequence[int], low: Sequence[int], states: np.ndarray
+) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
+    """Where a section at ``corner`` and a box from ``low`` meet: slices of each."""
+    here, there = [], []
+    for start, first, size in zip(corner, low, states.shape, strict=True):
+        begin, end = max(start, first), max(start, first, min(start + 16, first + size))
+        here.append(slice(begin - start, end - start))
+        there.append(slice(begin - first, end - first))
+    return tuple(here), tuple(there)

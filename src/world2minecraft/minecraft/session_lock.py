@@ -1,0 +1,80 @@
+"""``session.lock``: how the game says that it has a world open, and how it is told the same.
+
+The game keeps the first byte of the file locked as long as it has the world open. Where the lock
+can be taken, nobody has it; while it is held here, the game refuses to open the world.
+"""
+
+import errno
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.errors import ConflictError, InputError, OutputError
+
+try:
+    import fcntl
+except ImportError:  # Windows has none.
+    fcntl = None
+try:
+    import msvcrt
+except ImportError:  # Only Windows has one.
+    msvcrt = None
+
+LOCK_FILE = "session.lock"
+SNOWMAN = "\u2603".encode()  # What the game writes there, by its own taste.
+
+
+@contextmanager
+def session_lock(world: Path) -> Iterator[None]:
+    """Hold a world's lock, so that neither the game nor a second of us opens it.
+
+    Raises:
+        ConflictError: the game, or another program, has the world open.
+        InputError: there is no such world. OutputError: the world may not be written.
+    """
+    if not (world / "level.dat").is_file():
+        raise InputError(world, "is no world folder: it has no level.dat")
+    path = world / LOCK_FILE
+    was_there = path.exists()
+    try:
+        stream = open(path, "r+b" if was_there else "x+b")  # noqa: SIM115  # Closed below.
+    except OSError as error:
+        reason = f"its {LOCK_FILE} cannot be opened: {error.strerror or error}"
+        raise OutputError(world, reason) from error
+    is_held = False
+    try:
+        is_held = _take(stream, world)
+        if not is_held:
+            reason = "is open in the game (or in a server, or another program)"
+            raise ConflictError(world, f"{reason}; leave the world there, then try again")
+        if not was_there:
+            stream.write(SNOWMAN)
+            stream.flush()
+        yield
+    finally:
+        if is_held and not was_there:
+            _remove(path)
+        stream.close()  # The lock goes with it.
+        if is_held and not was_there:
+            _remove(path)  # Windows removes no file that is open.
+
+
+def _take(stream: Any, world: Path) -> bool:
+    try:
+        if fcntl is not None:
+            fcntl.lockf(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        elif msvcrt is not None:
+            stream.seek(0)
+            msvcrt.locking(stream.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]
+    except OSError as error:
+        if error.errno in (errno.EACCES, errno.EAGAIN, errno.EDEADLK):
+            return False
+        reason = f"its {LOCK_FILE} cannot be locked: {error.strerror or error}"
+        raise OutputError(world, reason) from error
+    return True
+
+
+def _remove(path: Path) -> None:
+    with suppress(OSError):
+        path.unlink(missing_ok=True)
