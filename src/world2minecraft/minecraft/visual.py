@@ -2,8 +2,7 @@
 
 In: a state's text. Out: the boxes of its look within the unit cube. One data file written by hand,
 ``data/visual_boxes.json``, says what is seen of fences, walls, signs, torches, plants and others;
-all else looks as it collides. A block that the table does not know looks like the known block whose
-name ends alike (``copper_trapdoor`` like ``oak_trapdoor``), else like a full cube.
+all else looks as it collides.
 """
 
 import json
@@ -16,22 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.minecraft.blocks import block_table
-from world2minecraft.minecraft.shapes import FULL_CUBE, boxes_of
+from world2minecraft.minecraft.shapes import boxes_of
 from world2minecraft.minecraft.states import BlockState, complete, parse_state
 
 DATA_FILE = "data/visual_boxes.json"
 # Clockwise from above, from the side that the data file's boxes are written for.
 QUARTERS = ("north", "east", "south", "west")
-# Blocks whose shapes newer games' and mods' blocks of like names are taken to have.
-TWINS = {
-    "_trapdoor": "minecraft:oak_trapdoor",
-    "_door": "minecraft:oak_door",
-    "_stairs": "minecraft:oak_stairs",
-    "_slab": "minecraft:oak_slab",
-    "_pane": "minecraft:glass_pane",
-    "_bars": "minecraft:iron_bars",
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,12 +91,7 @@ def _family(entry: Mapping[str, Any]) -> VisualFamily:
 
 
 def _table_boxes(state: BlockState) -> np.ndarray:
-    """Return the collision boxes within the unit cube, of a twin where the block is unknown."""
-    if state.name not in block_table().blocks:
-        twin = next((twin for end, twin in TWINS.items() if state.name.endswith(end)), None)
-        if twin is None:
-            return FULL_CUBE.copy()
-        state = complete(BlockState(twin, state.properties))
+    """Return the collision boxes within the unit cube."""
     boxes = np.clip(boxes_of(str(state)), 0, 1)
     return boxes[(boxes[:, 3:] > boxes[:, :3]).all(axis=1)]
 
