@@ -10,12 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.furniture.library import template
-from world2minecraft.furniture.template import BlockSize, LocalBlock
+from world2minecraft.furniture.template import BlockSize, LocalBlock, Parameters, Template
 from world2minecraft.types import Placement
 
 PARTS_FROM = 3.0  # Blocks per metre from which parts are at least a third of a block (fit.md).
-
-FENCE_SIDES = {"east": (1, 0), "north": (0, -1), "south": (0, 1), "west": (-1, 0)}
 
 
 class IdiomBlock(NamedTuple):
@@ -49,8 +47,19 @@ def idiom(placement: Placement, blocks_per_metre: float) -> Idiom | None:
         return None
     found = template(placement.template)
     size = block_size(placement.size_m, blocks_per_metre)
-    local = found.blocks(size, placement.parameters)
-    return _turned(local, placement.quarter_turns) if local else None
+    return laid(found, size, placement.parameters, placement.quarter_turns)
+
+
+def laid(
+    template: Template, size: BlockSize, parameters: Parameters | None, quarter_turns: int
+) -> Idiom | None:
+    """Return a template's vanilla design at a size in blocks; None where it has none for it.
+
+    Raises:
+        ParameterError: the template refuses a parameter.
+    """
+    local = template.blocks(size, parameters)
+    return _turned(local, quarter_turns) if local else None
 
 
 def block_size(size_m: np.ndarray, blocks_per_metre: float) -> BlockSize:
@@ -75,27 +84,17 @@ def _turned(local: list[LocalBlock], quarter_turns: int) -> Idiom:
         offset = (along, k, wide - 1 - across)
         blocks.append(IdiomBlock(offset, turn_state(whole, quarter_turns), role))
     turned = (width, height, depth) if quarter_turns % 2 else (depth, height, width)
-    return Idiom(tuple(sorted(_with_joined_fences(blocks))), turned)
+    return Idiom(tuple(sorted(_connected(blocks, turned))), turned)
 
 
-def _with_joined_fences(blocks: list[IdiomBlock]) -> list[IdiomBlock]:
-    """Join each fence to the fences and full cubes beside it, as the game would."""
-    from world2minecraft.minecraft.shapes import is_full_cube  # noqa: PLC0415
-    from world2minecraft.minecraft.states import parse_state  # noqa: PLC0415
+def _connected(blocks: list[IdiomBlock], size: tuple[int, int, int]) -> list[IdiomBlock]:
+    """Give fences, panes and stairs the connections and shapes that the game would compute."""
+    from world2minecraft.minecraft.connections import connected  # noqa: PLC0415
 
-    state_at = {block.offset: block.state for block in blocks}
-
-    def joined(block: IdiomBlock) -> IdiomBlock:
-        """Return a fence with its sides set, and any other block as it is."""
-        state = parse_state(block.state)
-        if not state.name.endswith("_fence"):
-            return block
-        x, y, z = block.offset
-        sides = {}
-        for side, (dx, dz) in FENCE_SIDES.items():
-            beside = state_at.get((x + dx, y, z + dz))
-            joins = beside is not None and ("_fence[" in beside or is_full_cube(beside))
-            sides[side] = "true" if joins else "false"
-        return block._replace(state=str(state.having(**sides)))
-
-    return [joined(block) for block in blocks]
+    palette = ["minecraft:air", *sorted({block.state for block in blocks})]
+    number = {state: index for index, state in enumerate(palette)}
+    states = np.zeros(size, np.uint16)
+    for block in blocks:
+        states[block.offset] = number[block.state]
+    states, states_of = connected(states, palette)
+    return [block._replace(state=states_of[states[block.offset]]) for block in blocks]

@@ -83,10 +83,27 @@ class Plan:
             self._blocks.pop(cell, None)
 
     def stairs(
-        self, role: str, i: Numbers, j: Numbers, k: Numbers, high: Side, half: str = "bottom"
+        self,
+        role: str,
+        i: Numbers,
+        j: Numbers,
+        k: Numbers,
+        high: Side,
+        half: Literal["bottom", "top"] = "bottom",
     ) -> None:
-        """Lay stairs whose high side is ``high``."""
+        """Lay stairs whose high side is ``high``; upside down with ``half`` top."""
         self.put(role, i, j, k, "stairs", facing=FACING[high], half=half)
+
+    def slab(
+        self,
+        role: str,
+        i: Numbers,
+        j: Numbers,
+        k: Numbers,
+        half: Literal["bottom", "top"] = "bottom",
+    ) -> None:
+        """Lay slabs in a half of the cells."""
+        self.put(role, i, j, k, "slab", type=half)
 
     def panel(self, role: str, i: Numbers, j: Numbers, k: Numbers, side: Side) -> None:
         """Stand open trapdoors at one side of the cells."""
@@ -100,22 +117,6 @@ class Plan:
 def panel_properties(side: Side) -> dict[str, str]:
     """Return the properties of an open trapdoor whose panel stands at ``side``."""
     return {"facing": FACING[OPPOSITE[side]], "half": "bottom", "open": "true"}
-
-
-def level(height: float) -> tuple[int, str]:
-    """Return the layer in which a surface at ``height`` blocks lies best, and the shape for it.
-
-    The shape is ``plate`` (a trapdoor, 3/16 high), ``slab`` (1/2) or ``full`` (1): of the surfaces
-    that they make over all layers the one nearest to the height; of equals the lower.
-    """
-    choices = [
-        (round(abs(layer + rest - height), 6), layer + rest, layer, shape)
-        for layer in range(max(int(height) - 1, 0), int(height) + 2)
-        for shape, rest in (("plate", 3 / 16), ("slab", 0.5), ("full", 1.0))
-        if layer or shape != "plate"
-    ]
-    _, _, layer, shape = min(choices)
-    return layer, shape
 
 
 def _listed(numbers: Numbers) -> Iterable[int]:

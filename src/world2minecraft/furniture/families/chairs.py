@@ -1,12 +1,13 @@
 """Seats for one that people move: chairs, swivel chairs and stools.
 
-At one block per metre a chair is a stair. At two and more it has legs, a seat at its height, and
-a back of open trapdoors.
+At one block per metre a chair is a stair. At two it has a back of an open trapdoor on it, and from
+three on legs, a seat at its height and a back.
 """
 
 from world2minecraft.furniture.family import Family
+from world2minecraft.furniture.laying import lay_back, lay_legs, lay_plate
 from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Plan, level
+from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import arms, backrest, column, legs, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 
@@ -25,28 +26,43 @@ def _chair(depth: float, width: float, height: float, look: Look) -> list[Part]:
 
 def _chair_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
-    if size.per_metre < FINE:
-        plan.stairs("seat", plan.depth, plan.width, 0, "back")
-        plan.panel("back", 0, plan.width, range(1, size.height), "back")
+    if _is_small(size, look):
+        _stair_chair(plan)
         return plan.blocks
-    layer = _seat(plan, look["seat_height"] * size.per_metre)
-    for i, j in plan.corners:
-        plan.put("leg", i, j, range(layer), "fence")
-    plan.panel("back", 0, plan.width, range(layer + 1, size.height), "back")
+    layer = _seat(plan)
+    lay_legs(plan, "leg", plan.corners, layer)
+    top = max(size.height, layer + 2)
+    lay_back(plan, "back", plan.width, range(layer + 1, top))
+    if look.option("arms") == "wood" and size.depth > 1:
+        plan.panel("leg", range(1, size.depth), 0, layer + 1, "right")
+        plan.panel("leg", range(1, size.depth), size.width - 1, layer + 1, "left")
     return plan.blocks
 
 
-def _seat(plan: Plan, height: float) -> int:
-    """Lay a seat whose top is near a height in blocks; return its layer."""
-    layer, shape = level(height)
-    layer = min(layer, plan.size.height - 1)
-    if shape == "plate":
-        plan.plate("seat", plan.depth, plan.width, layer, "bottom")
-    elif shape == "slab":
-        plan.put("seat", plan.depth, plan.width, layer, "slab", type="bottom")
-    else:
-        plan.put("seat", plan.depth, plan.width, layer, "slab", type="top")
+def _is_small(size: BlockSize, look: Look) -> bool:
+    """Whether a chair has no room for legs: a stair stands for it."""
+    return size.per_metre < FINE or (size.depth == 1 and look["seat_height"] * size.per_metre < 1.5)
+
+
+def _seat(plan: Plan) -> int:
+    """Lay a seat at its height, to half a block; a low one rises at the back to meet it."""
+    height = plan.look["seat_height"] * plan.size.per_metre
+    layer = lay_plate(plan, "seat", plan.depth, plan.width, height, ("slab", "full"))
+    if layer + 0.75 > height and plan.look.has("seat", "slab", "stairs"):
+        plan.stairs("seat", 0, plan.width, layer, "back")
     return layer
+
+
+def _stair_chair(plan: Plan) -> None:
+    """Lay a chair of one layer and its back: a stair, or a cushion before a panel."""
+    roles = ("seat", "back", "arm", "leg")
+    stairs = next((role for role in roles if plan.look.has(role, "stairs")), None)
+    panel = next((role for role in roles[1:] if plan.look.has(role, "trapdoor")), "back")
+    if stairs == "seat" or (stairs and plan.size.height == 1):
+        plan.stairs(stairs, plan.depth, plan.width, 0, "back")
+    else:
+        plan.put("seat", plan.depth, plan.width, 0)
+    lay_back(plan, panel, plan.width, range(1, plan.size.height))
 
 
 CHAIR = Family(
@@ -54,6 +70,7 @@ CHAIR = Family(
     design=_chair_blocks,
     roles=("leg", "seat", "back"),
     parameters={"seat_height": Span(0.36, 0.46, 0.56)},
+    options={"arms": ("none", "wood")},
 )
 
 
@@ -73,13 +90,24 @@ def _office_chair(depth: float, width: float, height: float, look: Look) -> list
 
 
 def _office_chair_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
-    return _chair_blocks(size, look)
+    plan = Plan(size, look)
+    if _is_small(size, look):
+        _stair_chair(plan)
+        return plan.blocks
+    layer = _seat(plan)
+    # Bars side by side join to a ring: one pedestal in the middle of four blocks.
+    lay_legs(plan, "post", _middle(size), layer)
+    lay_back(plan, "back", plan.width, range(layer + 1, max(size.height, layer + 2)))
+    if size.depth > 1 and look.has("arm", "trapdoor"):
+        plan.panel("arm", size.depth - 1, 0, layer + 1, "right")
+        plan.panel("arm", size.depth - 1, size.width - 1, layer + 1, "left")
+    return plan.blocks
 
 
 OFFICE_CHAIR = Family(
     build=_office_chair,
     design=_office_chair_blocks,
-    roles=("foot", "leg", "post", "seat", "back", "arm"),
+    roles=("foot", "post", "seat", "back", "arm"),
     parameters={"arm_height": Span(0.64, 0.68, 0.76), "seat_height": Span(0.4, 0.48, 0.56)},
 )
 
@@ -91,10 +119,51 @@ def _stool(depth: float, width: float, height: float, look: Look) -> list[Part]:
 
 def _stool_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
-    layer = _seat(plan, size.exact[2])
-    for i, j in plan.corners:
-        plan.put("leg", i, j, range(layer), "fence")
+    if size.exact[2] < 1.3:
+        low = "seat" if look.has("seat", "slab") or size.exact[2] > 0.75 else "leg"
+        _low_seat(plan, low)
+        return plan.blocks
+    layer = lay_plate(plan, "seat", plan.depth, plan.width, size.exact[2])
+    lay_legs(plan, "leg", plan.corners, layer)
     return plan.blocks
 
 
+def _low_seat(plan: Plan, role: str) -> None:
+    if plan.look.has(role, "slab"):
+        plan.slab(role, plan.depth, plan.width, 0)
+    else:
+        plan.put(role, plan.depth, plan.width, 0)
+
+
 STOOL = Family(build=_stool, design=_stool_blocks, roles=("leg", "seat"))
+
+
+def _pedestal_stool(depth: float, width: float, height: float, look: Look) -> list[Part]:
+    under = max(height - 0.08, height / 2)
+    return [
+        slab("foot", depth, width, 0.0, 0.03),
+        column("post", min(0.06, depth, width), 0.03, under),
+        slab("seat", depth, width, under, height),
+    ]
+
+
+def _pedestal_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    plan = Plan(size, look)
+    if size.exact[2] < 1.3 and look.has("seat", "slab"):
+        plan.slab("seat", plan.depth, plan.width, 0)
+        return plan.blocks
+    shapes = tuple(shape for shape in ("trapdoor", "carpet", "slab") if look.has("seat", shape))
+    layer = lay_plate(plan, "seat", plan.depth, plan.width, max(size.exact[2], 1.06), shapes)
+    lay_legs(plan, "post", _middle(size), layer)
+    return plan.blocks
+
+
+def _middle(size: BlockSize) -> list[tuple[int, int]]:
+    along = {(size.depth - 1) // 2, size.depth // 2}
+    across = {(size.width - 1) // 2, size.width // 2}
+    return sorted((i, j) for i in along for j in across)
+
+
+PEDESTAL_STOOL = Family(
+    build=_pedestal_stool, design=_pedestal_blocks, roles=("foot", "post", "seat")
+)

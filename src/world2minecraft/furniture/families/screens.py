@@ -1,23 +1,40 @@
-"""Screens: on a wall, or on a foot."""
+"""Screens: on a wall, or on a foot.
+
+A thin one is of panes, which join side by side to one dark plate; one block wide a pane would be a
+post, so that is a panel.
+"""
 
 from world2minecraft.furniture.family import Family
+from world2minecraft.furniture.laying import lay_legs
 from world2minecraft.furniture.look import Look
 from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+
+THICK = 0.6  # Blocks: a screen this deep is a whole block.
 
 
 def _wall_screen(depth: float, width: float, height: float, look: Look) -> list[Part]:
     return [slab("screen", depth, width, 0.0, height)]
 
 
-def _wall_screen_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+def _wall_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size._replace(depth=1), look)
-    plan.put("screen", plan.depth, plan.width, plan.height)
+    _lay_screen(plan, 0, size.exact[0])
     return plan.blocks
 
 
-WALL_SCREEN = Family(build=_wall_screen, design=_wall_screen_blocks, roles=("screen",))
+def _lay_screen(plan: Plan, bottom: int, deep: float) -> None:
+    above = range(bottom, max(plan.size.height, bottom + 1))
+    if deep > THICK or not plan.look.has("screen", "pane", "trapdoor"):
+        plan.put("screen", 0, plan.width, above)
+    elif plan.size.width > 1:
+        plan.put("screen", 0, plan.width, above, "pane")
+    else:
+        plan.panel("screen", 0, 0, above, "back")
+
+
+WALL_SCREEN = Family(build=_wall_screen, design=_wall_blocks, roles=("screen",))
 
 
 def _standing_screen(depth: float, width: float, height: float, look: Look) -> list[Part]:
@@ -31,9 +48,37 @@ def _standing_screen(depth: float, width: float, height: float, look: Look) -> l
     ]
 
 
+def _standing_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    plan = Plan(size._replace(depth=1), look)
+    raised = 1 if size.height > 2 else 0
+    _lay_screen(plan, raised, 0.2)
+    if raised:
+        middle = sorted({(size.width - 1) // 2, size.width // 2})
+        lay_legs(plan, "post", [(0, j) for j in middle], 1)
+    return plan.blocks
+
+
 STANDING_SCREEN = Family(
     build=_standing_screen,
-    design=_wall_screen_blocks,
+    design=_standing_blocks,
     roles=("foot", "post", "screen"),
     parameters={"foot_height": Span(0.04, 0.12, 0.2)},
 )
+
+
+def _box_screen(depth: float, width: float, height: float, look: Look) -> list[Part]:
+    x, y, front = depth / 2, width / 2, min(0.1, depth / 3)
+    return [
+        part("body", (-x, x - front), (-0.8 * y, 0.8 * y), (0.0, 0.9 * height)),
+        part("screen", (x - front, x), (-y, y), (0.0, height)),
+    ]
+
+
+def _box_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    plan = Plan(size, look)
+    plan.put("body", plan.depth, plan.width, plan.height)
+    plan.put("screen", size.depth - 1, plan.width, plan.height)
+    return plan.blocks
+
+
+BOX_SCREEN = Family(build=_box_screen, design=_box_blocks, roles=("body", "screen"))
