@@ -1,8 +1,8 @@
-"""Vanilla designs of furniture, for scales at which parts would crumble, in the real colours.
+"""Vanilla designs of furniture in their places and in the real colours.
 
-A design names blocks of one wood and one dye; the room's own colours choose which. A full block
-whose colour is far from the object's becomes a plain block of the right colour: so red cupboards
-come out red, and a wooden bookcase keeps its books.
+The materials of a design say which roles take the object's colour (``tinting``). A template of
+another package that says nothing of materials is recoloured by the names of its blocks: the room
+chooses the wood and the dye, and a full block whose colour is far off becomes a plain one.
 """
 
 from typing import NamedTuple
@@ -12,6 +12,8 @@ import numpy as np
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.lattice import Lattice
 from world2minecraft.build.palettes import Palette
+from world2minecraft.build.parameters import BuildParameters
+from world2minecraft.build.tinting import Hue, tinted
 from world2minecraft.coordinates import cells_to_block_axes
 from world2minecraft.furniture import Idiom
 from world2minecraft.geometry.colour import oklab_of_srgb
@@ -68,9 +70,10 @@ def put_idiom(
     design: Idiom,
     low: np.ndarray,
     thing: Thing,
-    colours: tuple[np.ndarray, np.ndarray],
+    hue: Hue,
     palette: Palette,
     within: np.ndarray,
+    parameters: BuildParameters | None = None,
 ) -> None:
     """Set a design, as far as nothing stands there, in the object's colours.
 
@@ -79,25 +82,43 @@ def put_idiom(
         design: blocks with offsets in block axes.
         low: int [3], its first block on the canvas, in room axes.
         thing: the object's class and instance.
-        colours: float32 [X, Y, Z, 3], Oklab, of its box of blocks; bool [X, Y, Z], where known.
+        hue: the object's colours in its box of blocks.
         palette: the blocks that may replace the design's own full ones.
         within: bool [X, Y, Z], where things may stand.
+        parameters: how colours are weighed.
     """
-    tinted, known = colours
-    median = np.median(tinted[known], axis=0) if known.any() else None
+    shape = canvas.states.shape
     offsets = np.array([block.offset for block in design.blocks]).reshape(-1, 3)
     # Offsets are in block axes already: their inverse map is the map itself.
     local = cells_to_block_axes(offsets[:, [0, 2, 1]], design.size[2])[:, [0, 2, 1]]
-    shape = canvas.states.shape
-    for cell, block in zip(local.tolist(), design.blocks, strict=True):
+    states = _states(design, local, thing, hue, palette, parameters or BuildParameters())
+    for cell, state in zip(local.tolist(), states, strict=True):
         at = tuple((low + cell).tolist())
         if any(i >= side for i, side in zip(at, shape, strict=True)) or canvas.states[at]:
             continue
-        if not within[at]:
-            continue
-        colour = tinted[tuple(cell)] if known[tuple(cell)] else median
-        state = block.state if colour is None else _in_colour(block.state, colour, thing, palette)
-        canvas.put(at, canvas.id_of(state), thing.class_id, thing.instance)
+        if within[at]:
+            canvas.put(at, canvas.id_of(state), thing.class_id, thing.instance)
+
+
+def _states(
+    design: Idiom,
+    cells: np.ndarray,
+    thing: Thing,
+    hue: Hue,
+    palette: Palette,
+    parameters: BuildParameters,
+) -> list[str]:
+    if design.materials:
+        blocks, materials = design.blocks, design.materials
+        return tinted(blocks, cells, materials, hue, thing.class_id, palette, parameters)
+    median = np.median(hue.colours[hue.known], axis=0) if hue.known.any() else hue.paint
+    states = []
+    for cell, block in zip(cells.tolist(), design.blocks, strict=True):
+        colour = hue.colours[tuple(cell)] if hue.known[tuple(cell)] else median
+        states.append(
+            block.state if colour is None else _in_colour(block.state, colour, thing, palette)
+        )
+    return states
 
 
 def _in_colour(state: str, colour: np.ndarray, thing: Thing, palette: Palette) -> str:

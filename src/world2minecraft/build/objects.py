@@ -7,22 +7,33 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
-from world2minecraft.build.cells import shape_of_cells, without_crumbs
+from world2minecraft.build.cells import shape_of_cells
+from world2minecraft.build.fitted import (
+    Design,
+    design_of_cells,
+    design_of_parts,
+    inner_cells,
+    of_halves,
+    one_block,
+)
 from world2minecraft.build.fitting import best_place, best_step
-from world2minecraft.build.halves import FULL, slab_states
+from world2minecraft.build.halves import FULL
 from world2minecraft.build.hues import default_colour, spread
 from world2minecraft.build.idioms import Thing, idiom_box, put_idiom
 from world2minecraft.build.lattice import volume_shares
+from world2minecraft.build.materials import WEIGHTS, materials_of
 from world2minecraft.build.morphology import beside
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
-from world2minecraft.build.parts import Design, design_of
+from world2minecraft.build.parts import design_of
 from world2minecraft.build.places import LAST, in_order, within_storeys
 from world2minecraft.build.seats import chair_paints
 from world2minecraft.build.surfaces import block_colours, painted
+from world2minecraft.build.tinting import Hue
 from world2minecraft.build.tops import top_cells
 from world2minecraft.build.worktops import Worktop, find_worktop, joined
 from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
+from world2minecraft.fit import without_loose
 from world2minecraft.furniture import idiom, template
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.metrics.solids import own_cells
@@ -32,6 +43,9 @@ from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
 CELLS = "cells"
 PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glare are not.
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
+MOST_GIVEN_UP = 0.06  # Oklab distance that a colour may lose for the sake of a shape.
+BULKY = {"slab", "stairs"}  # Without them a fit is of cubes, and those are better laid by parts.
+MOST_COLOURS = 400  # Of an object, looked at to see which shapes exist in them.
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 
 
@@ -56,6 +70,7 @@ class ObjectBuilder:
         self.colours, self.coloured = colours, coloured
         self.parameters = parameters
         self.lattice = canvas.lattice
+        self.materials = materials_of(palette)
         self.worktops: dict[int, Worktop] = {}
         self.paints = chair_paints(
             grid, colours, coloured & self.exposed, parameters.lightness_weight
@@ -89,8 +104,7 @@ class ObjectBuilder:
         place = best_place(blocks, counts, free)
         if place is not None:
             hues = Hues(cells, np.broadcast_to(place, cells.shape))
-            halves = np.full((1, 1, 1), FULL, np.uint8)
-            self._put_halves(place, halves, hues, Thing(class_id, number))
+            self._put_shapes(one_block(place), hues, Thing(class_id, number))
 
     def put_worktops(self) -> None:
         """Set the glossy worktops; what else their objects are made of comes under and on them."""
@@ -146,21 +160,29 @@ class ObjectBuilder:
         if not len(cells):
             return
         cells, hues = self._with_tops(cells)
-        share = self.parameters.object_share
-        shape = shape_of_cells(cells, self.grid, self.lattice, share, shift=number > 0)
-        window = self._window(shape.low, shape.halves.shape)
-        halves = shape.halves[window.box]
-        if _is_flush(halves > 0, window):
-            halves = np.where((halves > 0) & window.wall, FULL, halves * window.free)
+        thing = Thing(class_id, number)
+        kinds = self._kinds(hues, thing)
+        if kinds & BULKY:
+            inner = inner_cells(cells, self.grid, class_id)
+            design, blocks = design_of_cells(
+                cells, inner, self.grid, self.lattice, kinds, shift=number > 0
+            )
+        else:
+            share = self.parameters.object_share
+            shape = shape_of_cells(cells, self.grid, self.lattice, share, shift=number > 0)
+            design, blocks = of_halves(shape.low, shape.halves), shape.blocks
+        window = self._window(design.low, design.numbers.shape)
+        filled = design.filled[window.box]
+        if _is_flush(filled, window):
+            numbers = np.where(filled & window.wall, 1, design.numbers[window.box] * window.free)
         else:
             if number and class_id in LAST:  # Crumbs of furniture stay where they are.
-                step = self._step(shape.halves > 0, shape.low)
-                shape = shape._replace(low=shape.low + step, blocks=shape.blocks + step)
-                window = self._window(shape.low, shape.halves.shape)
-                halves = shape.halves[window.box]
-            halves = without_crumbs(halves * window.free, window.held)
-        thing = Thing(class_id, number)
-        self._put_halves(window.low, halves, Hues(hues, shape.blocks), thing)
+                step = self._step(design.filled, design.low)
+                design, blocks = design.moved(step), blocks + step
+                window = self._window(design.low, design.numbers.shape)
+            numbers = design.numbers[window.box] * window.free
+            numbers = without_loose(numbers, design.shapes, window.held)
+        self._put_shapes(design.cut(window.low, window.box, numbers), Hues(hues, blocks), thing)
 
     def put_template(self, placement: Placement, cells: np.ndarray, *, forced: bool) -> bool:
         """Set a template by its vanilla design at small scales, else by its parts.
@@ -174,26 +196,47 @@ class ObjectBuilder:
         if found is not None:
             low, size = idiom_box(found, placement, self.lattice)
             hues = self._stretched(cells, placement, low, size.tolist())
-            colours = block_colours(tuple(size.tolist()), hues.blocks - low, *self._coloured(hues))
-            put_idiom(self.canvas, found, low, thing, colours, self.palette, self.within)
+            seen = block_colours(tuple(size.tolist()), hues.blocks - low, *self._coloured(hues))
+            hue = Hue(*seen, self.paints.get(thing.instance))
+            put_idiom(
+                self.canvas, found, low, thing, hue, self.palette, self.within, self.parameters
+            )
             return True
         parts = template(placement.template).parts(placement.size_m, placement.parameters)
-        design = design_of(placement, parts, self.lattice)
-        window = self._window(design.low, design.halves.shape)
+        kinds = self._kinds(cells, thing)
+        if kinds & BULKY:
+            design = design_of_parts(placement, parts, self.lattice, kinds)
+        else:
+            coarse = design_of(placement, parts, self.lattice)
+            design = of_halves(coarse.low, coarse.halves, coarse.part)
+        window = self._window(design.low, design.numbers.shape)
         limit = self.parameters.most_contradicted
         if placement.class_id == SemanticClass.CHAIR:
             limit = self.parameters.chair_contradicted
         if not forced and self._contradicted(design, window) > limit:
             return False
-        design = design._replace(low=design.low + self._step(design.halves > 0, design.low))
+        design = design.moved(self._step(design.filled, design.low))
         self._plate_over(design, thing.instance)
-        window = self._window(design.low, design.halves.shape)
-        hues = self._stretched(cells, placement, design.low, design.halves.shape)
-        halves = design.halves[window.box] * window.free
-        self._put_halves(
-            window.low, halves, hues, thing, design.part[window.box], design.posts[window.box]
-        )
+        window = self._window(design.low, design.numbers.shape)
+        hues = self._stretched(cells, placement, design.low, design.numbers.shape)
+        numbers = design.numbers[window.box] * window.free
+        self._put_shapes(design.cut(window.low, window.box, numbers), hues, thing)
         return True
+
+    def _kinds(self, cells: np.ndarray, thing: Thing) -> frozenset[str]:
+        """Return the kinds of shape that exist in the colours of an object with cells [N, 3]."""
+        paint = self.paints.get(thing.instance)
+        if paint is not None:
+            colours = np.reshape(paint, (-1, 3))
+        else:
+            colours, usable = self._coloured(Hues(cells, cells))
+            colours = colours[usable]
+        few = colours[:: 1 + len(colours) // MOST_COLOURS]
+        full = self.palette.blocks[thing.class_id]
+        preferred = self.palette.preferred[thing.class_id] or full
+        handicaps = np.array([self.parameters.preference * (one not in preferred) for one in full])
+        weight = self.parameters.lightness_weight
+        return self.materials.kinds_for(few, full, handicaps, thing.class_id, weight)
 
     def _plate_over(self, design: Design, number: int) -> None:
         """Let an object's worktop cover one of its designs that reaches up to it."""
@@ -201,9 +244,9 @@ class ObjectBuilder:
         if top is None:
             return
         level = top.layer - int(design.low[2])
-        if level == design.halves.shape[2] - 1:
+        if level == design.numbers.shape[2] - 1:
             columns = np.zeros(self.lattice.shape[:2], bool)
-            for x, y in np.argwhere(design.halves[:, :, level] > 0) + design.low[:2]:
+            for x, y in np.argwhere(design.filled[:, :, level]) + design.low[:2]:
                 columns[x, y] = True
             self._put_plate(top, columns, number)
 
@@ -215,7 +258,7 @@ class ObjectBuilder:
 
     def _contradicted(self, design: Design, window: "Window") -> float:
         """Return the share of a design's blocks that were seen free and nearly nothing else."""
-        filled = np.argwhere(design.halves[window.box] > 0) + window.low
+        filled = np.argwhere(design.filled[window.box]) + window.low
         return float((self.open_share[tuple(filled.T)] > OPEN).mean()) if len(filled) else 0.0
 
     def _with_tops(self, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -271,52 +314,63 @@ class ObjectBuilder:
         usable = self.coloured[at] & self.exposed[at]
         return self.colours[at], usable if usable.any() else self.coloured[at]
 
-    def _put_halves(
-        self,
-        low: np.ndarray,
-        halves: np.ndarray,
-        hues: "Hues",
-        thing: "Thing",
-        part: np.ndarray | None = None,
-        posts: np.ndarray | None = None,
-    ) -> None:
-        """Paint half blocks [X, Y, Z] at ``low`` and set them.
+    def _put_shapes(self, design: Design, hues: "Hues", thing: "Thing") -> None:
+        """Paint a design and set it.
 
         A block without a colour of its own takes that of its part: a seat's that of the seat.
         """
-        filled = halves > 0
+        filled, low = design.filled, design.low
         if not filled.any():
             return
-        tinted, known = block_colours(halves.shape, hues.blocks - low, *self._coloured(hues))
-        states = np.empty(halves.shape, object)
-        groups = filled.astype(np.int16) if part is None else np.where(filled, part, 0)
+        tinted, known = block_colours(filled.shape, hues.blocks - low, *self._coloured(hues))
         default = default_colour(self.palette.defaults[thing.class_id])
         colours = tinted.copy()
-        for group in np.unique(groups[filled]):
-            mask = groups == group
+        for group in np.unique(design.part[filled]):
+            mask = filled & (design.part == group)
             usable = known & (mask if (known & mask).any() else filled)
             colours[mask] = spread(tinted, usable, mask, default)
         paint = self.paints.get(thing.instance)
         if paint is not None:
             colours[filled], known = paint, filled
-        states[filled] = painted(
-            filled,
-            colours,
-            filled & known.any(),
-            thing.class_id,
-            self.palette,
-            self.parameters,
-            PAINTS.get(thing.class_id, self.parameters.object_colours),
-        )
-        margin = self.parameters.slab_margin
-        states[filled] = slab_states(states[filled], halves[filled], self.palette.slabs, margin)
-        if posts is not None:
-            for block, fence in self.palette.fences.items():
-                states[filled & posts & (states == block)] = fence
+        states = self._states(design, colours, filled & known.any(), thing.class_id)
         at = tuple(np.argwhere(filled).T[axis] + low[axis] for axis in range(3))
-        names, index = np.unique(states[filled].astype(str), return_inverse=True)
+        names, index = np.unique(states.astype(str), return_inverse=True)
         ids = self.canvas.ids_of(names.tolist())[index]
         self.canvas.put(at, ids, thing.class_id, thing.instance)
+
+    def _states(
+        self, design: Design, colours: np.ndarray, known: np.ndarray, class_id: int
+    ) -> np.ndarray:
+        """Return the states, object [N], of a design's N blocks: its shapes in its colours.
+
+        Each kind of shape is painted with what exists in it. Where that would miss the colour, it
+        is a full block of the right one.
+        """
+        most = PAINTS.get(class_id, self.parameters.object_colours)
+        choice = (class_id, self.palette, self.parameters, most)
+        full = self.palette.blocks[class_id]
+        plain = np.empty(design.numbers.shape, object)
+        plain[design.filled] = painted(design.filled, colours, known, *choice)
+        kinds = design.shapes.kinds[design.numbers]
+        used = sorted(set(kinds[design.filled].tolist()) - {"full"})
+        own, shaped = plain.copy(), design.filled & (kinds != "full")
+        able = self.materials.in_all(used, full)
+        if able and shaped.any():
+            own[shaped] = painted(shaped, colours, known & shaped, *choice, only=able)
+        result = plain.copy()
+        for at in zip(*np.nonzero(shaped), strict=True):
+            shape = design.shapes.shapes[int(design.numbers[at]) - 1]
+            near = self._is_near(own[at], plain[at], colours[at])
+            state = self.materials.dressed(shape, own[at] if near else plain[at])
+            result[at] = state or plain[at]
+        return result[design.filled]
+
+    def _is_near(self, block: str, other: str, colour: np.ndarray) -> bool:
+        """Whether a block shows a colour nearly as well as another does."""
+        offered = oklab_of_srgb(colours_of([block, other]))
+        light = np.sqrt(self.parameters.lightness_weight)
+        apart = np.linalg.norm((offered - colour) * [light, *WEIGHTS[1:]], axis=1)
+        return bool(apart[0] - apart[1] <= MOST_GIVEN_UP)
 
 
 class Window(NamedTuple):

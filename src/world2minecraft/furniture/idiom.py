@@ -4,12 +4,14 @@ At few blocks per metre a leg, a seat and a back are thinner than any block; fro
 themselves are fitted block by block, and no design by hand is needed.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from world2minecraft.furniture.library import template
+from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Parameters, Template
 from world2minecraft.types import Placement
 
@@ -30,6 +32,7 @@ class Idiom:
 
     blocks: tuple[IdiomBlock, ...]
     size: tuple[int, int, int]  # blocks along x, y, z in block axes
+    materials: Mapping[str, Material] = field(default_factory=dict)  # of the roles
 
 
 def idiom(placement: Placement, blocks_per_metre: float) -> Idiom | None:
@@ -59,7 +62,9 @@ def laid(
         ParameterError: the template refuses a parameter.
     """
     local = template.blocks(size, parameters)
-    return _turned(local, quarter_turns) if local else None
+    if not local:
+        return None
+    return replace(_turned(local, quarter_turns), materials=template.materials)
 
 
 def block_size(size_m: np.ndarray, blocks_per_metre: float) -> BlockSize:
