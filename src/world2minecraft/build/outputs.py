@@ -5,6 +5,7 @@ from pathlib import Path
 from world2minecraft.build.spawn import find_spawn
 from world2minecraft.exchange.scene import scene_of, write_scene
 from world2minecraft.minecraft.datapack import write_datapack
+from world2minecraft.minecraft.displays import check_displays
 from world2minecraft.minecraft.schem import write_schem
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
 from world2minecraft.minecraft.world import write_world
@@ -28,9 +29,11 @@ def write_build(
 
     Raises:
         UnknownNameError: the version is not known. OutputError: the folder cannot be written.
+        UsageError: the game is older than what the build is made of.
     """
     target = Path(folder)
     version = game_version(mc_version)
+    check_displays(volume, version)
     spawn = find_spawn(volume)
     write_world(
         volume,

@@ -16,9 +16,11 @@ from world2minecraft.minecraft.commands import (
     clear_commands,
     data_commands,
     entity_commands,
+    entity_tag,
 )
+from world2minecraft.minecraft.displays import check_displays
 from world2minecraft.minecraft.sizes import function_files, pack_mcmeta, pack_zip, size_functions
-from world2minecraft.minecraft.versions import GameVersion, game_version
+from world2minecraft.minecraft.versions import GameVersion, game_version, game_versions
 from world2minecraft.types import BlockVolume
 
 MAX_COMMANDS = 60_000  # Below maxCommandChainLength, 65,536, which counts a whole chain.
@@ -45,7 +47,8 @@ def write_datapack(
         name: the namespace of the functions.
 
     Raises:
-        UsageError: the name is no namespace. OutputError: the file cannot be written.
+        UsageError: the name is no namespace, or the game is older than what the volume holds.
+        OutputError: the file cannot be written.
     """
     write_bytes(path, pack_zip(datapack_files(volume, version or game_version(), name)))
 
@@ -54,11 +57,17 @@ def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict
     """Return the pack's files by path. Raises what ``write_datapack`` raises."""
     if not _NAMESPACE.fullmatch(name) or name == "minecraft":
         raise UsageError(f"data pack name {name!r} must be lower case letters, digits, _ . or -")
+    check_displays(volume, version)
+    if version not in game_versions():
+        first = game_versions()[0].name
+        raise UsageError(f"data packs are written for {first} and later, not {version.name}")
     files = {"pack.mcmeta": pack_mcmeta(f"Builds {name}", version)}
     files |= size_functions(volume.blocks_per_metre)
     commands = [
         *block_commands(volume, version),
         *data_commands(volume),
+        # Those of an earlier run go first, so that none ever stands there twice.
+        *([f"kill @e[tag={entity_tag(volume)}]"] if volume.entities else []),
         *entity_commands(volume),
     ]
     files |= job_files(volume, name, "build", commands, "built")

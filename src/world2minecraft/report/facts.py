@@ -37,6 +37,7 @@ def scene_facts(scene: FinishedScene) -> dict[str, Any]:
             (np.isin(scene.grid.labels, OBJECT_CLASSES) & (scene.grid.instance == 0)).sum()
         ),
         "blocks": int((scene.volume.semantic > 0).sum()),
+        "entities": len(scene.volume.entities),
         "blocks_per_metre": scene.volume.blocks_per_metre,
     }
 
