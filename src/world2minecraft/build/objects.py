@@ -1,21 +1,21 @@
 """Objects as blocks: templates by their parts or idioms, all else from its own cells."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
-from world2minecraft.build.cells import shape_of_cells
-from world2minecraft.build.fitted import (
-    Design,
+from world2minecraft.build.celled import (
+    Solid,
     design_of_cells,
-    design_of_parts,
     inner_cells,
-    of_halves,
-    one_block,
+    shared_solids,
+    solid_of,
 )
+from world2minecraft.build.cells import shape_of_cells
+from world2minecraft.build.fitted import Design, design_of_parts, of_halves, one_block
 from world2minecraft.build.fitting import best_place, best_step
 from world2minecraft.build.halves import FULL
 from world2minecraft.build.hues import default_colour, spread
@@ -45,6 +45,7 @@ PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glar
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
 MOST_GIVEN_UP = 0.06  # Oklab distance that a colour may lose for the sake of a shape.
 BULKY = {"slab", "stairs"}  # Without them a fit is of cubes, and those are better laid by parts.
+LEAST_IOU, LEAST_THIN = 0.3, 0.5  # Below these a fit is worse than the library's design.
 MOST_COLOURS = 400  # Of an object, looked at to see which shapes exist in them.
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 
@@ -71,6 +72,7 @@ class ObjectBuilder:
         self.parameters = parameters
         self.lattice = canvas.lattice
         self.materials = materials_of(palette)
+        self.solids: dict[int, Solid] = {}
         self.worktops: dict[int, Worktop] = {}
         self.paints = chair_paints(
             grid, colours, coloured & self.exposed, parameters.lightness_weight
@@ -79,11 +81,16 @@ class ObjectBuilder:
     def put_all(self, placements: Sequence[Placement]) -> None:
         """Set every placement, then the object cells that no block near them shows."""
         self.put_worktops()
+        voxels = self.parameters.style == "voxels"
+        held = {id(one): self._cells_of(one) for one in placements}
+        own = [one for one in placements if one.template == CELLS or voxels]
+        self.solids = self._solids_of(own, held)
         for placement in sorted(placements, key=in_order):
-            cells = self._cells_of(placement)
-            if placement.template == CELLS or not (
-                self.put_template(placement, cells, forced=not len(cells))
-            ):
+            cells = held[id(placement)]
+            known = placement.template != CELLS
+            if voxels and known and len(cells) and self.put_well(placement, cells):
+                continue
+            if not known or not self.put_template(placement, cells, forced=not len(cells)):
                 self.put_cells(cells, placement.class_id, placement.object_id)
         rest = np.isin(self.grid.labels, OBJECT_CLASSES)
         rest &= ~self._shown()
@@ -155,34 +162,73 @@ class ObjectBuilder:
         reach = 2 * self.grid.voxel_m
         return own_cells(replace(placement, size_m=placement.size_m + reach), self.grid)
 
+    def _solids_of(
+        self, placements: Sequence[Placement], held: Mapping[int, np.ndarray]
+    ) -> dict[int, Solid]:
+        """Return what the objects of placements are fitted to, copies alike, by their number."""
+        solids: dict[int, Solid] = {}
+        for one in placements:
+            cells = held[id(one)]
+            if len(cells) and one.object_id and one.object_id not in solids:
+                whole, _ = self._with_tops(cells)
+                inner = inner_cells(whole, self.grid, one.class_id)
+                solids[one.object_id] = solid_of(whole, inner, one.quarter_turns)
+        return shared_solids(solids, {one.object_id: one.class_id for one in placements})
+
+    def put_well(self, placement: Placement, cells: np.ndarray) -> bool:
+        """Set an object of a template from its own cells; False, and nothing, where they fit badly.
+
+        The guard of reference/fit.md: an object that loses over half of its thin parts, or is
+        missed by more than the least IoU, goes to the library instead.
+        """
+        thing = Thing(placement.class_id, placement.object_id)
+        cells, hues = self._with_tops(cells)
+        kinds = self._kinds(hues, thing)
+        if not kinds & BULKY:
+            return False
+        solid = self.solids.get(placement.object_id) or self._solid(cells, placement.class_id)
+        made = design_of_cells(cells, solid, self.grid, self.lattice, kinds, shift=True)
+        if made.fit.iou < LEAST_IOU or made.fit.thin_recall < LEAST_THIN:
+            return False
+        self._put_design(made.design, Hues(hues, made.blocks), thing)
+        return True
+
+    def _solid(self, cells: np.ndarray, class_id: int) -> Solid:
+        return solid_of(cells, inner_cells(cells, self.grid, class_id), 0)
+
     def put_cells(self, cells: np.ndarray, class_id: int, number: int) -> None:
-        """Set an object from its own cells; one that hangs flush on a wall takes wall blocks."""
+        """Set an object from its own cells."""
         if not len(cells):
             return
         cells, hues = self._with_tops(cells)
         thing = Thing(class_id, number)
         kinds = self._kinds(hues, thing)
         if kinds & BULKY:
-            inner = inner_cells(cells, self.grid, class_id)
-            design, blocks = design_of_cells(
-                cells, inner, self.grid, self.lattice, kinds, shift=number > 0
-            )
+            solid = self.solids.pop(number, None) or self._solid(cells, class_id)
+            made = design_of_cells(cells, solid, self.grid, self.lattice, kinds, number > 0)
+            design, blocks = made.design, made.blocks
         else:
             share = self.parameters.object_share
             shape = shape_of_cells(cells, self.grid, self.lattice, share, shift=number > 0)
             design, blocks = of_halves(shape.low, shape.halves), shape.blocks
+        self._put_design(design, Hues(hues, blocks), thing)
+
+    def _put_design(self, design: Design, hues: "Hues", thing: Thing) -> None:
+        """Set a design of own cells; one that hangs flush on a wall takes wall blocks."""
         window = self._window(design.low, design.numbers.shape)
         filled = design.filled[window.box]
         if _is_flush(filled, window):
             numbers = np.where(filled & window.wall, 1, design.numbers[window.box] * window.free)
         else:
-            if number and class_id in LAST:  # Crumbs of furniture stay where they are.
+            if (
+                thing.instance and thing.class_id in LAST
+            ):  # Crumbs of furniture stay where they are.
                 step = self._step(design.filled, design.low)
-                design, blocks = design.moved(step), blocks + step
+                design, hues = design.moved(step), hues._replace(blocks=hues.blocks + step)
                 window = self._window(design.low, design.numbers.shape)
             numbers = design.numbers[window.box] * window.free
             numbers = without_loose(numbers, design.shapes, window.held)
-        self._put_shapes(design.cut(window.low, window.box, numbers), Hues(hues, blocks), thing)
+        self._put_shapes(design.cut(window.low, window.box, numbers), hues, thing)
 
     def put_template(self, placement: Placement, cells: np.ndarray, *, forced: bool) -> bool:
         """Set a template by its vanilla design at small scales, else by its parts.
@@ -349,14 +395,17 @@ class ObjectBuilder:
         most = PAINTS.get(class_id, self.parameters.object_colours)
         choice = (class_id, self.palette, self.parameters, most)
         full = self.palette.blocks[class_id]
-        plain = np.empty(design.numbers.shape, object)
-        plain[design.filled] = painted(design.filled, colours, known, *choice)
         kinds = design.shapes.kinds[design.numbers]
         used = sorted(set(kinds[design.filled].tolist()) - {"full"})
-        own, shaped = plain.copy(), design.filled & (kinds != "full")
-        able = self.materials.in_all(used, full)
+        shaped = design.filled & (kinds != "full")
+        plain = np.empty(design.numbers.shape, object)
+        own, able = plain.copy(), self.materials.in_all(used, full)
         if able and shaped.any():
             own[shaped] = painted(shaped, colours, known & shaped, *choice, only=able)
+        alike = frozenset(own[shaped].tolist()) if able else frozenset()
+        plain[design.filled] = painted(design.filled, colours, known, *choice, used=alike)
+        if not able:
+            own = plain
         result = plain.copy()
         for at in zip(*np.nonzero(shaped), strict=True):
             shape = design.shapes.shapes[int(design.numbers[at]) - 1]

@@ -47,6 +47,7 @@ def painted(
     *,
     beside: frozenset[str] = frozenset(),
     used: frozenset[str] = frozenset(),
+    only: tuple[str, ...] = (),
 ) -> np.ndarray:
     """Return the block states, object [N], for the N blocks of a mask, all of one surface.
 
@@ -60,11 +61,12 @@ def painted(
         most: at most so many different blocks.
         beside: blocks that the surface is to stand out from: none that looks like them is used.
         used: blocks that the room already has; they win where they are about as near.
+        only: the blocks of the class that may be used; none stands for all.
     """
     default = palette.defaults[class_id]
     if not (known & mask).any():
         return np.full(int(mask.sum()), default, object)
-    choices = _unlike(palette.blocks[class_id], beside)
+    choices = _unlike(only or palette.blocks[class_id], beside)
     preferred = palette.preferred[class_id] or choices
     handicaps = np.array([parameters.preference * (block not in preferred) for block in choices])
     if used:

@@ -22,15 +22,17 @@ class Gains(NamedTuple):
     ``met`` float32 [N, S]: the weighted share of the wanted that the shape fills.
     ``spilt`` float32 [N, S]: what it fills beside.
     ``whole``: all that is wanted, weighted.
+    ``prices`` float32 [S]: what a shape costs, in sub-cells.
     """
 
     met: np.ndarray
     spilt: np.ndarray
     whole: float
+    prices: np.ndarray
 
-    def scores(self, lam: float, prices: np.ndarray) -> np.ndarray:
+    def scores(self, lam: float) -> np.ndarray:
         """Return what each shape gains over leaving the block empty, float32 [N, S]."""
-        return self.met - np.float32(lam) * (self.spilt + prices)
+        return self.met - np.float32(lam) * (self.spilt + self.prices)
 
     def iou(self, chosen: np.ndarray) -> float:
         """Return the IoU, weighted as the gains are, of a shape for each block, int [N]."""
@@ -39,19 +41,22 @@ class Gains(NamedTuple):
         return shared / max(self.whole + float(self.spilt[rows, chosen].sum()), 1e-9)
 
 
-def gains_of(wanted: np.ndarray, weighted: np.ndarray, shapes: ShapeSet) -> Gains:
+def gains_of(
+    wanted: np.ndarray, weighted: np.ndarray, shapes: ShapeSet, calm: float = 1.0
+) -> Gains:
     """Return the gains of shapes.
 
     Args:
         wanted: float32 [N, 512], the filled share of each sub-cell of N blocks.
         weighted: float32 [N, 512], the same with what is thin counted more than once.
         shapes: what may be chosen.
+        calm: the factor on the prices of shapes.
     """
     masks = shapes.masks
     with np.errstate(invalid="ignore"):
         met = weighted @ masks.T
         spilt = shapes.volumes - wanted @ masks.T
-    return Gains(met, spilt, float(weighted.sum(dtype=np.float64)))
+    return Gains(met, spilt, float(weighted.sum(dtype=np.float64)), calm * shapes.prices)
 
 
 def choose(
@@ -65,12 +70,14 @@ def choose(
         lam: the IoU that the whole reaches; None finds it.
         barred: bool [N, S], what may not stand where; None bars nothing.
     """
-    free, prices = shapes.free, shapes.prices[: shapes.free]
-    short = Gains(gains.met[:, :free], gains.spilt[:, :free], gains.whole)
-    shut = None if barred is None else np.where(barred[:, :free], np.float32(-np.inf), np.float32(0))
+    free = shapes.free
+    short = Gains(gains.met[:, :free], gains.spilt[:, :free], gains.whole, gains.prices[:free])
+    shut = (
+        None if barred is None else np.where(barred[:, :free], np.float32(-np.inf), np.float32(0))
+    )
 
     def best(value: float) -> np.ndarray:
-        scores = short.scores(value, prices)
+        scores = short.scores(value)
         return (scores if shut is None else scores + shut).argmax(1)
 
     if lam is not None:

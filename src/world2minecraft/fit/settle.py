@@ -65,7 +65,7 @@ def settled(
     shut = np.zeros((len(cells), len(shapes)), bool) if barred is None else barred.copy()
     guarded = np.isin(shapes.kinds, ("carpet", "post"))
     chosen, lam = choose(gains, shapes, lam, shut | guarded)
-    scores = gains.scores(lam, shapes.prices)
+    scores = gains.scores(lam)
     rows, is_stairs = np.arange(len(cells)), shapes.stairs >= 0
     grid = np.zeros(shape, np.intp)
     at = tuple(cells.T)

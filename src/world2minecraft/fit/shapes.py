@@ -111,7 +111,7 @@ class ShapeSet:
 
     @cached_property
     def faces(self) -> np.ndarray:
-        """bool [S, 3, 2, 8, 8]: which parts of its block's faces a shape touches."""
+        """Bool [S, 3, 2, 8, 8]: which parts of its block's faces a shape touches."""
         none = np.zeros((3, 2, 8, 8), bool)
         return np.stack([none, *(faces_of(one.sample) for one in self.shapes)])
 
@@ -122,18 +122,18 @@ class ShapeSet:
 
     @cached_property
     def kinds(self) -> np.ndarray:
-        """str [S]: the kind of each, ``empty`` for number 0."""
+        """Str [S]: the kind of each, ``empty`` for number 0."""
         return np.array(["empty", *(one.kind for one in self.shapes)])
 
     @cached_property
     def turns(self) -> np.ndarray:
-        """intp [4, S]: the number of each shape after so many quarter turns."""
+        """Intp [4, S]: the number of each shape after so many quarter turns."""
         rows = [[0, *(self.number_of(turned(one, k)) for one in self.shapes)] for k in range(4)]
         return np.array(rows, np.intp)
 
     @cached_property
     def mirrors(self) -> np.ndarray:
-        """intp [2, S]: the number of each shape mirrored along x, and along y."""
+        """Intp [2, S]: the number of each shape mirrored along x, and along y."""
         rows = [
             [0, *(self.number_of(mirrored(one, axis)) for one in self.shapes)]
             for axis in ("x", "y")
@@ -152,7 +152,7 @@ class ShapeSet:
 
     @cached_property
     def corners(self) -> np.ndarray:
-        """intp [8, 5]: the number of stairs of each facing and half that are straight or corners.
+        """Intp [8, 5]: the number of stairs of each facing and half that are straight or corners.
 
         Columns: straight, inner_left, inner_right, outer_left, outer_right.
         """

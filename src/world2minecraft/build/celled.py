@@ -1,0 +1,176 @@
+"""Objects from their own cells: filled where they are closed, fitted, and equal where equal."""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.build.fitted import TIE, Design, standing, turned_middle
+from world2minecraft.build.lattice import Lattice
+from world2minecraft.classes import SemanticClass
+from world2minecraft.coordinates import turn_grid
+from world2minecraft.fit import Fit, Target, covered, fit_solid, solve
+from world2minecraft.fit.coverage import thin_cells
+from world2minecraft.fit.masks import SUB
+from world2minecraft.fit.objects import even_of
+from world2minecraft.fit.shapes import shape_set
+from world2minecraft.types import UNSEEN, OccupancyGrid
+
+# What is closed: nobody sees into it, so what lies unseen under its skin belongs to it.
+CLOSED = (SemanticClass.FURN, SemanticClass.SOFA, SemanticClass.BED)
+NOISY = 4.0  # The factor on prices for cells of a scan: stairs where noise is, look like rubble.
+SIZE_CELLS = 2  # Copies differ by at most so many cells along each axis,
+COPY_IOU = 0.5  # and meet in so much of what either fills.
+MAJORITY = 0.5  # A cell belongs to copies where so many of them have it.
+
+
+class Solid(NamedTuple):
+    """What an object is fitted to, in its own frame: cells turned back by its quarter turns."""
+
+    mask: np.ndarray  # bool [X, Y, Z]
+    turns: int
+
+
+class CellsDesign(NamedTuple):
+    """A design, the block of each cell, int [N, 3], and how well it shows them."""
+
+    design: Design
+    blocks: np.ndarray
+    fit: Fit
+
+
+def inner_cells(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> np.ndarray:
+    """Return the unseen cells, int [N, 3], within a closed object: under its skin and beside it.
+
+    Args:
+        cells: int [M, 3], the object's own.
+        grid: where they lie.
+        class_id: the object's.
+    """
+    if class_id not in CLOSED:
+        return np.zeros((0, 3), int)
+    low, high = cells.min(0), cells.max(0) + 1
+    box = tuple(map(slice, low, high))
+    mask = np.zeros(high - low, bool)
+    mask[tuple((cells - low).T)] = True
+    above = np.flip(np.logical_or.accumulate(np.flip(mask, 2), axis=2), 2)
+    before = [np.logical_or.accumulate(mask, axis=axis) for axis in (0, 1)]
+    behind = [np.flip(np.logical_or.accumulate(np.flip(mask, a), axis=a), a) for a in (0, 1)]
+    beside = before[0] | behind[0] | before[1] | behind[1]
+    unseen = (grid.source[box] == UNSEEN) & (grid.instance[box] == 0)
+    return np.argwhere(above & beside & unseen & ~mask) + low
+
+
+def solid_of(cells: np.ndarray, inner: np.ndarray, turns: int) -> Solid:
+    """Return cells, int [N, 3], and what they enclose, [M, 3], as a solid of its own frame."""
+    low = cells.min(0)
+    mask = np.zeros(cells.max(0) + 1 - low, bool)
+    mask[tuple((cells - low).T)] = True
+    mask[tuple((inner - low).T)] = True
+    return Solid(np.ascontiguousarray(turn_grid(mask, -turns)), turns % 4)
+
+
+def shared_solids(solids: Mapping[int, Solid], classes: Mapping[int, int]) -> dict[int, Solid]:
+    """Return the solids by number, those of copies replaced by what most of the copies have.
+
+    Two objects of one class are copies where their sizes differ by a cell or two and most of
+    what they fill is the same: four chairs come out as four equal chairs.
+    """
+    groups: list[list[int]] = []
+    for number in sorted(solids):
+        for group in groups:
+            if classes[group[0]] == classes[number] and _is_copy(
+                solids[group[0]].mask, solids[number].mask
+            ):
+                group.append(number)
+                break
+        else:
+            groups.append([number])
+    result = dict(solids)
+    for group in (one for one in groups if len(one) > 1):
+        mask = _majority([solids[number].mask for number in group])
+        result |= {number: Solid(mask, solids[number].turns) for number in group}
+    return result
+
+
+def _is_copy(one: np.ndarray, other: np.ndarray) -> bool:
+    if max(abs(a - b) for a, b in zip(one.shape, other.shape, strict=True)) > SIZE_CELLS:
+        return False
+    first, second = _centred([one, other])
+    shared, whole = np.count_nonzero(first & second), np.count_nonzero(first | second)
+    return shared >= COPY_IOU * whole
+
+
+def _centred(masks: Sequence[np.ndarray]) -> np.ndarray:
+    """Return masks in one frame, bool [N, X, Y, Z]: middles above each other, bottoms level."""
+    shape = np.max([mask.shape for mask in masks], axis=0)
+    result = np.zeros((len(masks), *shape), bool)
+    for index, mask in enumerate(masks):
+        low = (shape - mask.shape) // 2 * [1, 1, 0]
+        box = tuple(slice(a, a + n) for a, n in zip(low, mask.shape, strict=True))
+        result[(index, *box)] = mask
+    return result
+
+
+def _majority(masks: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the cells that most of some masks have, bool, cut to their box."""
+    mean = _centred(masks).mean(0) >= MAJORITY
+    at = np.argwhere(mean)
+    return mean[tuple(map(slice, at.min(0), at.max(0) + 1))]
+
+
+def design_of_cells(
+    cells: np.ndarray,
+    solid: Solid,
+    grid: OccupancyGrid,
+    lattice: Lattice,
+    kinds: frozenset[str],
+    shift: bool,
+) -> CellsDesign:
+    """Return an object's cells as shapes in place.
+
+    Args:
+        cells: int [N, 3], indices into the grid, at least one; they say where it stands.
+        solid: what is fitted, as of ``solid_of`` or ``shared_solids``.
+        grid: where the cells lie.
+        lattice: where the blocks stand.
+        kinds: the kinds of shape that may be used.
+        shift: whether the object may move by up to half a block sideways, and a quarter up or
+            down, to fall on the lattice crisply.
+    """
+    low, high = cells.min(0), cells.max(0) + 1
+    ends = np.stack(
+        [[lattice.edges_of(grid, axis)[at[axis]] for axis in range(3)] for at in (low, high)]
+    )
+    side = grid.voxel_m * lattice.blocks_per_metre
+    base, bottom = standing(float(ends[0, 2]), lattice)
+    centre = ends[:, :2].mean(0)
+    target = _target(solid.mask, side, grid.voxel_m, bottom)
+    shapes, turns = shape_set(kinds), solid.turns
+    if shift:
+        fit = fit_solid(target, shapes, even=even_of(target), calm=NOISY)
+    else:
+        at = np.round(centre * SUB).astype(int) % SUB
+        fit = solve(target, (int(at[0]), int(at[1])), shapes, calm=NOISY)
+    middle = turned_middle(fit, turns)
+    xy = np.floor(centre - middle + 0.5 - TIE).astype(int)
+    numbers = shapes.turns[turns][np.rot90(fit.numbers, turns)]
+    design = Design(np.array([*xy, base]), numbers, (numbers > 0).astype(np.int16), shapes)
+    moved = np.array([*(xy + middle - centre), base + bottom / SUB - ends[0, 2]])
+    blocks = np.floor(ends[0] + (cells - low + 0.5) * side + moved).astype(int)
+    return CellsDesign(design, blocks, fit)
+
+
+def _target(mask: np.ndarray, side: float, voxel_m: float, bottom: int) -> Target:
+    """Return cells of a side in blocks as a target about their own middle."""
+    half = [int(np.ceil(n * side * SUB / 2 - TIE)) for n in mask.shape[:2]]
+    tall = max(1, int(np.ceil(mask.shape[2] * side * SUB - TIE)))
+    edges = [
+        half[a] / SUB + (np.arange(mask.shape[a] + 1) - mask.shape[a] / 2) * side for a in (0, 1)
+    ]
+    edges.append(np.arange(mask.shape[2] + 1) * side)
+    counts = [-(-n // SUB) for n in (2 * half[0], 2 * half[1], tall)]
+    inside = (slice(0, 2 * half[0]), slice(0, 2 * half[1]), slice(0, tall))
+    thin = thin_cells(mask, voxel_m)
+    wanted, slight = (covered(values, edges, counts)[inside] for values in (mask, thin))
+    return Target(wanted, slight, bottom)
