@@ -1,54 +1,47 @@
-"""Connections of panes and fences, as the game computes them from the neighbours.
+"""Connections, shapes and supports of a finished canvas, as the game would have them.
 
-A world file gets no block updates, so a pane that does not state its connections stands alone.
+A world file gets no block updates, so a pane that does not state its connections stands alone, and
+a torch without its wall hangs there until somebody builds beside it.
 """
 
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
-from world2minecraft.coordinates import facing_of_quarter_turns
-from world2minecraft.minecraft.shapes import is_full_cube
-from world2minecraft.minecraft.states import parse_state
+from world2minecraft.coordinates import block_axes_to_grid, grid_to_block_axes
+from world2minecraft.minecraft.connections import connected
+from world2minecraft.minecraft.stability import unstable_cells
 
-_STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # Room axes; the facing of 0 to 3 quarter turns.
-# Kinds that join among themselves; a nether brick fence and a wooden one do not.
-_KINDS: tuple[tuple[str, ...], ...] = (("_pane", "iron_bars"), ("nether_brick_fence",), ("_fence",))
-_NOT: dict[tuple[str, ...], tuple[str, ...]] = {("_fence",): ("minecraft:nether_brick",)}
+ROUNDS = 8  # A lantern at a chain at a fence: what falls seldom carries more than a few others.
+_LEAVES = ("falls", "pops off", "breaks", "flows")
 
 
 def connect(canvas: Canvas) -> None:
-    """Give every pane and fence of a canvas its connections, in place."""
-    for kind in _KINDS:
-        names = [state.partition("[")[0] for state in canvas.palette]
-        alike = np.array(
-            [name.endswith(kind) and not name.startswith(_NOT.get(kind, ())) for name in names]
-        )
-        solid = np.array([_is_sturdy(state) for state in canvas.palette])
-        _connect_kind(canvas, alike, solid)
+    """Give all that joins its neighbours its connections and shape, in place."""
+    states, palette = connected(grid_to_block_axes(canvas.states), canvas.palette)
+    known = len(canvas.palette)
+    numbers = np.concatenate([np.arange(known, dtype=np.uint16), canvas.ids_of([*palette[known:]])])
+    canvas.states[:] = block_axes_to_grid(numbers[states])
 
 
-def _is_sturdy(state: str) -> bool:
-    name = state.partition("[")[0]
-    return name not in ("minecraft:barrier", "minecraft:light") and is_full_cube(state)
+def settle(canvas: Canvas) -> int:
+    """Connect a canvas and take away, in place, what would fall, pop off, break or flow.
 
-
-def _connect_kind(canvas: Canvas, alike: np.ndarray, solid: np.ndarray) -> None:
-    if not alike.any():
-        return
-    before = canvas.states
-    cells = np.argwhere(alike[before])
-    joined = np.pad((alike | solid)[before], ((1, 1), (1, 1), (0, 0)))
-    sides = np.stack(
-        [joined[cells[:, 0] + 1 + x, cells[:, 1] + 1 + y, cells[:, 2]] for x, y in _STEPS], axis=1
-    )
-    own = before[tuple(cells.T)]
-    keys, index = np.unique(np.column_stack([own, sides]), axis=0, return_inverse=True)
-    palette = canvas.palette
-    renewed = []
-    for key in keys.tolist():
-        changed = {
-            facing_of_quarter_turns(turns): "true" if key[1 + turns] else "false"
-            for turns in range(4)
-        }
-        renewed.append(str(parse_state(palette[key[0]]).having(**changed)))
-    canvas.states[tuple(cells.T)] = canvas.ids_of(renewed)[index.ravel()]
+    Returns:
+        How many blocks were taken away.
+    """
+    taken = 0
+    for _ in range(ROUNDS):
+        connect(canvas)
+        blocks = grid_to_block_axes(canvas.states)
+        loose = [
+            cell
+            for cell, _, reason in unstable_cells(blocks, canvas.palette)
+            if reason.startswith(_LEAVES)
+        ]
+        if not loose:
+            break
+        stays = np.ones(blocks.shape, bool)
+        stays[tuple(np.array(loose).T)] = False
+        canvas.put(~block_axes_to_grid(stays), 0, 0)
+        taken += int((~stays).sum())
+    return taken

@@ -6,7 +6,7 @@ import numpy as np
 
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.carrying import carry_floaters, close_gaps
-from world2minecraft.build.connect import connect
+from world2minecraft.build.connect import settle
 from world2minecraft.build.display.builder import DisplayBuilder
 from world2minecraft.build.exact import put_cells_exactly
 from world2minecraft.build.hues import cell_colours, one_paint, seen_colours
@@ -60,7 +60,7 @@ def build_volume(
         footprints = put_cells_exactly(canvas, *source)
     else:
         footprints = _put_room(canvas, placements, instances, *source)
-    connect(canvas)
+    settle(canvas)
     if chosen.edge == "barrier":
         put_edge(canvas, footprints)
     if chosen.lights:
