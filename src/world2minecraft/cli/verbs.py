@@ -26,6 +26,7 @@ VERBS: dict[str, str] = {
     "rooms scan": "Scan a generated room or house with a virtual depth camera.",
     "evaluate reconstruction": "Score a reconstruction against a scanned room's truth.",
     "convert": "Turn one Minecraft format into another.",
+    "install": "Copy a built world to where the game finds it.",
     "undo": "Take back what was last built into a world.",
     "doctor": "Check that this machine can run the program.",
 }

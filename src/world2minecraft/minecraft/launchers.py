@@ -1,0 +1,185 @@
+"""Where the games of this machine keep their worlds: the launchers and their saves folders.
+
+======================  ========================================================================
+Minecraft launcher      ``.minecraft``, and the game directories of its installations
+Prism, PolyMC, MultiMC  one game directory an instance; Windows, macOS, Linux, Flatpak, Scoop
+======================  ========================================================================
+
+Only folders that are there count. MultiMC keeps its data beside its program, which may lie
+anywhere; the usual places are looked at.
+"""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.errors import InputError
+from world2minecraft.files import read_bytes, read_json
+
+MAX_SETTINGS_BYTES = 4 << 20
+MAX_INSTANCES = 500
+LAUNCHER = "Minecraft launcher"
+PROFILE_FILES = ("launcher_profiles.json", "launcher_profiles_microsoft_store.json")
+SETTINGS_FILES = {
+    "Prism": "prismlauncher.cfg",
+    "PolyMC": "polymc.cfg",
+    "MultiMC": "multimc.cfg",
+}
+
+
+@dataclass(frozen=True)
+class Game:
+    """One game that can be started: its name for people, its saves folder, its version if known."""
+
+    name: str
+    saves: Path
+    version: str | None = None
+
+
+def find_games(platform: str, home: Path, environment: Mapping[str, str]) -> list[Game]:
+    """Return the games of a machine, the launcher's own first, each saves folder once.
+
+    Args:
+        platform: as ``sys.platform``: ``win32``, ``darwin`` or another for Linux.
+        home: the user's home folder.
+        environment: APPDATA, LOCALAPPDATA, XDG_DATA_HOME and PRISMLAUNCHER_DATA_DIR are looked at.
+    """
+    found: dict[Path, Game] = {}
+    for root in _launcher_folders(platform, home, environment):
+        for game in _launcher_games(root):
+            found.setdefault(_real(game.saves), game)
+    for kind, root in _instance_roots(platform, home, environment):
+        for game in _instance_games(kind, root):
+            found.setdefault(_real(game.saves), game)
+    return list(found.values())
+
+
+def _launcher_folders(platform: str, home: Path, environment: Mapping[str, str]) -> Iterator[Path]:
+    if platform == "win32":
+        yield _roaming(home, environment) / ".minecraft"
+    elif platform == "darwin":
+        yield home / "Library" / "Application Support" / "minecraft"
+    else:
+        yield home / ".minecraft"
+        yield home / ".var" / "app" / "com.mojang.Minecraft" / ".minecraft"
+        # Windows seen from its own Linux.
+        yield from sorted(Path("/mnt/c/Users").glob("*/AppData/Roaming/.minecraft"))
+
+
+def _instance_roots(
+    platform: str, home: Path, environment: Mapping[str, str]
+) -> Iterator[tuple[str, Path]]:
+    """The data folders of the launchers with instances, there or not."""
+    if "PRISMLAUNCHER_DATA_DIR" in environment:
+        yield "Prism", Path(environment["PRISMLAUNCHER_DATA_DIR"])
+    if platform == "win32":
+        roaming = _roaming(home, environment)
+        local = Path(environment.get("LOCALAPPDATA") or home / "AppData" / "Local")
+        yield "Prism", roaming / "PrismLauncher"
+        yield "Prism", home / "scoop" / "persist" / "prismlauncher"
+        yield "PolyMC", roaming / "PolyMC"
+        yield "MultiMC", home / "scoop" / "persist" / "multimc"
+        for folder in (roaming, local, local / "Programs", home, home / "Downloads", Path("C:/")):
+            yield "MultiMC", folder / "MultiMC"
+    elif platform == "darwin":
+        support = home / "Library" / "Application Support"
+        yield "Prism", support / "PrismLauncher"
+        yield "PolyMC", support / "PolyMC"
+        for folder in (Path("/Applications"), home / "Applications"):
+            yield "MultiMC", folder / "MultiMC.app" / "Data"
+    else:
+        data = Path(environment.get("XDG_DATA_HOME") or home / ".local" / "share")
+        flatpak = home / ".var" / "app"
+        yield "Prism", data / "PrismLauncher"
+        yield "Prism", flatpak / "org.prismlauncher.PrismLauncher" / "data" / "PrismLauncher"
+        yield "PolyMC", data / "PolyMC"
+        yield "PolyMC", flatpak / "org.polymc.PolyMC" / "data" / "PolyMC"
+        for folder in (data / "multimc", home / "MultiMC", home / ".config" / "local" / "multimc"):
+            yield "MultiMC", folder
+
+
+def _launcher_games(root: Path) -> Iterator[Game]:
+    if not root.is_dir():
+        return
+    yield Game(LAUNCHER, root / "saves")
+    for name in PROFILE_FILES:
+        profiles = _json(root / name).get("profiles")
+        for profile in profiles.values() if isinstance(profiles, dict) else ():
+            folder = profile.get("gameDir") if isinstance(profile, dict) else None
+            if isinstance(folder, str) and Path(folder).is_absolute() and Path(folder).is_dir():
+                title = _line(profile.get("name")) or _line(profile.get("lastVersionId"))
+                yield Game(f"{LAUNCHER}: {title or Path(folder).name}", Path(folder) / "saves")
+
+
+def _instance_games(kind: str, root: Path) -> Iterator[Game]:
+    if not root.is_dir():
+        return
+    chosen = _setting(root / SETTINGS_FILES[kind], "InstanceDir") or "instances"
+    folder = root / chosen  # An absolute one stands for itself.
+    if not folder.is_dir():
+        return
+    for instance in sorted(folder.iterdir())[:MAX_INSTANCES]:
+        game = instance / ".minecraft"
+        if not game.is_dir():
+            game = instance / "minecraft"
+        if game.is_dir() and (instance / "instance.cfg").is_file():
+            title = _setting(instance / "instance.cfg", "name") or instance.name
+            yield Game(f"{kind}: {title}", game / "saves", _version(instance))
+
+
+def _version(instance: Path) -> str | None:
+    components = _json(instance / "mmc-pack.json").get("components")
+    for component in components if isinstance(components, list) else ():
+        if isinstance(component, dict) and component.get("uid") == "net.minecraft":
+            return _line(component.get("version")) or None
+    return None
+
+
+def _setting(path: Path, key: str) -> str:
+    """A value of a settings file of lines KEY=VALUE; empty where it has none."""
+    try:
+        text = read_bytes(path, MAX_SETTINGS_BYTES).decode("utf-8", "replace")
+    except InputError:
+        return ""
+    for line in text.splitlines():
+        name, _, value = line.partition("=")
+        if name.strip() == key:
+            return _line(_unquoted(value.strip()))
+    return ""
+
+
+def _unquoted(value: str) -> str:
+    """A value in quotes has backslashes doubled, as Qt writes it."""
+    if len(value) < 2 or value[0] != '"' or value[-1] != '"':
+        return value
+    try:
+        return str(json.loads(value))
+    except ValueError:
+        return value[1:-1]
+
+
+def _json(path: Path) -> dict[str, Any]:
+    try:
+        raw = read_json(path, MAX_SETTINGS_BYTES)
+    except InputError:
+        return {}
+    return raw if isinstance(raw, dict) else {}
+
+
+def _line(value: Any) -> str:
+    """A text from a file as one short printable line."""
+    text = " ".join(value.split()) if isinstance(value, str) else ""
+    return "".join(letter for letter in text if letter.isprintable())[:200]
+
+
+def _roaming(home: Path, environment: Mapping[str, str]) -> Path:
+    return Path(environment.get("APPDATA") or home / "AppData" / "Roaming")
+
+
+def _real(path: Path) -> Path:
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError):
+        return path
