@@ -36,7 +36,9 @@ def pieces_of(
     """
     names = sorted(set(states))
     labels, planes = _cut(parts, [names.index(state) + 1 for state in states])
-    boxes = few_boxes(labels)
+    boxes = partition(labels)
+    if len(boxes) > most:  # Only then boxes may overlap, as those of a round table's top do.
+        boxes = few_boxes(labels)
     if len(boxes) > most:
         coarse, fine = _coarse(labels, planes)
         if len(coarse) < len(boxes):
