@@ -46,15 +46,15 @@ def run(
     if list_:
         steps = steps_of(world)
         for step in steps:
-            print(f"{step.folder.name}  {step.what}, {len(step.files)} files")
-        print(f"{len(steps)} steps can be undone, the last one first.")
+            print(f"{step.folder.name}  {step.what}, {counted(len(step.files), 'file')}")
+        print(f"{counted(len(steps), 'step')} to undo, the last one first.")
         return
     if blocks:
         from world2minecraft.edit.into_world import take_blocks_out
 
         done = take_blocks_out(world)
-        kept = f"; {done.kept:,} that were changed since stay" if done.kept else ""
-        print(f"{world}: {done.blocks:,} blocks are as they were before{kept}.")
+        kept = f"; {counted(done.kept, 'block')} changed since stay" if done.kept else ""
+        print(f"{world}: {counted(done.blocks, 'block')} put back as before{kept}.")
         return
     print(undo_files(world, force))
 
@@ -84,4 +84,10 @@ def undo_files(world: Path, force: bool) -> str:
             reason = f"{changed[0]} was saved since; --blocks takes out what was built and keeps"
             raise ConflictError(world, f"{reason} the rest, --force brings the old files back")
         take_back(steps[-1])
-        return f"{world}: {len(steps[-1].files)} files are byte by byte as they were before."
+        files = counted(len(steps[-1].files), "file")
+        return f"{world}: {files} brought back, byte by byte as before."
+
+
+def counted(number: int, what: str) -> str:
+    """Return a number with its noun, in the plural where it is not one."""
+    return f"{number:,} {what}" if number == 1 else f"{number:,} {what}s"
