@@ -1,9 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from block_volumes import random_volume, state_texts, volume_of
 
 from world2minecraft.errors import InputError, OutputError, UnknownNameError, UsageError
 from world2minecraft.minecraft.formats import FORMATS, WriteOptions, read_blocks, write_blocks
+from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.spawn import top_of_middle
 from world2minecraft.types import AIR
 
@@ -26,10 +29,17 @@ def test_one_format_becomes_another(tmp_path):
     np.testing.assert_array_equal(state_texts(found), state_texts(VOLUME))
 
 
-def test_a_data_pack_is_written_and_not_read(tmp_path):
+def test_a_data_pack_is_written_and_read(tmp_path):
     write_blocks(VOLUME, tmp_path / "pack.zip", WriteOptions(name="flat"))
-    with pytest.raises(InputError, match=r"no block file that is read; known: a world folder, \."):
-        read_blocks(tmp_path / "pack.zip")
+    found = read_blocks(tmp_path / "pack.zip")
+    np.testing.assert_array_equal(state_texts(found), state_texts(VOLUME))
+
+
+def test_labels_are_counted_as_lost_where_a_format_has_none(tmp_path):
+    labels = np.where(VOLUME.states > 0, 5, 0).astype(np.uint8)
+    losses = Losses()
+    write_blocks(replace(VOLUME, semantic=labels), tmp_path / "a.schem", losses=losses)
+    assert list(losses) == [("blocks' labels (class and object)", int((labels > 0).sum()))]
 
 
 def test_every_format_of_the_registry_loads():

@@ -22,6 +22,8 @@ FORMATS = Registry(
         "datapack": "world2minecraft.minecraft.formats:DatapackFormat",
         "litematic": "world2minecraft.minecraft.shared_formats:LitematicFormat",
         "structure": "world2minecraft.minecraft.shared_formats:StructureFormat",
+        "mcfunction": "world2minecraft.minecraft.command_list:CommandListFormat",
+        "mcstructure": "world2minecraft.minecraft.bedrock:McstructureFormat",
     },
 )
 
@@ -152,10 +154,12 @@ class WorldFormat:
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write a world whose player starts at ``spawn``, or on top of the middle."""
+        from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
         from world2minecraft.minecraft.spawn import top_of_middle  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
         from world2minecraft.minecraft.world import write_world  # noqa: PLC0415  # numba.
 
+        count_unknown(volume, game_version(options.mc_version), losses)
         write_world(
             volume,
             path,
@@ -186,11 +190,13 @@ class SchemFormat:
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write version 2, or 3 where the options say so."""
+        from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
         from world2minecraft.minecraft.schem import write_schem  # noqa: PLC0415  # numba.
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         if options.schem_version not in (2, 3):
             raise UsageError(f"schem_version must be 2 or 3, not {options.schem_version}")
+        count_unknown(volume, game_version(options.mc_version), losses)
         write_schem(
             volume,
             path,
@@ -200,10 +206,10 @@ class SchemFormat:
 
 
 class DatapackFormat:
-    """A data pack of build commands; it is written and not read."""
+    """A data pack of build commands; read where this program wrote it."""
 
     suffix = ".zip"
-    can_read = False
+    can_read = True
     can_write = True
     keeps_labels = False
 
@@ -212,8 +218,10 @@ class DatapackFormat:
         return path.suffix.lower() == self.suffix
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
-        """Refuse: commands are no volume."""
-        raise InputError(path, "is a data pack, which is written and not read")
+        """Read what its function ``build`` sets."""
+        from world2minecraft.minecraft.command_reading import read_datapack  # noqa: PLC0415
+
+        return read_datapack(path, losses)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write the pack under the namespace of the options' name."""

@@ -1,0 +1,140 @@
+"""NBT as text, read: what commands hold. ``commands.snbt`` writes it."""
+
+import re
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.errors import UsageError
+from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
+
+MAX_DEPTH = 100
+MAX_SHOWN = 40
+_SPACE = re.compile(r"\s*")
+_WORD = re.compile(r"[A-Za-z0-9_.+-]+")
+_QUOTED = {mark: re.compile(rf"(?:[^{mark}\\]|\\.)*{mark}", re.DOTALL) for mark in "\"'"}
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)([bBsSlLfFdD]?)")
+_WHOLE = re.compile(r"[+-]?\d+")
+_ESCAPE = re.compile(r"\\(.)", re.DOTALL)
+_WHOLE_KINDS: dict[str, Any] = {"b": (Byte, 8), "s": (Short, 16), "l": (Long, 64), "": (int, 32)}
+_ARRAYS = {"B": np.int8, "I": np.int32, "L": np.int64}
+
+
+def read_snbt(text: str, start: int = 0) -> tuple[Any, int]:
+    r"""Read one value of NBT from a text.
+
+    Args:
+        text: the text.
+        start: where the value begins.
+
+    Returns:
+        The value, as ``minecraft.nbt`` gives it, and where it ends.
+
+    Raises:
+        UsageError: the text is no NBT, or nests deeper than 100 tags.
+
+    Example:
+        >>> read_snbt('{Count:3b, list:[1.5f, 2f], "name":\'my room\'}')[0]
+        {'Count': 3, 'list': [1.5, 2.0], 'name': 'my room'}
+    """
+    return _value(text, start, 0)
+
+
+def _value(text: str, at: int, depth: int) -> tuple[Any, int]:
+    if depth > MAX_DEPTH:
+        raise UsageError(f"NBT text nests deeper than {MAX_DEPTH} tags; at most that is read")
+    at = _skip(text, at)
+    first = text[at : at + 1]
+    if first == "{":
+        return _compound(text, at + 1, depth)
+    if first == "[":
+        return _items(text, at + 1, depth)
+    if first in _QUOTED and first:
+        return _quoted(text, at)
+    word = _WORD.match(text, at)
+    if word is None:
+        raise _unreadable(text, at, "a value")
+    return _plain(word[0]), word.end()
+
+
+def _compound(text: str, at: int, depth: int) -> tuple[dict[str, Any], int]:
+    result: dict[str, Any] = {}
+    at = _skip(text, at)
+    while text[at : at + 1] != "}":
+        key, at = _key(text, at)
+        at = _expect(text, at, ":")
+        result[key], at = _value(text, at, depth + 1)
+        at = _skip(text, at)
+        if text[at : at + 1] != "}":
+            at = _skip(text, _expect(text, at, ","))
+    return result, at + 1
+
+
+def _items(text: str, at: int, depth: int) -> tuple[Any, int]:
+    kind = text[at : at + 1]
+    if kind in _ARRAYS and text[at + 1 : at + 2] == ";":
+        values, at = _items(text, at + 2, depth)
+        try:
+            return np.array(values, _ARRAYS[kind]).reshape(-1), at
+        except (ValueError, TypeError, OverflowError) as error:
+            raise UsageError(
+                f"NBT text has an array with other things than numbers: {error}"
+            ) from error
+    result = []
+    at = _skip(text, at)
+    while text[at : at + 1] != "]":
+        value, at = _value(text, at, depth + 1)
+        result.append(value)
+        at = _skip(text, at)
+        if text[at : at + 1] != "]":
+            at = _skip(text, _expect(text, at, ","))
+    return result, at + 1
+
+
+def _key(text: str, at: int) -> tuple[str, int]:
+    if text[at : at + 1] in ('"', "'"):
+        return _quoted(text, at)
+    word = _WORD.match(text, at)
+    if word is None:
+        raise _unreadable(text, at, "a name")
+    return word[0], word.end()
+
+
+def _quoted(text: str, at: int) -> tuple[str, int]:
+    found = _QUOTED[text[at]].match(text, at + 1)
+    if found is None:
+        raise _unreadable(text, at, "the end of a quoted text")
+    return _ESCAPE.sub(r"\1", found[0][:-1]), found.end()
+
+
+def _plain(word: str) -> Any:
+    """Return what a word without quotes means: a number, a truth value, or itself."""
+    if word in ("true", "false"):
+        return Byte(word == "true")
+    number = _NUMBER.fullmatch(word)
+    if number is None:
+        return word
+    digits, suffix = number[1], number[2].lower()
+    if suffix in _WHOLE_KINDS and _WHOLE.fullmatch(digits):
+        kind, bits = _WHOLE_KINDS[suffix]
+        value = int(digits[:30])
+        return kind(value) if -(1 << bits - 1) <= value < 1 << bits - 1 else word
+    if suffix == "f":
+        return Float(digits)
+    return float(digits) if suffix in ("d", "") else word
+
+
+def _skip(text: str, at: int) -> int:
+    found = _SPACE.match(text, at)
+    return found.end() if found else at
+
+
+def _expect(text: str, at: int, mark: str) -> int:
+    at = _skip(text, at)
+    if text[at : at + 1] != mark:
+        raise _unreadable(text, at, repr(mark))
+    return at + 1
+
+
+def _unreadable(text: str, at: int, wanted: str) -> UsageError:
+    return UsageError(f"NBT text needs {wanted} at {text[at : at + MAX_SHOWN]!r}")
