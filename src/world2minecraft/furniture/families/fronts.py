@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 from world2minecraft.furniture.plan import Numbers, Plan, panel_properties
 from world2minecraft.furniture.template import BlockSize
+from world2minecraft.minecraft.blocks import block_table
 
-LEAST_REST, MOST_REST = 0.08, 0.62  # Of a block: what a front stands in; more is body.
+LEAST_REST, MOST_REST = 0.04, 0.7  # Of a block: what a front stands in; more is body.
 
 
 class Body(NamedTuple):
@@ -60,3 +61,11 @@ def door_columns(width: int, per_metre: float) -> list[int]:
     if width % 4:
         columns.append(width - 1 - (width % 4) // 2)
     return columns
+
+
+def faces(plan: Plan, role: str, i: Numbers, j: Numbers, k: Numbers) -> None:
+    """Lay whole blocks of a role whose own front, where they have one, looks to the front."""
+    state = plan.look.state(role)
+    block = block_table().blocks.get(state)
+    turnable = block is not None and any(name == "facing" for name, _ in block.properties)
+    plan.put_state(role, f"{state}[facing=east]" if turnable else state, i, j, k)

@@ -1,0 +1,271 @@
+"""What hangs flat: curtains, blinds, pictures, mirrors, radiators, rugs on the floor.
+
+Nothing here holds on to the wall: plates, panes and wool stand by themselves in the game.
+"""
+
+from world2minecraft.furniture.family import Family
+from world2minecraft.furniture.look import Look
+from world2minecraft.furniture.plan import Plan
+from world2minecraft.furniture.shapes import part, slab
+from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+
+FINE = 3.0  # Blocks per metre from which a curtain has folds.
+FOLD_M = 0.16
+
+
+def _curtain(depth: float, width: float, height: float, look: Look) -> list[Part]:
+    x, y, rod = depth / 2, width / 2, min(0.04, height / 4)
+    side = y * look["drawn"]
+    sides = {"pair": [(-y, side - y), (y - side, y)], "whole": [(-y, y)], "one": [(-y, side - y)]}
+    folds = [
+        fold
+        for across in sides[look.option("drawn")]
+        for fold in _folds(depth, across, height, rod)
+    ]
+    return [part("rod", (-x, x), (-y, y), (height - rod, height)), *folds]
+
+
+def _folds(depth: float, across: tuple[float, float], height: float, rod: float) -> list[Part]:
+    """Return cloth in folds: upright boxes, in turn at the back and at the front."""
+    count = max(1, round((across[1] - across[0]) / FOLD_M))
+    wide, x = (across[1] - across[0]) / count, depth / 2
+    spans = [(-x, 0.3 * x), (-0.3 * x, x)]
+    return [
+        part(
+            "cloth",
+            spans[n % 2],
+            (across[0] + n * wide, across[0] + (n + 1) * wide),
+            (0.0, height - rod),
+        )
+        for n in range(count)
+    ]
+
+
+def _curtain_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    plan, top = Plan(size, look), size.height - 1
+    drawn = look.option("drawn")
+    side = max(1, round(size.width * look["drawn"] / 2))
+    columns = set(plan.width)
+    if drawn == "pair" and size.width > 2:
+        columns = {j for j in plan.width if j < side or j >= size.width - side}
+    elif drawn == "one":
+        columns = set(range(side))
+    if size.per_metre < 1.5:
+        plan.put("cloth", 0, sorted(columns), 0, "banner", rotation="12")
+        return plan.blocks
+    rows = range(top) if top > 2 else plan.height
+    shape = "pane" if look.option("cloth") == "sheer" and size.width > 1 else "full"
+    plan.put("cloth", 0, sorted(columns), rows, shape)
+    if top > 2:
+        plan.put("rod", 0, plan.width, top, "fence")
+    return plan.blocks
+
+
+CURTAIN = Family(
+    build=_curtain,
+    design=_curtain_blocks,
+    roles=("cloth", "rod"),
+    parameters={"drawn": Span(0.2, 0.5, 1.0)},  # The share of each half that cloth covers.
+    options={"drawn": ("pair", "whole", "one"), "cloth": ("heavy", "sheer")},
+)
+
+
+def _blind(depth: float, width: float, height: float, look: Look) -> list[Part]:
+    rail = min(0.06, height / 4)
+    low = (height - rail) * (1 - look["down"])
+    found = [slab("rail", depth, width, height - rail, height)]
+    if look.option("kind") == "roller":
+        bar = min(0.03, (height - rail - low) / 3)
+        return [
+            *found,
+            slab("slat", 0.3 * depth, width, low + bar, height - rail),
+            slab("rail", depth, width, low, low + bar),
+            *_foot(depth, width, low),
+        ]
+    count = max(2, round((height - rail - low) / 0.08))
+    step = (height - rail - low) / count
+    slats = [
+        slab("slat", depth, width, low + n * step, low + (n + 0.5) * step) for n in range(count)
+    ]
+    cords = [
+        part("rail", (-0.01, 0.01), (side - 0.01, side + 0.01), (0.0, height - rail))
+        for side in (-0.3 * width, 0.3 * width)
+    ]
+    return [*found, *slats, *cords]
+
+
+def _foot(depth: float, width: float, low: float) -> list[Part]:
+    """Return the cord of a blind that is not all the way down."""
+    if low <= 0.01:
+        return []
+    y = width / 2
+    return [part("rail", (-0.01, 0.01), (y - 0.02, y), (0.0, low))]
+
+
+def _blind_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    plan = Plan(size, look)
+    low = min(round(size.height * (1 - look["down"])), size.height - 1)
+    plan.panel("slat", 0, plan.width, range(low, size.height), "back")
+    if size.height > 3:
+        plan.panel("rail", 0, plan.width, size.height - 1, "back")
+    return plan.blocks
+
+
+BLIND = Family(
+    build=_blind,
+    design=_blind_blocks,
+    roles=("slat", "rail"),
+    parameters={"down": Span(0.3, 1.0, 1.0)},
+    options={"kind": ("venetian", "roller")},
+)
+
+
+def _framed(depth: float, width: float, height: float, look: Look) -> list[Part]:
+    x, y = depth / 2, width / 2
+    rim = min(look["rim"], width / 4, height / 4)
+    back = max(x - 0.01, 0.0)
+    return [
+        part("frame", (-x, x), (-y, y), (0.0, rim)),
+        part("frame", (-x, x), (-y, y), (height - rim, height)),
+        part("frame", (-x, x), (-y, rim - y), (rim, height - rim)),
+        part("frame", (-x, x), (y - rim, y), (rim, height - rim)),
+        part("low", (-x, back), (rim - y, y - rim), (rim, 0.45 * height)),
+        part("high", (-x, back), (rim - y, y - rim), (0.45 * height, height - rim)),
+    ]
+
+
+def _framed_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    """Stand plates in a frame, one picture's ground below and its sky above."""
+    plan = Plan(size, look)
+    framed = size.width > 3 and size.height > 3
+    horizon = max(1, round(0.45 * size.height)) if size.height > 1 else 0
+    plan.panel("low", 0, plan.width, range(horizon), "back")
+    plan.panel("high", 0, plan.width, range(horizon, size.height), "back")
+    if framed and look.option("frame") == "yes":
+        plan.panel("frame", 0, plan.width, [0, size.height - 1], "back")
+        plan.panel("frame", 0, [0, size.width - 1], plan.height, "back")
+    if framed and look.option("motif") == "sun":
+        plan.panel("spot", 0, 2 * size.width // 3, size.height - 2, "back")
+    if framed and look.option("motif") == "figure":
+        middle = range((size.width - 1) // 2, size.width // 2 + 1)
+        plan.panel("spot", 0, middle, size.height - 2 - (size.height > 4), "back")
+    return plan.blocks
+
+
+FRAMED = Family(
+    build=_framed,
+    design=_framed_blocks,
+    roles=("frame", "low", "high", "spot"),
+    parameters={"rim": Span(0.02, 0.05, 0.1)},
+    options={"frame": ("yes", "no"), "motif": ("plain", "sun", "figure")},
+)
+
+
+def _ribbed(depth: float, width: float, height: float, look: Look) -> list[Part]:
+    x, y = depth / 2, width / 2
+    count = max(2, round(width / 0.1))
+    wide = width / count
+    ribs = [
+        part("body", (-x, x), (-y + n * wide, -y + (n + 0.7) * wide), (0.0, height))
+        for n in range(count - 1)
+    ]
+    ribs.append(part("body", (-x, x), (y - 0.7 * wide, y), (0.0, height)))
+    return [*ribs, part("body", (-x, 0.2 * x), (-y, y), (0.1 * height, 0.9 * height))]
+
+
+def _ribbed_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    plan = Plan(size, look)
+    plan.panel("body", 0, plan.width, plan.height, "back")
+    if look.option("towel") == "yes" and size.height > 2:
+        plan.panel("towel", 0, plan.width, range(1, size.height, 3), "back")
+    return plan.blocks
+
+
+RIBBED = Family(
+    build=_ribbed,
+    design=_ribbed_blocks,
+    roles=("body", "towel"),
+    options={"towel": ("no", "yes")},
+)
+
+
+def _standing_mirror(depth: float, width: float, height: float, look: Look) -> list[Part]:
+    x, y, rim = depth / 2, width / 2, 0.04
+    return [
+        part("foot", (-x, x), (-y, rim - y), (0.0, 0.06)),
+        part("foot", (-x, x), (y - rim, y), (0.0, 0.06)),
+        part("frame", (-0.02, 0.02), (-y, rim - y), (0.06, height)),
+        part("frame", (-0.02, 0.02), (y - rim, y), (0.06, height)),
+        part("frame", (-0.02, 0.02), (rim - y, y - rim), (height - rim, height)),
+        part("glass", (-0.01, 0.01), (rim - y, y - rim), (0.12, height - rim)),
+    ]
+
+
+def _standing_mirror_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    plan = Plan(size, look)
+    low = 1 if size.height > 3 else 0
+    plan.panel("glass", 0, plan.width, range(low, size.height), "back")
+    if low:
+        plan.stairs("foot", 0, plan.width, 0, "back")
+        plan.panel("frame", 0, plan.width, size.height - 1, "back")
+    return plan.blocks
+
+
+STANDING_MIRROR = Family(
+    build=_standing_mirror,
+    design=_standing_mirror_blocks,
+    roles=("frame", "glass", "foot"),
+)
+
+
+def _rug(depth: float, width: float, height: float, look: Look) -> list[Part]:
+    if look.option("pattern") != "round":
+        rim = min(0.12, depth / 4, width / 4)
+        return [
+            slab("border", depth, width, 0.0, height / 2),
+            slab("field", depth - 2 * rim, width - 2 * rim, height / 2, height),
+        ]
+    x, y = depth / 2, width / 2
+    cuts = [(1.0, 0.38), (0.92, 0.7), (0.7, 0.92), (0.38, 1.0)]
+    return [part("field", (-x * i, x * i), (-y * j, y * j), (0.0, height)) for i, j in cuts]
+
+
+def _rug_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    plan = Plan(size, look)
+    pattern = look.option("pattern")
+    for i in plan.depth:
+        for j in plan.width:
+            role = _PATTERNS[pattern](i, j, size.depth, size.width)
+            if role:
+                plan.put(role, i, j, 0, "carpet")
+    return plan.blocks
+
+
+def _bordered(i: int, j: int, depth: int, width: int) -> str:
+    edge = min(i, j, depth - 1 - i, width - 1 - j)
+    return "border" if min(depth, width) > 2 and edge == (0 if depth < 6 else 1) else "field"
+
+
+def _striped(i: int, j: int, depth: int, width: int) -> str:
+    return "border" if j % 3 == 1 else "field"
+
+
+def _checked(i: int, j: int, depth: int, width: int) -> str:
+    return "border" if (i + j) % 2 else "field"
+
+
+def _rounded(i: int, j: int, depth: int, width: int) -> str:
+    along, across = (2 * i + 1 - depth) / depth, (2 * j + 1 - width) / width
+    away = along * along + across * across
+    if away > 1.02 and min(depth, width) > 3:
+        return ""
+    return "border" if away > 0.55 and min(depth, width) > 4 else "field"
+
+
+_PATTERNS = {"border": _bordered, "stripes": _striped, "checks": _checked, "round": _rounded}
+RUG = Family(
+    build=_rug,
+    design=_rug_blocks,
+    roles=("field", "border"),
+    options={"pattern": tuple(_PATTERNS)},
+)
