@@ -14,7 +14,7 @@ from world2minecraft.furnish import FurnishParameters, furnish
 from world2minecraft.furniture import TEMPLATES, cells_of, surface, template
 from world2minecraft.furniture.overlap import overlaps
 
-NAMES = TEMPLATES.names()
+NAMES = [name for name in TEMPLATES.names() if template(name).matched]
 FULL_IOU = 0.9
 
 

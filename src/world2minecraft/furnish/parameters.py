@@ -50,6 +50,7 @@ class FurnishParameters:
         all the same that meets this share of the object's cells, in or beside it, and of which at
         most so much stands in space that was seen free; build/ refuses more.
     seat_look_m: a chair whose turn its cells leave open looks to a table this near.
+    variants: another design of a match's family may stand for it, by size, parameters and colour.
     paper_compat: the paper's equation to the letter: every cell of the template and of the
         object counts, seen or not, nothing breaks ties but the library's order, and nothing is
         cut into runs.
@@ -73,6 +74,7 @@ class FurnishParameters:
     seat_met: float = 0.5
     seat_opposed: float = 0.2
     seat_look_m: float = 1.0
+    variants: bool = True
     paper_compat: bool = False
 
     def __post_init__(self):

@@ -14,6 +14,7 @@ from world2minecraft.furnish.runs import cut_into_runs
 from world2minecraft.furnish.seeds import reach_of
 from world2minecraft.furnish.settling import settle
 from world2minecraft.furnish.trial import Bias, Cells, Scored, Trial, score_shifts
+from world2minecraft.furnish.variants import Choice, choose, colour_of_cells, offers_of
 from world2minecraft.furniture import template, templates_of
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.furniture.seating import fit_seat, look_at, without_open_top
@@ -56,24 +57,26 @@ def furnish(
     """
     chosen = parameters or FurnishParameters()
     around = surroundings(grid.labels)
-    placed: list[Placement] = []
+    placed: list[Choice] = []
     for instance in instances:
         if len(instance.cells):
             placed += _furnish_one(grid, instance, around, chosen)
-    return tuple(placed) if chosen.paper_compat else settle(placed, grid, rooms)
+    if chosen.paper_compat:
+        return tuple(one.placement for one in placed)
+    return settle(choose(placed), grid, rooms)
 
 
 def _furnish_one(
     grid: OccupancyGrid, instance: ObjectInstance, around: Surroundings, chosen: FurnishParameters
-) -> list[Placement]:
+) -> list[Choice]:
     turns = int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
     whole = _match(grid, instance, instance.cells, turns, chosen)
     if whole.iou < chosen.seat_below and instance.class_id == SemanticClass.CHAIR:
         seated = None if chosen.paper_compat else _seated(grid, whole, chosen)
         if seated is not None:
-            return [_placement(grid, instance, seated, chosen)]
+            return [_choice(grid, instance, seated, chosen)]
     if not _may_be_cut(whole, grid.voxel_m, chosen):
-        return [_placement(grid, instance, whole, chosen)]
+        return [_choice(grid, instance, whole, chosen)]
     parts = []
     for run in cut_into_runs(whole.evidence, chosen.max_runs, chosen.min_run_cells):
         cells = (run + whole.evidence.corner).astype(np.int32)
@@ -83,8 +86,8 @@ def _furnish_one(
     parts = [part if part.evidence.own >= least else part.unmatched() for part in parts]
     if _is_better_cut(parts, whole.iou, chosen):
         parts = _with_tidy_crumbs(grid, instance, parts, chosen)
-        return [_placement(grid, instance, part, chosen) for part in parts]
-    return [_placement(grid, instance, whole, chosen)]
+        return [_choice(grid, instance, part, chosen) for part in parts]
+    return [_choice(grid, instance, whole, chosen)]
 
 
 def _with_tidy_crumbs(
@@ -173,6 +176,18 @@ def _is_better_cut(parts: list[Matched], single: float, chosen: FurnishParameter
         return sum(explained) >= HALF * every
     together = sum(part.evidence.own * part.iou for part in large) / every
     return len(large) > 1 and together >= single + chosen.cut_gain * (len(large) - 1)
+
+
+def _choice(
+    grid: OccupancyGrid, instance: ObjectInstance, found: Matched, chosen: FurnishParameters
+) -> Choice:
+    """Return the placement of a match and the designs that may stand in its place."""
+    placement = _placement(grid, instance, found, chosen)
+    if placement.template == OWN_CELLS or not chosen.variants or chosen.paper_compat:
+        return Choice(placement, (), None)
+    bias = _bias(found.quarter_turns, grid, chosen)
+    offers = offers_of(found.evidence, found.matches[0], bias)
+    return Choice(placement, offers, colour_of_cells(grid, found.evidence))
 
 
 def _placement(
