@@ -16,15 +16,16 @@ from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.look import Look
 from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import legs, part, slab
-from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
+from world2minecraft.furniture.template import BlockSize, LocalBlock, Part
 
 DOOR_M, HANDLE_M, GAP_M, LID_M = 0.02, 0.02, 0.008, 0.04
 DOOR_WIDTH_M, DRAWER_M = 0.5, 0.22
+LEGS_M = {"none": 0.0, "short": 0.06, "tall": 0.15}
 GLASS_FROM = 0.35  # The share of the height under which a glass cabinet is closed.
 
 
 def _case(depth: float, width: float, height: float, look: Look) -> list[Part]:
-    base = min(look["base"], height / 4)
+    base = min(LEGS_M[look.option("legs")], height / 4)
     front = look.option("front")
     x, y = depth / 2, width / 2
     if front == "plain":
@@ -94,7 +95,7 @@ def _leaf(
 
 def _case_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan, body = Plan(size, look), body_of(size)
-    base = plan.layers(look["base"])
+    base = plan.layers(LEGS_M[look.option("legs")])
     base = base if size.height > base + 1 else 0
     for i in {0, body.face}:
         for j in {0, size.width - 1}:
@@ -185,6 +186,5 @@ CASE = Family(
     build=_case,
     design=_case_blocks,
     roles=("body", "door", "face", "glass", "handle", "leg"),
-    parameters={"base": Span(0.0, 0.0, 0.3)},
-    options={"front": tuple(_FRONTS)},
+    options={"front": tuple(_FRONTS), "legs": tuple(LEGS_M)},
 )

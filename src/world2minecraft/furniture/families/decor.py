@@ -308,7 +308,7 @@ def _candles(depth: float, width: float, height: float, look: Look) -> list[Part
 
 def _candles_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
-    plan.put("candle", 0, range(size.width), 0, "candle", candles="3", lit="true")
+    plan.put("candle", 0, range(size.width), 0, "candle", candles="1", lit="true")
     return plan.blocks
 
 
