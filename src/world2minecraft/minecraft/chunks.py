@@ -167,13 +167,14 @@ def read_chunk(
 
 
 def _sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> Iterator[Section]:
+    version = root["DataVersion"]
     for section in root.get("sections", []):
         if not isinstance(section, dict):
             raise DamagedFileError(path, f"chunk {place} has a broken section")
         blocks = section.get("block_states")
         if blocks is not None:
             height = section.get("Y")
-            found = section_of(blocks, "palette", "data", place, path, y=height)
+            found = section_of(blocks, "palette", "data", place, path, version, y=height)
             if found is not None:
                 yield found
 

@@ -1,11 +1,12 @@
 """Block states as NBT: the entries of the palettes of chunks, structures and Litematica."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from world2minecraft.errors import DamagedFileError, UsageError
+from world2minecraft.minecraft.game_names import read_state, written_state
 from world2minecraft.minecraft.states import BlockState, parse_state
-from world2minecraft.minecraft.versions import name_in_version
 
 
 def state_entry(state: str, data_version: int) -> dict[str, Any]:
@@ -15,8 +16,8 @@ def state_entry(state: str, data_version: int) -> dict[str, Any]:
         >>> state_entry("minecraft:oak_log[axis=y]", 3465)
         {'Name': 'minecraft:oak_log', 'Properties': {'axis': 'y'}}
     """
-    parsed = parse_state(state)
-    entry: dict[str, Any] = {"Name": name_in_version(parsed.name, data_version)}
+    parsed = parse_state(written_state(state, data_version))
+    entry: dict[str, Any] = {"Name": parsed.name}
     if parsed.properties:
         entry["Properties"] = dict(parsed.properties)
     return entry
@@ -35,13 +36,18 @@ def state_text(entry: Mapping[str, Any]) -> str:
     return str(BlockState(name, properties))
 
 
-def palette_texts(entries: Any, path: Any) -> list[str]:
-    """Return the texts of a whole palette of NBT.
+def palette_texts(entries: Any, data_version: Any, path: str | Path) -> list[str]:
+    """Return the states of a whole palette of NBT, as 1.20.1 calls them.
+
+    Args:
+        entries: the list of compounds.
+        data_version: what the file says of the game that wrote it.
+        path: the file that errors name.
 
     Raises:
         DamagedFileError: it is no list of block states.
     """
     try:
-        return [state_text(entry) for entry in entries]
-    except (UsageError, AttributeError, TypeError) as error:
+        return [read_state(state_text(entry), int(data_version)) for entry in entries]
+    except (UsageError, AttributeError, TypeError, ValueError) as error:
         raise DamagedFileError(path, f"has a palette with {error}") from error

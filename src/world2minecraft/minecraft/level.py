@@ -8,6 +8,8 @@ from world2minecraft.minecraft.versions import GameVersion
 MAKER = "world2minecraft"  # The game drops unknown tags when it saves: then the mark is gone.
 MAKER_TAG = "MadeBy"
 NOON = 6000
+FIRST_WITH_DIMENSIONS = 2554  # 20w22a, of 1.16.
+FIRST_WITHOUT_SEEDS = 3105  # 1.19.
 
 # Names as of 1.20.1 to 1.21.10; newer games rename them on opening. Nothing spawns, burns, grows,
 # rains or drops, and no message hides the view.
@@ -81,7 +83,7 @@ def level_data(
         "LastPlayed": Long(0),
         "GameRules": dict(GAME_RULES),
         "DataPacks": {"Enabled": ["vanilla", *[f"file/{p}" for p in packs]], "Disabled": []},
-        "WorldGenSettings": _generation(),
+        **_generation(data_version),
         "Player": _player(spawn, spawn_yaw_deg, data_version),
     }
     return {"Data": {**data, **place, **_calm()}}
@@ -110,8 +112,26 @@ def _calm() -> dict[str, Any]:
     }
 
 
-def _generation() -> dict[str, Any]:
-    """All three dimensions: the game writes them always, and the overworld is a void."""
+def _generation(data_version: int) -> dict[str, Any]:
+    """Return the tags that make the overworld a void; until 1.15 they lay beside the others."""
+    if data_version >= FIRST_WITH_DIMENSIONS:
+        return {"WorldGenSettings": _dimensions(has_seeds=data_version < FIRST_WITHOUT_SEEDS)}
+    void = {
+        "biome": "minecraft:the_void",
+        "layers": [{"block": "minecraft:air", "height": Byte(1)}],
+        "structures": {},
+    }
+    return {
+        "RandomSeed": Long(0),
+        "MapFeatures": Byte(0),
+        "generatorName": "flat",
+        "generatorVersion": 0,
+        "generatorOptions": void,
+    }
+
+
+def _dimensions(*, has_seeds: bool) -> dict[str, Any]:
+    """All three dimensions: the game writes them always; until 1.18 with a seed for each."""
     void = {
         "biome": "minecraft:the_void",
         "features": Byte(0),  # With features the void gets a stone platform at its middle.
@@ -119,14 +139,18 @@ def _generation() -> dict[str, Any]:
         "layers": [{"block": "minecraft:air", "height": 1}],
         "structure_overrides": [],
     }
-    nether = {"type": "minecraft:multi_noise", "preset": "minecraft:nether"}
+    seed: dict[str, Any] = {"seed": Long(0)} if has_seeds else {}
+    if has_seeds:
+        void["structures"] = {"structures": {}}  # The name of the overrides until 1.18.1.
+    nether = {"type": "minecraft:multi_noise", "preset": "minecraft:nether", **seed}
+    end = {"type": "minecraft:the_end", **seed}
     dimensions = {
         "minecraft:overworld": {
             "type": "minecraft:overworld",
             "generator": {"type": "minecraft:flat", "settings": void},
         },
-        "minecraft:the_nether": _noise_dimension("the_nether", "nether", nether),
-        "minecraft:the_end": _noise_dimension("the_end", "end", {"type": "minecraft:the_end"}),
+        "minecraft:the_nether": _noise_dimension("the_nether", "nether", nether, seed),
+        "minecraft:the_end": _noise_dimension("the_end", "end", end, seed),
     }
     return {
         "seed": Long(0),
@@ -136,9 +160,12 @@ def _generation() -> dict[str, Any]:
     }
 
 
-def _noise_dimension(kind: str, settings: str, biomes: dict[str, str]) -> dict[str, Any]:
+def _noise_dimension(
+    kind: str, settings: str, biomes: dict[str, Any], seed: dict[str, Any]
+) -> dict[str, Any]:
     generator = {
         "type": "minecraft:noise",
+        **seed,
         "settings": f"minecraft:{settings}",
         "biome_source": biomes,
     }
@@ -149,7 +176,7 @@ def _player(spawn: tuple[float, float, float], yaw_deg: float, data_version: int
     """The player of a world that is opened alone: a creative one who stands on the floor."""
     return {
         "DataVersion": data_version,
-        "Dimension": "minecraft:overworld",
+        "Dimension": 0 if data_version < FIRST_WITH_DIMENSIONS else "minecraft:overworld",
         "Pos": [float(value) for value in spawn],
         "Motion": [0.0, 0.0, 0.0],
         "Rotation": [Float(yaw_deg), Float(0)],

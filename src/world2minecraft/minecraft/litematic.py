@@ -46,6 +46,7 @@ LIMITS = NbtLimits(bytes=128 << 20)
 MAX_REGIONS = 4096
 VERSIONS = range(4, 8)  # 1.13 to today; before them blocks had the names of 1.12.
 LEAST_BITS = 2
+DEFAULT_GAME = 3465  # 1.20.1, for a file that does not say its game.
 Corner = tuple[int, int, int]
 
 
@@ -203,9 +204,9 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
             raise DamagedFileError(source, f"has {len(named)} regions; 1 to {MAX_REGIONS:,} are")
         boxes = {name: _box(region, source) for name, region in named.items()}
         check_size(_enclosing(list(boxes.values()))[1], source)
-        shift = _shift(root, boxes, source)
+        shift, game = _shift(root, boxes, source), root.get("MinecraftDataVersion", DEFAULT_GAME)
         found = {
-            name: _region_volume(region, *boxes[name], shift, source)
+            name: _region_volume(region, boxes[name], shift, game, source)
             for name, region in named.items()
         }
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
@@ -245,9 +246,14 @@ def _shift(root: Mapping[str, Any], boxes: Mapping[str, Any], source: Path) -> n
 
 
 def _region_volume(
-    region: Mapping[str, Any], low: np.ndarray, size: np.ndarray, shift: np.ndarray, source: Path
+    region: Mapping[str, Any],
+    box: tuple[np.ndarray, np.ndarray],
+    shift: np.ndarray,
+    data_version: Any,
+    source: Path,
 ) -> BlockVolume:
-    texts = palette_texts(region["BlockStatePalette"], source)
+    low, size = box
+    texts = palette_texts(region["BlockStatePalette"], data_version, source)
     palette, number_of = palette_of(texts, source)
     lookup = np.array([number_of[text] for text in texts], np.uint16)
     states = np.empty(tuple(size.tolist()), np.uint16)

@@ -42,19 +42,18 @@ def flattened(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> di
     return {"DataVersion": root["DataVersion"], **kept, **held}
 
 
-def old_sections(
-    root: Mapping[str, Any], place: tuple[int, int], path: Path
-) -> Iterator[Section]:
+def old_sections(root: Mapping[str, Any], place: tuple[int, int], path: Path) -> Iterator[Section]:
     """Return the sections of a flattened old chunk that are not air alone.
 
     Raises:
         DamagedFileError: one is broken.
     """
-    straddles = root["DataVersion"] < FIRST_WITHOUT_GAPS
+    version = root["DataVersion"]
+    straddles = version < FIRST_WITHOUT_GAPS
     for nbt in root["sections"]:
         if isinstance(nbt, dict) and "Palette" not in nbt:
             continue  # It holds light alone.
-        found = section_of(nbt, "Palette", "BlockStates", place, path, straddles=straddles)
+        found = section_of(nbt, "Palette", "BlockStates", place, path, version, straddles=straddles)
         if found is not None:
             yield found
 

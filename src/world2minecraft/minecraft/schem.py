@@ -10,6 +10,7 @@ import numpy as np
 from world2minecraft.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.files import read_bytes, write_bytes
 from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.game_names import read_state, written_state
 from world2minecraft.minecraft.nbt import (
     NbtLimits,
     Short,
@@ -21,10 +22,11 @@ from world2minecraft.minecraft.nbt import (
 from world2minecraft.minecraft.packing import read_varints, write_varints
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.unlabelled import check_size, palette_of, unlabelled
-from world2minecraft.minecraft.versions import GameVersion, game_version, name_in_version
+from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
 LIMITS = NbtLimits(bytes=192 << 20)  # 67 million blocks in three bytes each.
+DEFAULT_GAME = 1952  # 1.14: version 1 does not say its game, and is that old.
 
 
 def write_schem(
@@ -51,7 +53,8 @@ def write_schem(
     if max(volume.states.shape) > 0xFFFF or not volume.states.size:
         raise UsageError(f"a schematic holds 1 to 65,535 blocks a side, not {volume.states.shape}")
     palette = {
-        _state_in_version(state, version): number for number, state in enumerate(volume.palette)
+        written_state(state, version.data_version): number
+        for number, state in enumerate(volume.palette)
     }
     if len(palette) != len(volume.palette):
         raise UsageError("the palette names one block state twice")
@@ -143,11 +146,6 @@ def _relative(entity: BlockEntity, volume: BlockVolume) -> np.ndarray:
     return (np.array(entity.block_pos) - volume.corner).astype(np.int32)
 
 
-def _state_in_version(state: str, version: GameVersion) -> str:
-    name, bracket, rest = state.partition("[")
-    return name_in_version(name, version.data_version) + bracket + rest
-
-
 def _unsigned(side: int) -> Short:
     """A side is an unsigned short in a tag that is signed."""
     return Short(side - 0x10000 if side > 0x7FFF else side)
@@ -167,7 +165,9 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
     data = blocks["Data" if version == 3 else "BlockData"].view(np.uint8)
     if len(data) < cell_count:
         raise DamagedFileError(source, f"says {cell_count:,} blocks and holds fewer")
-    palette, number_of = _palette(blocks["Palette"], source)
+    palette, number_of = _palette(
+        blocks["Palette"], int(tree.get("DataVersion", DEFAULT_GAME)), source
+    )
     width, height, length = size
     states = np.empty((width, height, length), np.uint16)
     _fill(states.transpose(1, 2, 0), data, number_of, source)
@@ -189,12 +189,14 @@ def _corner(tree: Mapping[str, Any]) -> tuple[int, int, int]:
     return int(x), int(y), int(z)
 
 
-def _palette(stated: Mapping[str, int], source: Path) -> tuple[tuple[str, ...], dict[int, int]]:
+def _palette(
+    stated: Mapping[str, int], game: int, source: Path
+) -> tuple[tuple[str, ...], dict[int, int]]:
     """Return our palette, air first, and our number of each of the file's numbers."""
     text_of: dict[int, str] = {}
     for text, number in stated.items():
         try:
-            state = str(parse_state(text))
+            state = read_state(str(parse_state(text)), game)
         except UsageError as error:
             raise DamagedFileError(source, f"has a palette with {error}") from error
         if not 0 <= number <= 0xFFFF or number in text_of:
@@ -204,9 +206,7 @@ def _palette(stated: Mapping[str, int], source: Path) -> tuple[tuple[str, ...], 
     return palette, {number: number_of[state] for number, state in text_of.items()}
 
 
-def _fill(
-    cells: np.ndarray, data: np.ndarray, number_of: Mapping[int, int], source: Path
-) -> None:
+def _fill(cells: np.ndarray, data: np.ndarray, number_of: Mapping[int, int], source: Path) -> None:
     """Fill uint16 [Y, Z, X] with our numbers of the file's varints."""
     lookup = np.full(max(number_of, default=0) + 1, -1, np.int32)
     for number, ours in number_of.items():

@@ -9,6 +9,7 @@ import numpy as np
 
 from world2minecraft.errors import DamagedFileError, UsageError
 from world2minecraft.minecraft.entries import state_entry, state_text
+from world2minecraft.minecraft.game_names import read_state
 from world2minecraft.minecraft.packing import SECTION, pack_section
 from world2minecraft.minecraft.section_words import words_of_today
 from world2minecraft.types import AIR
@@ -62,6 +63,7 @@ def section_of(
     words_key: str,
     place: tuple[int, int],
     path: Path,
+    data_version: int,
     *,
     straddles: bool = False,
     y: Any = None,
@@ -74,6 +76,7 @@ def section_of(
         words_key: the name of the words in it.
         place: the chunk's position in the world, in chunks.
         path: the file that errors name.
+        data_version: that of the game that wrote the chunk.
         straddles: whether numbers go over from one word to the next, as before 1.16.
         y: the section's height; ``Y`` of ``blocks`` where it is left out.
 
@@ -81,7 +84,7 @@ def section_of(
         DamagedFileError: it is broken.
     """
     try:
-        palette = tuple(map(_text_of, blocks[palette_key]))
+        palette = tuple(read_state(_text_of(held), data_version) for held in blocks[palette_key])
         words = blocks.get(words_key, np.zeros(0, np.int64))
         if words.dtype != np.int64:
             raise ValueError

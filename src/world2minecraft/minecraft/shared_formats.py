@@ -33,10 +33,12 @@ class LitematicFormat:
         self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
     ) -> None:
         """Write one region under the options' name."""
+        from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
         from world2minecraft.minecraft.litematic import write_litematic  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         version = game_version(options.mc_version)
+        count_unknown(volume, version, losses)
         write_litematic(volume, path, name=options.name, version=version)
 
 
@@ -62,6 +64,7 @@ class StructureFormat:
         self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
     ) -> None:
         """Write one structure; one too large for a structure block gets a pack of pieces too."""
+        from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
         from world2minecraft.minecraft.structure import write_structure  # noqa: PLC0415
         from world2minecraft.minecraft.structure_pack import (  # noqa: PLC0415
             PACK_SUFFIX,
@@ -71,6 +74,7 @@ class StructureFormat:
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         version = game_version(options.mc_version)
+        count_unknown(volume, version, losses)
         write_structure(volume, path, version=version)
         if is_too_large(volume, version):
             pack = path.with_name(path.stem + PACK_SUFFIX)

@@ -30,6 +30,7 @@ from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
 LIMITS = NbtLimits(bytes=128 << 20)
+DEFAULT_GAME = 3465  # 1.20.1, for a file that does not say its game.
 MAX_PALETTES = 1000
 MAX_BLOCKS = 3_000_000  # Listed one by one: 108 MB.
 Corner = tuple[int, int, int]
@@ -148,7 +149,9 @@ def structure_of(
 def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: int) -> BlockVolume:
     size = check_size((int(side) for side in root["size"]), source)
     blocks = BlockList.of(root["blocks"], source)
-    texts = palette_texts(_palette(root, source, losses, variant), source)
+    texts = palette_texts(
+        _palette(root, source, losses, variant), root.get("DataVersion", DEFAULT_GAME), source
+    )
     palette, number_of = palette_of(texts, source)
     places, numbers = blocks.places, blocks.states
     if len(numbers) and not 0 <= numbers.min() <= numbers.max() < len(texts):

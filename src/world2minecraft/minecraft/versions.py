@@ -4,6 +4,7 @@ import json
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
 from world2minecraft.errors import UnknownNameError
 
@@ -38,9 +39,14 @@ class GameVersion:
 
 @cache
 def game_versions() -> tuple[GameVersion, ...]:
-    """All known versions, oldest first."""
-    text = files("world2minecraft.minecraft").joinpath("data/versions.json").read_text("utf-8")
-    return tuple(GameVersion(name, *numbers) for name, *numbers in json.loads(text)["versions"])
+    """The versions that everything is written for, 1.20 and later, oldest first."""
+    return tuple(GameVersion(name, *numbers) for name, *numbers in _table()["versions"])
+
+
+@cache
+def old_versions() -> tuple[GameVersion, ...]:
+    """The versions before, from 1.13 on, oldest first: files are written for them, not packs."""
+    return tuple(GameVersion(name, *numbers) for name, *numbers in _table()["old_versions"])
 
 
 def game_version(name: str = DEFAULT_VERSION) -> GameVersion:
@@ -49,10 +55,11 @@ def game_version(name: str = DEFAULT_VERSION) -> GameVersion:
     Raises:
         UnknownNameError: the table has no such version; the message suggests the nearest.
     """
-    for version in game_versions():
+    known = (*old_versions(), *game_versions())
+    for version in known:
         if version.name == name:
             return version
-    raise UnknownNameError("Minecraft version", name, [v.name for v in game_versions()])
+    raise UnknownNameError("Minecraft version", name, [v.name for v in known])
 
 
 def name_in_version(state_name: str, data_version: int) -> str:
@@ -67,6 +74,17 @@ def name_in_version(state_name: str, data_version: int) -> str:
 
 
 @cache
+def new_names() -> dict[str, str]:
+    """What blocks of the table's version are called since; the newer name to the older."""
+    return {new: old for old, (_, new) in _renamed().items()}
+
+
+@cache
 def _renamed() -> dict[str, tuple[int, str]]:
+    return {old: (since, new) for since, old, new in _table()["renamed_blocks"]}
+
+
+@cache
+def _table() -> dict[str, Any]:
     text = files("world2minecraft.minecraft").joinpath("data/versions.json").read_text("utf-8")
-    return {old: (since, new) for since, old, new in json.loads(text)["renamed_blocks"]}
+    return json.loads(text)

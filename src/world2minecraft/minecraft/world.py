@@ -4,7 +4,7 @@ import os
 import shutil
 import tempfile
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,11 @@ from world2minecraft.minecraft.chunks import ChunkWriter
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.level import MAKER, MAKER_TAG, level_data
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
+from world2minecraft.minecraft.old_chunks import (
+    FIRST_ENTITY_FILES,
+    FIRST_WITHOUT_LEVEL,
+    OldChunkWriter,
+)
 from world2minecraft.minecraft.sizes import size_pack
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.world_reading import Place, read_level, read_world
@@ -115,7 +120,7 @@ def _move(draft: Path, target: Path) -> None:
 
 
 def _write_regions(volume: BlockVolume, folder: Path, version: GameVersion) -> None:
-    writer = ChunkWriter(volume.states, volume.palette, version)
+    write = _chunk_writer(volume, version)
     held: dict[Place, list[dict[str, Any]]] = defaultdict(list)
     for entity in volume.block_entities:
         x, y, z = entity.block_pos
@@ -123,12 +128,24 @@ def _write_regions(volume: BlockVolume, folder: Path, version: GameVersion) -> N
         held[x >> 4, z >> 4].append(nbt)
     regions: dict[Place, dict[Place, bytes]] = defaultdict(dict)
     for place in sorted({*_chunk_places(volume), *held}):
-        data = writer.chunk(place, volume.corner, held.get(place, []))
+        data = write(place, held.get(place, []))
         if data is not None:
             regions[place[0] >> 5, place[1] >> 5][place] = data
     if not regions:
         regions[0, 0] = {}
     _write_region_files(regions, folder / "region")
+
+
+def _chunk_writer(
+    volume: BlockVolume, version: GameVersion
+) -> Callable[[Place, list[dict[str, Any]]], bytes | None]:
+    """Return what makes a chunk of its place and its block entities, as the version has them."""
+    if version.level_data_version >= FIRST_WITHOUT_LEVEL:
+        today = ChunkWriter(volume.states, volume.palette, version)
+        return lambda place, held: today.chunk(place, volume.corner, held)
+    old = OldChunkWriter(volume.states, volume.palette, version)
+    entities = _entities_by_chunk(volume.entities)
+    return lambda place, held: old.chunk(place, volume.corner, held, entities.get(place, ()))
 
 
 def _chunk_places(volume: BlockVolume) -> Iterator[Place]:
@@ -148,12 +165,10 @@ def _write_region_files(regions: Mapping[Place, Mapping[Place, bytes]], folder: 
 
 
 def _write_entities(entities: tuple[Entity, ...], folder: Path, version: GameVersion) -> None:
-    held: dict[Place, list[dict[str, Any]]] = defaultdict(list)
-    for number, entity in enumerate(entities):
-        x, _, z = entity.position
-        held[int(x // 16), int(z // 16)].append(entity_nbt(entity, number))
+    if version.level_data_version < FIRST_ENTITY_FILES:
+        return  # They lie in the chunks.
     regions: dict[Place, dict[Place, bytes]] = defaultdict(dict)
-    for place, found in held.items():
+    for place, found in _entities_by_chunk(entities).items():
         root = {
             "DataVersion": version.level_data_version,
             "Position": np.array(place, np.int32),
@@ -161,3 +176,11 @@ def _write_entities(entities: tuple[Entity, ...], folder: Path, version: GameVer
         }
         regions[place[0] >> 5, place[1] >> 5][place] = write_nbt(root)
     _write_region_files(regions, folder / "entities")
+
+
+def _entities_by_chunk(entities: tuple[Entity, ...]) -> dict[Place, list[dict[str, Any]]]:
+    held: dict[Place, list[dict[str, Any]]] = defaultdict(list)
+    for number, entity in enumerate(entities):
+        x, _, z = entity.position
+        held[int(x // 16), int(z // 16)].append(entity_nbt(entity, number))
+    return dict(held)
