@@ -26,6 +26,7 @@ from world2minecraft.edit.into_world import build_into, built_mask, take_blocks_
 from world2minecraft.edit.placing import moved, placed, trimmed
 from world2minecraft.errors import ConflictError, InputError, UsageError
 from world2minecraft.minecraft import region_edit
+from world2minecraft.minecraft.anvil import pack_region, read_region
 from world2minecraft.minecraft.level import level_data
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
 from world2minecraft.minecraft.region_edit import read_region_file
@@ -159,7 +160,9 @@ def test_the_same_build_gives_the_same_bytes(tmp_path):
 
 def test_blocks_are_taken_out_of_a_world_that_was_played_in(world):
     before = world_blocks(world)
-    build_into(world, room())
+    pack = {"datapacks/player_size.zip": b"another size"}
+    old_pack = (world / "datapacks/player_size.zip").read_bytes()
+    build_into(world, room(), extra=pack)
     # Someone breaks a wall, and builds a tower elsewhere in the same chunk.
     x, y, z = -6, 62, -20
     hole = plain(np.zeros((1, 1, 1)), (AIR,), (x, y, z))
@@ -179,6 +182,7 @@ def test_blocks_are_taken_out_of_a_world_that_was_played_in(world):
     assert [e.id for e in found.entities] == ["minecraft:armor_stand"]
     assert sorted(e.block_pos for e in found.block_entities) == [(-12, 60, -12), (20, 66, 20)]
     assert not (world / "w2m_undo").exists()
+    assert (world / "datapacks/player_size.zip").read_bytes() == old_pack
 
 
 def test_a_chest_that_was_built_over_comes_back_with_its_things(world):
@@ -260,9 +264,7 @@ def test_a_world_that_is_open_in_the_game_is_left_alone(world):
     assert (world / "session.lock").read_bytes() == "\u2603".encode()
 
 
-def test_a_chunk_too_large_for_its_region_goes_to_a_file_of_its_own_and_back(
-    tmp_path, monkeypatch
-):
+def test_a_chunk_too_large_for_its_region_goes_to_a_file_of_its_own_and_back(tmp_path, monkeypatch):
     monkeypatch.setattr(region_edit, "MOST_SECTORS", 3)
     rng = np.random.default_rng(1)
     names = [f"mod:{rng.integers(1 << 60)}_{rng.integers(1 << 60)}_{n}" for n in range(2000)]
@@ -281,6 +283,17 @@ def test_a_chunk_too_large_for_its_region_goes_to_a_file_of_its_own_and_back(
     assert world_blocks(world) == blocks_by_place(calm)
     for _ in range(2):
         take_back(steps_of(world)[-1])
+    assert tree(world) == before
+
+
+@pytest.mark.parametrize("way", ["gzip", "none", "lz4"])
+def test_chunks_packed_in_any_way_are_edited(world, way):
+    for path in sorted((world / "region").glob("*.mca")):
+        path.write_bytes(pack_region(dict(read_region(path)), compression=way)[0])
+    before, expected = tree(world), slowly(world_blocks(world), room())
+    build_into(world, room())
+    assert world_blocks(world) == expected
+    take_back(steps_of(world)[-1])
     assert tree(world) == before
 
 

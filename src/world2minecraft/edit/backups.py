@@ -145,6 +145,21 @@ def changed_since(step: Step) -> list[str]:
     ]
 
 
+def files_of_its_own(step: Step) -> dict[str, bytes | None]:
+    """Return what a step's files beside the regions were before it, where they are as it left them.
+
+    Raises:
+        InputError: a backup cannot be read.
+    """
+    found: dict[str, bytes | None] = {}
+    for number, entry in enumerate(step.files):
+        is_ours = entry.path.startswith("datapacks/")
+        if is_ours and _checksum(step.world / entry.path) == entry.after:
+            copy = step.folder / "old" / str(number)
+            found[entry.path] = read_bytes(copy, MAX_FILE_BYTES) if entry.before else None
+    return found
+
+
 def take_back(step: Step) -> None:
     """Bring back every byte that a step changed, and forget the step.
 

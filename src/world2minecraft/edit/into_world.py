@@ -11,7 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.edit.backups import JOURNAL, Step, commit, forget, recover, steps_of
+from world2minecraft.edit.backups import (
+    JOURNAL,
+    Step,
+    commit,
+    files_of_its_own,
+    forget,
+    recover,
+    steps_of,
+)
 from world2minecraft.edit.draft import data_keys
 from world2minecraft.edit.journal import Journal
 from world2minecraft.edit.world_box import WorldBox, is_void, read_world_box
@@ -114,6 +122,7 @@ def take_blocks_out(world: Path) -> Outcome:
         found = WorldEntities(world, box.low, box.states.shape, box.data_version)
         gone, come = edit.after.entities, edit.before.entities
         files = box.changed_files(after, data) | found.changed_files(gone, come)
+        files |= files_of_its_own(steps[-1])
         step = commit(world, files, "taken back block by block")
         for old in (steps[-1], step):
             if old is not None:

@@ -12,19 +12,17 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.errors import DamagedFileError
 from world2minecraft.files import read_bytes
 from world2minecraft.minecraft.anvil import (
     EXTERNAL,
-    GZIP,
     MAX_CHUNK_BYTES,
     MAX_REGION_BYTES,
-    PLAIN,
     SECTOR,
     ZLIB,
     region_position,
+    unpack_chunk,
 )
-from world2minecraft.minecraft.nbt import unpack
 
 Place = tuple[int, int]
 MOST_SECTORS = 255  # A longer record lies in a file of its own.
@@ -57,7 +55,7 @@ class RegionFile:
         if kind & EXTERNAL:
             source = self.path.parent / outside_name(place)
             packed = read_bytes(source, MAX_CHUNK_BYTES)
-        return _unpacked(packed, kind & ~EXTERNAL, source, place)
+        return unpack_chunk(packed, kind & ~EXTERNAL, source, place)
 
     def with_chunks(self, chunks: Mapping[Place, bytes]) -> dict[str, bytes | None]:
         """Return the files that change when chunks are put in: their bytes, by name.
@@ -117,18 +115,6 @@ def _record(data: bytes, location: int, path: Path, place: Place) -> bytes:
     if not 1 <= length <= sectors * SECTOR - 4 or len(record) != length:
         raise DamagedFileError(path, f"chunk {place} says {length:,} bytes and holds fewer")
     return record
-
-
-def _unpacked(packed: bytes, kind: int, source: Path, place: Place) -> bytes:
-    if kind == PLAIN:
-        return packed
-    if kind not in (GZIP, ZLIB):
-        reason = f"chunk {place} is packed in way {kind} (4 is LZ4), which is not edited"
-        raise InputError(source, f"{reason}; open the world once with deflate and save it")
-    data = unpack(packed, source, MAX_CHUNK_BYTES)
-    if data is packed:
-        raise DamagedFileError(source, f"chunk {place} is not packed as it says")
-    return data
 
 
 def _packed(records: Mapping[Place, bytes], times: Mapping[Place, int]) -> bytes:
