@@ -124,9 +124,7 @@ def region_position(path: Path) -> tuple[int, int]:
         raise DamagedFileError(path, "is not named like a region file, r.X.Z.mca") from None
 
 
-def _read_chunk(
-    path: Path, stream: BinaryIO, position: tuple[int, int], sectors: range
-) -> bytes:
+def _read_chunk(path: Path, stream: BinaryIO, position: tuple[int, int], sectors: range) -> bytes:
     stream.seek(sectors.start * SECTOR)
     record = stream.read(len(sectors) * SECTOR)
     if len(record) < _HEAD.size:
