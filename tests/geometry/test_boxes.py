@@ -92,6 +92,14 @@ def test_at_a_bound_of_one_the_shape_stays(labels):
     assert np.array_equal(painted_boxes(coarsened(labels, 1.0), labels.shape) > 0, labels > 0)
 
 
+def test_boxes_are_joined_no_further_than_asked():
+    stairs = np.tril(np.ones((12, 12), np.int32))[:, :, None]
+    counts = [len(coarsened(stairs, 0.5, enough=most)) for most in (1, 4, 8, 99)]
+    assert counts == sorted(counts)
+    assert 4 >= counts[1] > counts[0] == 1
+    assert counts[3] == len(partition(stairs))
+
+
 def test_open_cells_are_filled_at_no_cost():
     hollow = np.ones((6, 6, 6), np.int32)
     hollow[1:-1, 1:-1, 1:-1] = 0

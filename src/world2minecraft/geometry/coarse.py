@@ -15,7 +15,11 @@ RECOLOUR = 0.5  # What a cell costs that keeps its place and takes another label
 
 
 def coarsened(
-    labels: np.ndarray, least_iou: float, open_cells: np.ndarray | None = None
+    labels: np.ndarray,
+    least_iou: float,
+    open_cells: np.ndarray | None = None,
+    *,
+    enough: int = 1,
 ) -> np.ndarray:
     """Return fewer boxes that share no cell, their union of at least an IoU with a shape.
 
@@ -25,6 +29,7 @@ def coarsened(
             another label count by half.
         open_cells: bool [X, Y, Z], cells without a label that may be filled at no cost, such as
             those inside an object that no camera saw.
+        enough: boxes are joined no further once they are so few.
 
     Returns:
         int32 [N, 7], as ``partition`` gives them.
@@ -35,19 +40,19 @@ def coarsened(
     if not 0 < least_iou <= 1:
         raise ValueError(f"least_iou must be above 0, up to 1, not {least_iou}")
     boxes = partition(labels).astype(np.int64)
-    if not 1 < len(boxes) <= MOST_BOXES:
+    if not enough < len(boxes) <= MOST_BOXES:
         return boxes.astype(np.int32)
     costly = labels == 0
     if open_cells is not None:
         costly &= ~open_cells
     empty = np.zeros(np.add(labels.shape, 1), np.int64)
     empty[1:, 1:, 1:] = costly.cumsum(0).cumsum(1).cumsum(2)
-    alive = _coarsen(boxes, empty, float(np.count_nonzero(labels)), float(least_iou))
+    alive = _coarsen(boxes, empty, float(np.count_nonzero(labels)), float(least_iou), enough)
     return join_pairs(boxes[alive].astype(np.int32))
 
 
 @njit
-def _coarsen(boxes, empty, size, least):  # pragma: no cover
+def _coarsen(boxes, empty, size, least, enough):  # pragma: no cover
     """Change ``boxes`` in place, step by step; return which of them are left, bool [N].
 
     ``met`` is the size of what the shape and the boxes share, less what was relabelled by half;
@@ -55,7 +60,7 @@ def _coarsen(boxes, empty, size, least):  # pragma: no cover
     """
     alive = np.ones(len(boxes), np.bool_)
     met, union = size, size
-    while True:
+    while alive.sum() > enough:
         best, first, second = np.inf, -1, -1
         for i in range(len(boxes)):
             if not alive[i]:
@@ -80,6 +85,7 @@ def _coarsen(boxes, empty, size, least):  # pragma: no cover
         added, recoloured, _ = _joined(boxes, alive, empty, first, second)
         met, union = met - recoloured, union + added
         _join(boxes, alive, first, second)
+    return alive
 
 
 @njit

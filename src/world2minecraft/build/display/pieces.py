@@ -13,7 +13,7 @@ from world2minecraft.build.display.frame import Piece
 from world2minecraft.furniture import Part
 from world2minecraft.geometry.boxes import partition
 from world2minecraft.geometry.coarse import coarsened
-from world2minecraft.geometry.covers import few_boxes
+from world2minecraft.geometry.covers import cover
 
 LEAST_IOU = 0.9  # What coarser boxes keep of the shape; the issue's bound.
 FINE_M = 0.02  # The grid on which a shape of too many boxes is made coarser.
@@ -21,6 +21,7 @@ SAME_M = 1e-6  # Planes nearer than this are one.
 # Blocks by which boxes that overlap stand back from one another, so that their faces, which lie
 # in one plane, do not flicker: a screen tells so much apart across a room.
 INSET_BLOCKS = 0.0005
+Planes = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def pieces_of(
@@ -35,12 +36,13 @@ def pieces_of(
         blocks_per_metre: the scale, by which pieces that overlap are kept apart.
     """
     names = sorted(set(states))
-    labels, planes = _cut(parts, [names.index(state) + 1 for state in states])
+    numbers = [names.index(state) + 1 for state in states]
+    labels, planes = _cut(parts, numbers)
     boxes = partition(labels)
     if len(boxes) > most:  # Only then boxes may overlap, as those of a round table's top do.
-        boxes = few_boxes(labels)
+        boxes = min(boxes, cover(labels), _whole(parts, numbers, planes), key=len)
     if len(boxes) > most:
-        coarse, fine = _coarse(labels, planes)
+        coarse, fine = _coarse(labels, planes, most)
         if len(coarse) < len(boxes):
             boxes, planes = coarse, fine
     inset = INSET_BLOCKS / blocks_per_metre * _depths(boxes)
@@ -54,9 +56,22 @@ def pieces_of(
     return pieces
 
 
-def _cut(
-    parts: Sequence[Part], labels: Sequence[int]
-) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def _whole(parts: Sequence[Part], labels: Sequence[int], planes: Planes) -> np.ndarray:
+    """Return the parts themselves as boxes, int64 [N, 7], between planes; the smallest first.
+
+    Where they overlap the larger stands back from the smaller, which shows.
+    """
+    corners = np.array([part.box_m for part in parts])
+    order = np.argsort(np.round(np.prod(corners[:, 3:] - corners[:, :3], axis=1), 9), kind="stable")
+    return np.array(
+        [
+            [labels[n], *(_place(planes[axis % 3], corners[n, axis]) for axis in range(6))]
+            for n in order.tolist()
+        ]
+    )
+
+
+def _cut(parts: Sequence[Part], labels: Sequence[int]) -> tuple[np.ndarray, Planes]:
     """Return labels, int32 [X, Y, Z], of the cells between the planes of parts, and the planes."""
     boxes = np.array([part.box_m for part in parts], np.float64).reshape(-1, 2, 3)
     x, y, z = (_distinct(boxes[:, :, axis].ravel()) for axis in range(3))
@@ -83,9 +98,7 @@ def _place(planes: np.ndarray, value: float) -> int:
     return int(np.abs(planes - value).argmin())
 
 
-def _coarse(
-    labels: np.ndarray, planes: tuple[np.ndarray, np.ndarray, np.ndarray]
-) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def _coarse(labels: np.ndarray, planes: Planes, most: int) -> tuple[np.ndarray, Planes]:
     """Return boxes of a grid of 2 cm whose union has an IoU of at least a bound."""
     fine, picks = [], []
     for each in planes:
@@ -94,7 +107,8 @@ def _coarse(
         middles = (edges[:-1] + edges[1:]) / 2
         picks.append(np.clip(np.searchsorted(each, middles) - 1, 0, len(each) - 2))
         fine.append(edges)
-    return coarsened(labels[np.ix_(*picks)], LEAST_IOU), (fine[0], fine[1], fine[2])
+    fewer = coarsened(labels[np.ix_(*picks)], LEAST_IOU, enough=most)
+    return fewer, (fine[0], fine[1], fine[2])
 
 
 def _depths(boxes: np.ndarray) -> np.ndarray:
