@@ -86,7 +86,7 @@ def joined(tops: dict[int, Worktop]) -> dict[int, Worktop]:
     The arms of an L are objects of their own, yet one plate lies over both. The larger part says
     what they all are, since it was seen best.
     """
-    by_size = sorted(tops, key=lambda number: (-int(tops[number].columns.sum()), number))
+    by_size = sorted(tops, key=lambda number: (-_area(tops[number]), number))
     result: dict[int, Worktop] = {}
     for number in by_size:
         near = grown(tops[number].columns, (1, 1))
@@ -96,6 +96,11 @@ def joined(tops: dict[int, Worktop]) -> dict[int, Worktop]:
             own = tops[number]
             result[number] = whole._replace(columns=own.columns, plan=own.plan)
     return result
+
+
+def _area(top: Worktop) -> int:
+    """Return how large it is, by cells where they are known: at any scale the same is largest."""
+    return int((top.columns if top.plan is None else top.plan).sum())
 
 
 def _meets(top: Worktop, other: Worktop, near: np.ndarray) -> bool:

@@ -24,7 +24,9 @@ PLATE_M = 0.04
 PANEL_M = 0.17  # A thing this thin is a panel: two cells of 8 cm.
 WIDE_M = 0.3  # Narrower things are no front.
 UNIT_M = 0.5  # The depth of a wall unit, at most.
-UNSEEN_SHARE = 0.7  # Of the space between a front and its wall: it was never looked into.
+UNSEEN_SHARE = 0.6  # Of the space between a front and its wall: it was hardly looked into.
+WALL_SHARE = 0.1  # Of the wall behind a unit, that was seen under or over it.
+AROUND_CELLS = 4  # How far under and over the unit its wall is looked for.
 
 
 def as_counter(placement: Placement, tops: Mapping[int, Worktop]) -> Placement:
@@ -102,7 +104,9 @@ def _unseen_depth(
             return 0.0
         window[axis] = slice(layer, layer + 1)
         labels, source = grid.labels[tuple(window)], grid.source[tuple(window)]
-        if np.isin(labels, WALLS).mean() >= 0.5:
+        rows = slice(max(window[2].start - AROUND_CELLS, 0), window[2].stop + AROUND_CELLS)
+        behind = grid.labels[(*window[:2], rows)]
+        if np.isin(behind, WALLS).mean() >= WALL_SHARE and not (labels == 0).mean() > WALL_SHARE:
             return (step - 1) * grid.voxel_m
         if ((source == UNSEEN) | np.isin(labels, WALLS)).mean() < UNSEEN_SHARE:
             return 0.0
