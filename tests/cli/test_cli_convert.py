@@ -1,14 +1,19 @@
 """``w2m convert``: any pair of formats, and nothing lost when it goes wrong."""
 
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from world2minecraft import cli
-from world2minecraft.minecraft import formats
+from world2minecraft.exchange import forms
+from world2minecraft.exchange.forms import read_form, write_form
+from world2minecraft.exchange.glb import GlbWriter, read_glb
+from world2minecraft.exchange.objects import write_placements
+from world2minecraft.exchange.scene import scene_of, write_scene
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
-from world2minecraft.types import AIR, BlockVolume
+from world2minecraft.types import AIR, BlockVolume, Entity, Placement
 
 
 @pytest.fixture
@@ -116,7 +121,7 @@ def test_a_write_that_fails_leaves_the_old_one_and_no_litter(schem, tmp_path, mo
         raise OSError(28, "No space left on device", str(target))
 
     if step == "write":
-        monkeypatch.setattr(formats, "write_blocks", full)
+        monkeypatch.setattr(forms, "write_form", full)
     else:
         monkeypatch.setattr(os, "replace", full)
     assert convert(schem, target, "--force") == 3
@@ -150,3 +155,112 @@ def test_the_same_input_gives_the_same_bytes(schem, tmp_path):
     for name in ("one.schem", "two.schem"):
         assert convert(schem, tmp_path / name) == 0
     assert (tmp_path / "one.schem").read_bytes() == (tmp_path / "two.schem").read_bytes()
+
+
+# Forms that are not the game's, and what is lost.
+
+EVERY_PAIR = ("house", "a.schem", "a.litematic", "a.nbt", "a.zip", "a.mcfunction", "a.glb")
+
+
+@pytest.mark.parametrize("target", EVERY_PAIR)
+@pytest.mark.parametrize("source", [*EVERY_PAIR, "a.mcstructure"])
+def test_any_form_becomes_any_other(volume, tmp_path, capsys, source, target):
+    write_form(volume, tmp_path / "from" / source)
+    assert convert(tmp_path / "from" / source, tmp_path / "to" / target) == 0
+    assert names(read_form(tmp_path / "to" / target)) == names(volume)
+    assert "not " not in capsys.readouterr().out
+
+
+def test_what_is_lost_is_told(volume, tmp_path, capsys):
+    sofa = "tmeo:shafa_1x_2[facing=east]"
+    cat = Entity((1.0, 65.0, 1.0), "minecraft:cat")
+    labels = np.where(volume.states > 0, 5, 0).astype(np.uint8)
+    held = replace(volume, palette=(*volume.palette[:2], sofa), entities=(cat,), semantic=labels)
+    write_form(held, tmp_path / "a.glb")
+    assert convert(tmp_path / "a.glb", tmp_path / "b.mcstructure") == 0
+    assert capsys.readouterr().out.splitlines()[1:] == [
+        "not written to b.mcstructure: 1 blocks of tmeo:shafa_1x_2, which Bedrock has not",
+        "not written to b.mcstructure: 1 entities",
+        "not written to b.mcstructure: 8 labels of blocks (class and object)",
+    ]
+
+
+@pytest.fixture
+def run_folder(volume, tmp_path):
+    """A run as the program leaves it: a world, its labels, and the template of its object."""
+    semantic = np.where(volume.states > 0, 3, 0).astype(np.uint8)
+    semantic[1, 1, 1] = 5
+    instance = np.where(semantic == 5, 7, 0).astype(np.uint16)
+    scaled = np.diag([0.25, 0.25, 0.25, 1.0])
+    held = replace(volume, semantic=semantic, instance=instance, block_to_room=scaled)
+    run = tmp_path / "run"
+    write_form(held, run / "build" / "world")
+    scene = scene_of(
+        held, mc_version="1.20.1", data_version=3465, spawn=(0, 64, 0), spawn_yaw_deg=0
+    )
+    write_scene(run / "build", scene)
+    chair = Placement(7, 5, "chair", [0, 0, 0], [1, 1, 1], 0, 1.0)
+    write_placements(run / "placements.json", (chair,))
+    return run
+
+
+def test_a_run_keeps_what_its_blocks_are(run_folder, tmp_path, capsys):
+    assert convert(run_folder, tmp_path / "room.glb") == 0
+    assert "not " not in capsys.readouterr().out
+    tree, _ = read_glb(tmp_path / "room.glb")
+    assert [node["name"] for node in tree["nodes"]] == ["wall", "chair_7"]
+    assert tree["nodes"][1]["extras"] == {
+        "class": 5,
+        "class_name": "chair",
+        "instance": 7,
+        "size_m": [0.25, 0.25, 0.25],
+        "template": "chair",
+    }
+    assert convert(run_folder / "build" / "world", tmp_path / "again.glb") == 0
+    assert convert(run_folder / "build", tmp_path / "third.glb") == 0
+    assert (tmp_path / "again.glb").read_bytes() == (tmp_path / "third.glb").read_bytes()
+
+
+def test_a_run_becomes_a_scene_for_habitat(run_folder, tmp_path, capsys):
+    target = tmp_path / "room.habitat"
+    assert convert(run_folder, target) == 0
+    assert (target / "room.scene_dataset_config.json").is_file()
+    assert "not written to room.habitat: 8 block states" in capsys.readouterr().out
+    assert convert(run_folder, target) == 2
+    assert convert(run_folder, target, "--force") == 0
+    (tmp_path / "mine.habitat").mkdir()
+    (tmp_path / "mine.habitat" / "thesis").write_text("years of work")
+    assert convert(run_folder, tmp_path / "mine.habitat", "--force") == 2
+    assert "is a folder of other things" in capsys.readouterr().err
+    assert convert(target, tmp_path / "b.schem") == 3
+
+
+def test_a_scale_may_be_said_where_there_is_none(schem, run_folder, tmp_path, capsys):
+    assert convert(schem, tmp_path / "a.glb", "--blocks-per-metre", "4") == 0
+    assert read_form(tmp_path / "a.glb").blocks_per_metre == 4
+    assert convert(schem, tmp_path / "b.glb", "--blocks-per-metre", "0") == 2
+    assert convert(run_folder, tmp_path / "b.glb", "--blocks-per-metre", "2") == 2
+    assert "--blocks-per-metre is 4 for this room; leave it out" in capsys.readouterr().err
+
+
+def test_meshes_of_others_are_refused(tmp_path, capsys):
+    writer = GlbWriter("another program")
+    (tmp_path / "a.glb").write_bytes(writer.to_bytes())
+    assert convert(tmp_path / "a.glb", tmp_path / "b.schem") == 3
+    assert "holds meshes and no blocks; only a .glb that this program wrote is read" in (
+        capsys.readouterr().err
+    )
+
+
+def test_a_large_structure_brings_its_pieces(volume, tmp_path):
+    states = np.ones((60, 2, 50), np.uint16)
+    none = np.zeros(states.shape, np.uint8)
+    long = replace(volume, states=states, semantic=none, instance=states * 0)
+    write_form(long, tmp_path / "a.schem")
+    assert convert(tmp_path / "a.schem", tmp_path / "hall.nbt") == 0
+    beside = [path.name for path in tmp_path.iterdir() if path.name.startswith("hall")]
+    assert len(beside) == 2
+    assert convert(tmp_path / "a.schem", tmp_path / "hall.nbt", "--force") == 0
+    (tmp_path / "hall.nbt").unlink()
+    assert convert(tmp_path / "a.schem", tmp_path / "hall.nbt") == 2
+    assert not (tmp_path / "hall.nbt").exists()

@@ -5,7 +5,13 @@ import pytest
 from block_volumes import random_volume, state_texts, volume_of
 
 from world2minecraft.errors import InputError, OutputError, UnknownNameError, UsageError
-from world2minecraft.minecraft.formats import FORMATS, WriteOptions, read_blocks, write_blocks
+from world2minecraft.minecraft.formats import (
+    FORMATS,
+    LABELS,
+    WriteOptions,
+    read_blocks,
+    write_blocks,
+)
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.spawn import top_of_middle
 from world2minecraft.types import AIR
@@ -39,7 +45,7 @@ def test_labels_are_counted_as_lost_where_a_format_has_none(tmp_path):
     labels = np.where(VOLUME.states > 0, 5, 0).astype(np.uint8)
     losses = Losses()
     write_blocks(replace(VOLUME, semantic=labels), tmp_path / "a.schem", losses=losses)
-    assert list(losses) == [("blocks' labels (class and object)", int((labels > 0).sum()))]
+    assert list(losses) == [(LABELS, int((labels > 0).sum()))]
 
 
 def test_every_format_of_the_registry_loads():

@@ -1,24 +1,34 @@
-"""``w2m convert``: one Minecraft format into another, by way of BlockVolume."""
+"""``w2m convert``: any form of a room or a build into any other, by way of BlockVolume."""
 
 import os
 import tempfile
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from world2minecraft.errors import InputError, OutputError, UsageError
 
+if TYPE_CHECKING:
+    from world2minecraft.minecraft.losses import Losses
+    from world2minecraft.types import BlockVolume
+
 EXAMPLES = """\
 w2m convert house.schem worlds/house        a schematic to a world folder
-w2m convert worlds/house house.schem        a world folder to a schematic
-w2m convert house.schem house.zip           a schematic to a datapack
+w2m convert worlds/house house.litematic    a world folder to a Litematica file
+w2m convert OUT room.glb                    a run: one mesh for each of its objects
+w2m convert OUT kitchen.habitat             a run: a scene dataset for Habitat-Sim
+w2m convert OUT room.mcstructure            a run: a structure of Bedrock Edition
 w2m convert a.schem b.schem --schem-version 3 --force
 """
+HABITAT_MARK = "*.scene_dataset_config.json"
 
 
 def run(
-    source: Annotated[Path, typer.Argument(metavar="A", help="What to read: a file or a world.")],
+    source: Annotated[
+        Path, typer.Argument(metavar="A", help="What to read: a file, a world, a run's folder.")
+    ],
     target: Annotated[Path, typer.Argument(metavar="B", help="What to write; its name says how.")],
     force: Annotated[bool, typer.Option("--force", help="Replace B where it is there.")] = False,
     mc_version: Annotated[
@@ -26,12 +36,17 @@ def run(
     ] = "1.20.1",
     schem_version: Annotated[int, typer.Option(help="Sponge schematic version: 2 or 3.")] = 2,
     name: Annotated[str, typer.Option(help="What a world or pack is called; B's name.")] = "",
+    blocks_per_metre: Annotated[
+        float | None,
+        typer.Option(help="How many blocks are a metre, where A does not say; 1."),
+    ] = None,
 ) -> None:
-    """Read blocks from A and write them to B.
+    """Read blocks from A, write them to B, and say what B cannot hold.
 
     The format of A is found from its suffix and content; that of B from its suffix alone: a name
-    without a suffix becomes a world folder. Nothing is lost on the way but what B's format cannot
-    hold.
+    without a suffix becomes a world folder. Of a run's folder the world is read, with what its
+    blocks are. Known suffixes: .schem, .litematic, .nbt, .zip (data pack), .mcfunction,
+    .mcstructure (Bedrock), .glb, .habitat (a folder), and to read .schematic.
 
     Args:
         source: the file or folder to read.
@@ -40,27 +55,60 @@ def run(
         mc_version: the game version to write for.
         schem_version: 2 or 3, for a schematic.
         name: what a world or datapack is called; empty for the target's name.
+        blocks_per_metre: the scale, for meshes and for the player's size.
 
     Raises:
         UsageError: ``target`` is there and ``force`` is not given, or no format ends so.
         InputError: ``source`` cannot be read, or ``target`` cannot be written.
     """
     check_target(source, target, force)
-    from world2minecraft.minecraft.formats import WriteOptions, read_blocks, write_blocks
+    from world2minecraft.exchange.forms import read_form, templates_of_run, write_form
+    from world2minecraft.minecraft.formats import WriteOptions
+    from world2minecraft.minecraft.losses import Losses
 
     options = WriteOptions(
-        mc_version=mc_version, schem_version=schem_version, name=name or target.stem
+        mc_version=mc_version,
+        schem_version=schem_version,
+        name=name or target.stem,
+        other={"templates": templates_of_run(source)},
     )
-    volume = read_blocks(source)
+    unread, unwritten = Losses(), Losses()
+    volume = scaled(read_form(source, unread), blocks_per_metre)
     with_parent(target)
     with tempfile.TemporaryDirectory(dir=target.parent, prefix=".w2m-") as folder:
         # The new one is whole before the old one goes; both lie on one disk.
         written = Path(folder) / target.name
-        write_blocks(volume, written, options)
-        put_in_place(written, target)
+        write_form(volume, written, options, unwritten)
+        put_all_in_place(written, target, force)
     filled = int((volume.states != 0).sum())
     size = " x ".join(str(side) for side in volume.states.shape)
     print(f"{target}: {filled:,} blocks of {len(volume.palette) - 1} kinds, {size}")
+    tell_losses(unread, f"not read from {source.name}")
+    tell_losses(unwritten, f"not written to {target.name}")
+
+
+def scaled(volume: "BlockVolume", blocks_per_metre: float | None) -> "BlockVolume":
+    """Return the volume at a scale; at its own where none is given.
+
+    Raises:
+        UsageError: the scale is no number above 0, or another than the volume's own.
+    """
+    if blocks_per_metre is None:
+        return volume
+    if not 0.01 <= blocks_per_metre <= 1000:
+        raise UsageError(f"--blocks-per-metre must be 0.01 to 1000, not {blocks_per_metre:g}")
+    own = volume.blocks_per_metre
+    if volume.semantic.any() and abs(own - blocks_per_metre) > 1e-6:
+        raise UsageError(f"--blocks-per-metre is {own:g} for this room; leave it out")
+    to_room = volume.block_to_room.copy()
+    to_room[:3] *= own / blocks_per_metre
+    return replace(volume, block_to_room=to_room)
+
+
+def tell_losses(losses: "Losses", head: str) -> None:
+    """Print what was lost, one line a kind; nothing where nothing was."""
+    for what, count in losses:
+        print(f"{head}: {count:,} {what}")
 
 
 def check_target(source: Path, target: Path, force: bool) -> None:
@@ -69,24 +117,41 @@ def check_target(source: Path, target: Path, force: bool) -> None:
     Raises:
         InputError: ``source`` is not there.
         UsageError: ``target`` has no known suffix, is ``source``, is there without ``force``, or
-            is a folder that holds other things than a world.
+            is a folder that holds other things than a world or a scene dataset.
     """
     if not source.exists():
         raise InputError(source, "is not there")
-    from world2minecraft.minecraft.formats import FORMATS
+    from world2minecraft.exchange.forms import form_to_write
 
-    suffixes = [FORMATS.load(name)().suffix for name in FORMATS.names()]
-    if target.suffix.lower() not in suffixes:
-        known = ", ".join(suffix or "none (a world folder)" for suffix in suffixes)
-        raise UsageError(f"{target}: no block format ends in {target.suffix}; known: {known}")
+    form = form_to_write(target)
     if not os.path.lexists(target):
         return
     if target.exists() and source.samefile(target):
         raise UsageError(f"{target} is both A and B; give another name for B")
     if not force:
         raise UsageError(f"{target} is there already; add --force to replace it")
-    if target.is_dir() and any(target.iterdir()) and not (target / "level.dat").is_file():
+    if not target.is_dir() or not any(target.iterdir()):
+        return
+    if form.suffix == "" and not (target / "level.dat").is_file():
         raise UsageError(f"{target} is a folder and no world (no level.dat); give another name")
+    if form.suffix != "" and not any(target.glob(HABITAT_MARK)):
+        raise UsageError(f"{target} is a folder of other things; give another name")
+
+
+def put_all_in_place(written: Path, target: Path, force: bool) -> None:
+    """Move what was written to ``target``, and files that were written beside it to beside it.
+
+    Raises:
+        UsageError: a file beside ``target`` is there and ``force`` is not given.
+    """
+    beside = [path for path in sorted(written.parent.iterdir()) if path != written]
+    for path in beside:
+        place = target.parent / path.name
+        if place.exists() and not force:
+            raise UsageError(f"{place} is there already; add --force to replace it")
+    for path in beside:
+        put_in_place(path, target.parent / path.name)
+    put_in_place(written, target)
 
 
 def with_parent(target: Path) -> None:

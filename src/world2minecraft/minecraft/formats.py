@@ -14,6 +14,7 @@ from world2minecraft.minecraft.losses import Losses
 from world2minecraft.registry import Registry
 from world2minecraft.types import BlockVolume
 
+LABELS = "labels of blocks (class and object)"  # What no format of the game holds.
 FORMATS = Registry(
     "block_format",
     {
@@ -107,7 +108,7 @@ def write_blocks(
     told = Losses() if losses is None else losses
     format_.write(volume, target, options or WriteOptions(), told)
     if not format_.keeps_labels:
-        told.add("blocks' labels (class and object)", int((volume.semantic > 0).sum()))
+        told.add(LABELS, int((volume.semantic > 0).sum()))
 
 
 def format_to_write(path: str | Path) -> BlockFormat:

@@ -1,0 +1,191 @@
+"""A scene dataset for Habitat-Sim: meshes, semantic colours and the JSON files that name them.
+
+::
+
+    NAME.scene_dataset_config.json      give this file to Habitat
+    scenes/NAME.scene_instance.json     one scene: the stage, no loose objects
+    stages/NAME.stage_config.json       which files make the stage
+    stages/NAME.glb                     what is seen
+    stages/NAME.semantic.glb            the same, each object in a colour of its own
+    stages/NAME.semantic.txt            colour, id and class of each object, in HM3D's form
+    stages/info_semantic.json           classes, objects and their boxes, in Replica's form
+
+The id of an object is its ``instance``; walls, floor and the like have the ids after the last.
+Meshes are y up; the boxes of ``info_semantic.json`` are z up, as Habitat expects of Replica: in
+the room's frame.
+"""
+
+import colorsys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft import __version__
+from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.coordinates import ROOM_AXES_TO_BLOCK
+from world2minecraft.errors import UsageError
+from world2minecraft.exchange.bodies import Body, bodies_of
+from world2minecraft.exchange.glb import GlbWriter
+from world2minecraft.exchange.gltf import (
+    body_extras,
+    finish,
+    foot_of,
+    gltf_bytes,
+    triangles_of,
+    vertices_of,
+)
+from world2minecraft.files import write_bytes, write_json, write_text
+from world2minecraft.geometry.colour import linear_of_srgb
+from world2minecraft.types import BlockVolume
+
+HEADER = "HM3D Semantic Annotations"
+MAX_ID = 10_000  # Habitat's own limit.
+_TURN = 0.618034  # Of the colour circle from one object to the next: neighbours differ most.
+
+
+def write_habitat(volume: BlockVolume, folder: str | Path, *, name: str = "room") -> None:
+    """Write a volume as a scene dataset of one scene.
+
+    Args:
+        volume: the blocks; labels, where it has some, part them into objects.
+        folder: where the files go; made when it is not there.
+        name: what the scene is called.
+
+    Raises:
+        UsageError: nothing of the volume can be seen, it has more than 10,000 objects, or the
+            name is no file name. OutputError: a file cannot be written.
+    """
+    if not name or not all(letter.isalnum() or letter in "_-" for letter in name):
+        raise UsageError(f"scene name {name!r} must be letters, digits, _ and -")
+    target, render = Path(folder), gltf_bytes(volume, keep_blocks=False)
+    bodies, _ = bodies_of(volume)
+    ids = semantic_ids(bodies)
+    stages = target / "stages"
+    write_bytes(stages / f"{name}.glb", render)
+    write_bytes(stages / f"{name}.semantic.glb", _semantic_glb(bodies, ids))
+    write_text(stages / f"{name}.semantic.txt", semantic_text(bodies, ids))
+    write_json(stages / "info_semantic.json", semantic_json(bodies, ids))
+    write_json(stages / f"{name}.stage_config.json", _stage(name))
+    scene = {"stage_instance": {"template_name": name}, "object_instances": []}
+    write_json(target / "scenes" / f"{name}.scene_instance.json", scene)
+    dataset = {
+        "stages": {"paths": {".json": ["stages"]}},
+        "scene_instances": {"paths": {".json": ["scenes"]}},
+    }
+    write_json(target / f"{name}.scene_dataset_config.json", dataset)
+
+
+def semantic_ids(bodies: Sequence[Body]) -> list[int]:
+    """Return the id of each body: its instance, or for structure the next free number.
+
+    Raises:
+        UsageError: an id would be above what Habitat reads.
+    """
+    last = max(body.instance for body in bodies)
+    ids = []
+    for body in bodies:
+        last += not body.instance
+        ids.append(body.instance or last)
+    if max(ids) > MAX_ID:
+        raise UsageError(f"Habitat reads ids up to {MAX_ID:,}; the objects go to {max(ids):,}")
+    return ids
+
+
+def semantic_colour(number: int) -> tuple[int, int, int]:
+    """Return the sRGB colour of an id, another for each up to 10,000.
+
+    Example:
+        >>> semantic_colour(1)
+        (31, 65, 217)
+    """
+    hue = number * _TURN % 1.0
+    value = 1.0 - 0.15 * (number % 4)
+    red, green, blue = (round(255 * part) for part in colorsys.hsv_to_rgb(hue, 0.85, value))
+    # The lowest bits tell ids apart for sure.
+    low = (number >> 10 & 15, number >> 5 & 31, number & 31)
+    return red & ~15 | low[0], green & ~31 | low[1], blue & ~31 | low[2]
+
+
+def semantic_text(bodies: Sequence[Body], ids: Sequence[int]) -> str:
+    """Return HM3D's list: a header, then id, colour, class and region of each object."""
+    rows = [
+        f'{number},{"".join(f"{part:02X}" for part in semantic_colour(number))},"{_kind(body)}",0'
+        for number, body in sorted(zip(ids, bodies, strict=True), key=lambda pair: pair[0])
+    ]
+    return "\n".join([HEADER, *rows]) + "\n"
+
+
+def semantic_json(bodies: Sequence[Body], ids: Sequence[int]) -> dict[str, Any]:
+    """Return Replica's ``info_semantic.json``: classes, objects with boxes, the class of each id.
+
+    ``id_to_label`` holds the class of each id from 0, -1 where no object has it.
+    """
+    pairs = sorted(zip(ids, bodies, strict=True), key=lambda pair: pair[0])
+    labels = [-1] * (max(ids) + 1)
+    for number, body in pairs:
+        labels[number] = body.class_id
+    classes = [{"id": 0, "name": "unknown"}]
+    classes += [{"id": n, "name": name} for n, name in enumerate(CLASS_NAMES) if n]
+    return {
+        "classes": classes,
+        "objects": [_object(number, body) for number, body in pairs],
+        "id_to_label": labels,
+    }
+
+
+def _object(number: int, body: Body) -> dict[str, Any]:
+    to_room = ROOM_AXES_TO_BLOCK.T
+    low, high = body.bounds
+    center, sizes = to_room @ ((low + high) / 2), np.abs(to_room @ (high - low))
+    return {
+        "id": number,
+        "class_id": body.class_id,
+        "class_name": _kind(body),
+        "instance": body.instance,
+        "oriented_bbox": {
+            "abb": {"center": np.round(center, 6).tolist(), "sizes": np.round(sizes, 6).tolist()},
+            "orientation": {"rotation": [0.0, 0.0, 0.0, 1.0], "translation": [0.0, 0.0, 0.0]},
+        },
+    }
+
+
+def _kind(body: Body) -> str:
+    return CLASS_NAMES[body.class_id] if body.class_id else "unknown"
+
+
+def _stage(name: str) -> dict[str, Any]:
+    upright = {"up": [0, 1, 0], "front": [0, 0, -1]}
+    return {
+        "render_asset": f"{name}.glb",
+        "semantic_asset": f"{name}.semantic.glb",
+        "semantic_descriptor_filename": f"{name}.semantic.txt",
+        "has_semantic_textures": False,
+        **upright,
+        **{f"semantic_{key}": value for key, value in upright.items()},
+        "origin": [0, 0, 0],
+        "scale": [1, 1, 1],
+        "units_to_meters": 1.0,
+        "is_collidable": True,
+        "shader_type": "flat",
+    }
+
+
+def _semantic_glb(bodies: Sequence[Body], ids: Sequence[int]) -> bytes:
+    """Return the bodies in plain colours of vertices, which glTF keeps linear."""
+    writer = GlbWriter(f"World2Minecraft {__version__}")
+    nodes = []
+    for number, body in zip(ids, bodies, strict=True):
+        rows = np.arange(len(body.looks))
+        colour = linear_of_srgb(np.array(semantic_colour(number), np.uint8))
+        attributes = vertices_of(writer, body, rows)
+        painted = np.tile(colour.astype(np.float32), (4 * len(rows), 1))
+        attributes["COLOR_0"] = writer.accessor(painted, "vertices")
+        primitive = {"attributes": attributes, "indices": triangles_of(writer, len(rows))}
+        mesh = writer.add("meshes", {"name": body.name, "primitives": [primitive]})
+        extras = body_extras(body) | {"id": number}
+        place = {"translation": foot_of(body).tolist(), "extras": extras}
+        nodes.append(writer.add("nodes", {"name": body.name, "mesh": mesh, **place}))
+    finish(writer, nodes)
+    return writer.to_bytes()
