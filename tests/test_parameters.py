@@ -23,7 +23,7 @@ def test_settings_reach_their_stage():
         ["fuse.min_points=5", "find.cluster_radius=3.5", "build.ceiling=no", "clean.hole_m = 0.2"],
     )
     assert changed.fuse.min_points == 5 and changed.find.cluster_radius == 3.5
-    assert changed.build.ceiling is False and changed.clean.hole_m == 0.2
+    assert changed.build.ceiling == "off" and changed.clean.hole_m == 0.2
     assert Parameters().fuse.min_points == 2, "the defaults stay"
 
 
@@ -53,7 +53,7 @@ def test_capture_options_are_handed_on_as_they_are():
         ("fuse", "--set takes key=value, not 'fuse'"),
         ("fuse=3", "no parameter is named 'fuse'; "),
         ("fuse.min_points=two", "--set fuse.min_points takes a int such as 2, not 'two'"),
-        ("build.ceiling=maybe", "--set build.ceiling takes a bool such as True, not 'maybe'"),
+        ("build.ceiling=maybe", "build.ceiling must be on, off, glass, not 'maybe'"),
         ("voxel_m=9", "voxel_m must be 0.01 to 0.5 m, not 9.0"),
         ("mc_version=1.99", "1.99"),
         ("labeller=geometry", "no labeller is named 'geometry'; did you mean 'geometric'?"),

@@ -1,20 +1,28 @@
-"""Light for a room: invisible light blocks in free air, so that no floor is dark.
+"""Light for a room: invisible light blocks in free air, so that no floor and no corner is dark.
 
-Block light falls by one for each block it goes, and opaque blocks stop it. A lattice of lights
-comes first; floor cells that stay dark get one of their own.
+A lattice of lights comes first; where it leaves a place one stands at, or any air of the room, too
+dark, more are set. Lamps and glowing furniture that stand already count.
 """
 
 import numpy as np
 
 from world2minecraft.build.canvas import AIR, LIGHT, Canvas
-from world2minecraft.minecraft.shapes import is_full_cube
+from world2minecraft.build.morphology import parts_of
+from world2minecraft.minecraft.light import (
+    BRIGHTEST,
+    block_light,
+    lets_light_through,
+    light_of,
+    spread_light,
+)
 from world2minecraft.types import BlockVolume
 
-LEVEL = 15
+LEVEL = BRIGHTEST
 LEAST = 8  # Of a walkable floor cell; monsters need 0, and a person reads at 8.
+LEAST_CORNER = 5  # Of any air in the room. A guess: a wall there is dim, and not black.
 ABOVE_FLOOR = 2  # Over the head of a player that stands.
 SPACING = 8  # Blocks between lights: half way, at the floor, the light is still 8 or more.
-_TRANSPARENT = ("glass", "_pane", "barrier", "light")
+APART = 6  # Blocks between lights that are added in one round.
 
 
 def put_lights(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> None:
@@ -24,41 +32,55 @@ def put_lights(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> None:
         canvas: its finished blocks.
         footprints: bool [X, Y] for each storey, the columns within its rooms.
     """
+    gives = np.array([light_of(state) for state in canvas.palette], np.uint8)[canvas.states]
     clear = passes_light(canvas.palette)[canvas.states]
     air = canvas.mask_of(AIR)
-    chosen = np.zeros(air.shape, bool)
     for (ground, end), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
-        _light_storey(canvas, chosen, air, clear, footprint, ground, end)
-    canvas.states[chosen] = canvas.id_of(LIGHT)
+        _light_storey(canvas, gives, air, clear, footprint, ground, end)
+    canvas.states[(gives == LEVEL) & air] = canvas.id_of(LIGHT)
 
 
-def _light_storey(canvas, chosen, air, clear, footprint, ground, end) -> None:
+def _light_storey(canvas, gives, air, clear, footprint, ground, end) -> None:
     """Choose, in place, the lights of one storey: its first layer over the floor and its end."""
-    spots = air & footprint[:, :, None]
     offset = SPACING // 2
     top = min(_top_of(canvas, ground), end - 1)
-    held = chosen.copy()
+    spots = np.zeros_like(air)
     for z in {ground + ABOVE_FLOOR, *range(ground + ABOVE_FLOOR + SPACING, top, SPACING)}:
-        chosen[offset::SPACING, offset::SPACING, min(z, top)] = True
-    chosen &= spots | held
+        spots[offset::SPACING, offset::SPACING, min(z, top)] = True
+    spots &= air & footprint[:, :, None]
+    if (gives > 0).any():
+        spots &= spread_light(gives, clear) < LEAST  # Where a lamp shines none is needed.
+    gives[spots] = LEVEL
     walkable = walkable_cells(canvas.states, canvas.palette, footprint, ground)
-    _light_the_dark(chosen, walkable, air, clear, ground)
+    least = np.zeros(air.shape, np.uint8)
+    least[_air_of(air, walkable, footprint, (ground, top))] = LEAST_CORNER
+    least[:, :, ground][walkable] = LEAST
+    _light_the_dark(gives, least, air, clear)
 
 
-def _light_the_dark(chosen, walkable, air, clear, ground) -> None:
-    """Add lights, in place, until every walkable floor cell is lit."""
+def _air_of(air, walkable, footprint, layers) -> np.ndarray:
+    """Return the air, bool [X, Y, Z], of a storey that one sees into: none within cupboards."""
+    ground, top = layers
+    room = np.zeros_like(air)
+    inside = slice(ground, top + 1)
+    room[:, :, inside] = air[:, :, inside] & footprint[:, :, None]
+    parts, _ = parts_of(room)
+    seen = np.unique(parts[:, :, ground][walkable])
+    return np.isin(parts, seen[seen > 0])
+
+
+def _light_the_dark(gives, least, air, clear) -> None:
+    """Add lights, in place, until every cell has its least light."""
     while True:
-        light = spread_light(np.where(chosen, LEVEL, 0).astype(np.uint8), clear)
-        dark = walkable & (light[:, :, ground] < LEAST)
+        dark = spread_light(gives, clear) < least
         if not dark.any():
             return
-        # The first dark cell and all that are out of its reach: so few rounds are needed.
-        taken: list[tuple[int, int]] = []
-        for x, y in np.argwhere(dark).tolist():
-            if all(abs(x - a) + abs(y - b) > LEVEL - LEAST for a, b in taken):
-                taken.append((x, y))
-                z = ground + 1 if air[x, y, ground + 1] else ground
-                chosen[x, y, z] = True
+        # One for each box of a few blocks, so that few rounds are needed.
+        cells = np.argwhere(dark)
+        _, first = np.unique(cells // APART, axis=0, return_index=True)
+        for x, y, z in cells[first].tolist():
+            above = z + 1 < air.shape[2] and air[x, y, z + 1] and not air[x, y, z]
+            gives[x, y, z + 1 if above else z] = LEVEL
 
 
 def _top_of(canvas: Canvas, ground: int) -> int:
@@ -70,13 +92,7 @@ def _top_of(canvas: Canvas, ground: int) -> int:
 
 def passes_light(palette: tuple[str, ...]) -> np.ndarray:
     """Return which states let block light through, bool [N]: those that fill no whole cube."""
-    names = [state.partition("[")[0] for state in palette]
-    return np.array(
-        [
-            name.endswith(_TRANSPARENT) or not is_full_cube(state)
-            for name, state in zip(names, palette, strict=True)
-        ]
-    )
+    return np.array([lets_light_through(state) for state in palette], bool)
 
 
 def walkable_cells(
@@ -89,28 +105,6 @@ def walkable_cells(
     return free & floor & footprint
 
 
-def spread_light(sources: np.ndarray, clear: np.ndarray) -> np.ndarray:
-    """Return the block light everywhere, uint8 [X, Y, Z].
-
-    Args:
-        sources: uint8 [X, Y, Z], the light that a block gives itself, 0 to 15.
-        clear: bool [X, Y, Z], where light goes through.
-    """
-    light = sources.copy()
-    for level in range(LEVEL, 1, -1):
-        bright = np.argwhere(light == level)
-        for axis in range(3):
-            for step in (-1, 1):
-                near = bright.copy()
-                near[:, axis] += step
-                near = near[(near[:, axis] >= 0) & (near[:, axis] < light.shape[axis])]
-                at = tuple(near.T)
-                grows = clear[at] & (light[at] < level - 1)
-                light[tuple(near[grows].T)] = level - 1
-    return light
-
-
 def light_of_volume(volume: BlockVolume) -> np.ndarray:
-    """Return the block light of a finished volume, uint8 [X, Y, Z], from its light blocks."""
-    glows = np.array([LEVEL if state == LIGHT else 0 for state in volume.palette], np.uint8)
-    return spread_light(glows[volume.states], passes_light(volume.palette)[volume.states])
+    """Return the block light of a finished volume, uint8 [X, Y, Z]."""
+    return block_light(volume)

@@ -6,6 +6,10 @@ from world2minecraft.errors import UsageError
 
 EDGES = ("barrier", "none")
 STYLES = ("blocks", "display", "voxels")
+CEILINGS = ("on", "off", "glass")
+LIGHTS = ("hidden", "off", "lamps")
+_YES, _NO = (True, "true", "yes", "1"), (False, "false", "no", "0")
+MOST_TEXT = 60  # Four lines of a sign hold about as many letters.
 _DISTANCES = (
     "saturation",
     "preference",
@@ -28,8 +32,10 @@ class BuildParameters:
     style: what furniture is made of: ``blocks``, designs in vanilla blocks; ``display``, fine
         geometry in block_display entities over invisible colliders; ``voxels``, each object's own
         cells by the best fitting block states.
-    ceiling: build the ceiling where it was seen; without it one looks in from above.
-    lights: put invisible light blocks, so that the room is lit and safe at night.
+    ceiling: ``on`` where it was seen, ``glass``, or ``off``, so that one looks in from above.
+    lights: ``hidden``, invisible light blocks, so that the room is lit and safe at night;
+        ``lamps``, that and lamps that hang from the ceiling; or ``off``.
+    plaque: the text of a sign near the spawn; ``auto`` is the scene's name, ``off`` no sign.
     edge: what stands where the floor ends and no wall was seen: invisible ``barrier`` blocks, so
         that nobody walks into the void, or ``none``.
     expose: lift the colours of a dim room and take its colour cast away.
@@ -70,8 +76,9 @@ class BuildParameters:
 
     palette: str = "vanilla"
     style: str = "blocks"
-    ceiling: bool = True
-    lights: bool = True
+    ceiling: str | bool = "on"
+    lights: str | bool = "hidden"
+    plaque: str = "auto"
     edge: str = "barrier"
     expose: bool = True
     structure_colours: int = 3
@@ -94,6 +101,12 @@ class BuildParameters:
     slab_margin: float = 0.05
 
     def __post_init__(self):
+        self._choose("ceiling", CEILINGS)
+        self._choose("lights", LIGHTS)
+        if not (0 < len(self.plaque) <= MOST_TEXT and self.plaque.isprintable()):
+            raise UsageError(
+                f"build.plaque must be auto, off, or up to {MOST_TEXT} letters, not {self.plaque!r}"
+            )
         if self.edge not in EDGES:
             raise UsageError(f"build.edge must be {' or '.join(EDGES)}, not {self.edge!r}")
         if self.style not in STYLES:
@@ -115,3 +128,12 @@ class BuildParameters:
                 raise UsageError(
                     f"build.{name} must be above 0, up to 1, not {getattr(self, name)}"
                 )
+
+    def _choose(self, name: str, known: tuple[str, ...]) -> None:
+        """Check one of some words; true and false stand for the first two."""
+        given = getattr(self, name)
+        value = given.lower() if isinstance(given, str) else given
+        value = known[0] if value in _YES else known[1] if value in _NO else value
+        if value not in known:
+            raise UsageError(f"build.{name} must be {', '.join(known)}, not {given!r}")
+        object.__setattr__(self, name, value)

@@ -35,7 +35,11 @@ def put_shell(
     """
     at = tuple(shell.cells.T)
     tinted, known = block_colours(canvas.states.shape, shell.blocks, colours[at], coloured[at])
-    for mask, class_id in ((shell.ceiling, CEILING), (shell.walls, WALL), (shell.floor, FLOOR)):
+    surfaces = [(shell.ceiling, CEILING), (shell.walls, WALL), (shell.floor, FLOOR)]
+    if parameters.ceiling == "glass":
+        canvas.put(shell.ceiling, canvas.id_of(palette.glass), CEILING)
+        surfaces = surfaces[1:]
+    for mask, class_id in surfaces:
         source = (tinted, known & mask, class_id, palette, parameters)
         used: frozenset[str] = frozenset()
         for patch in sorted(_patches(mask, shell.patches), key=lambda patch: -int(patch.sum())):

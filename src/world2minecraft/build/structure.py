@@ -218,7 +218,7 @@ def _level_tops(walls, patches, open_share, storey) -> None:
 def _ceiling(grid, free, lattice, parameters, coloured) -> np.ndarray:
     """Return the ceiling: one flat layer at each height at which much of it was seen."""
     ceiling = np.zeros(lattice.shape, bool)
-    if not parameters.ceiling:
+    if parameters.ceiling == "off":
         return ceiling
     solid = grid.labels == CEILING
     for faces in find_faces(grid, solid, free, lattice, 2):

@@ -10,6 +10,7 @@ from world2minecraft.build.connect import settle
 from world2minecraft.build.display.builder import DisplayBuilder
 from world2minecraft.build.exact import put_cells_exactly
 from world2minecraft.build.hues import cell_colours, one_paint, seen_colours
+from world2minecraft.build.lamps import hang_lamps
 from world2minecraft.build.lattice import is_exact, lattice_over, snapped_corner_m
 from world2minecraft.build.lights import put_lights
 from world2minecraft.build.objects import ObjectBuilder
@@ -63,7 +64,9 @@ def build_volume(
     settle(canvas)
     if chosen.edge == "barrier":
         put_edge(canvas, footprints)
-    if chosen.lights:
+    if chosen.lights == "lamps" and not is_exact(grid, blocks_per_metre):
+        hang_lamps(canvas, footprints)
+    if chosen.lights != "off":
         put_lights(canvas, footprints)
     return canvas.volume()
 
