@@ -1,6 +1,7 @@
 """Objects from their own cells: filled where they are closed, fitted, and equal where equal."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -9,11 +10,18 @@ from world2minecraft.build.fitted import TIE, Design, standing, turned_middle
 from world2minecraft.build.lattice import Lattice
 from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import turn_grid
-from world2minecraft.fit import Fit, Target, covered, fit_solid, solve
-from world2minecraft.fit.coverage import thin_cells
+from world2minecraft.fit import (
+    Fit,
+    Rules,
+    Target,
+    covered,
+    even_of,
+    fit_solid,
+    shape_set,
+    solve,
+    thin_cells,
+)
 from world2minecraft.fit.masks import SUB
-from world2minecraft.fit.objects import even_of
-from world2minecraft.fit.shapes import shape_set
 from world2minecraft.types import UNSEEN, OccupancyGrid
 
 # What is closed: nobody sees into it, so what lies unseen under its skin belongs to it.
@@ -21,6 +29,7 @@ CLOSED = (SemanticClass.FURN, SemanticClass.SOFA, SemanticClass.BED)
 NOISY = 4.0  # The factor on prices for cells of a scan: stairs where noise is, look like rubble.
 SIZE_CELLS = 2  # Copies differ by at most so many cells along each axis,
 COPY_IOU = 0.5  # and meet in so much of what either fills.
+FLUSH = 0.35  # Blocks by which a table may be made higher, so that its top ends a block.
 MAJORITY = 0.5  # A cell belongs to copies where so many of them have it.
 
 
@@ -77,7 +86,7 @@ def shared_solids(solids: Mapping[int, Solid], classes: Mapping[int, int]) -> di
     what they fill is the same: four chairs come out as four equal chairs.
     """
     groups: list[list[int]] = []
-    for number in sorted(solids):
+    for number in solids:
         for group in groups:
             if classes[group[0]] == classes[number] and _is_copy(
                 solids[group[0]].mask, solids[number].mask
@@ -126,6 +135,7 @@ def design_of_cells(
     lattice: Lattice,
     kinds: frozenset[str],
     shift: bool,
+    flush: bool = False,
 ) -> CellsDesign:
     """Return an object's cells as shapes in place.
 
@@ -137,6 +147,7 @@ def design_of_cells(
         kinds: the kinds of shape that may be used.
         shift: whether the object may move by up to half a block sideways, and a quarter up or
             down, to fall on the lattice crisply.
+        flush: whether its top must end with a block where it nearly does: things lie on tables.
     """
     low, high = cells.min(0), cells.max(0) + 1
     ends = np.stack(
@@ -147,11 +158,12 @@ def design_of_cells(
     centre = ends[:, :2].mean(0)
     target = _target(solid.mask, side, grid.voxel_m, bottom)
     shapes, turns = shape_set(kinds), solid.turns
+    rules = Rules(calm=NOISY, flush=flush and _ends_flush(solid.mask.shape[2] * side, bottom))
     if shift:
-        fit = fit_solid(target, shapes, even=even_of(target), calm=NOISY)
+        fit = fit_solid(target, shapes, replace(rules, even=even_of(target)))
     else:
         at = np.round(centre * SUB).astype(int) % SUB
-        fit = solve(target, (int(at[0]), int(at[1])), shapes, calm=NOISY)
+        fit = solve(target, (int(at[0]), int(at[1])), shapes, rules)
     middle = turned_middle(fit, turns)
     xy = np.floor(centre - middle + 0.5 - TIE).astype(int)
     numbers = shapes.turns[turns][np.rot90(fit.numbers, turns)]
@@ -159,6 +171,12 @@ def design_of_cells(
     moved = np.array([*(xy + middle - centre), base + bottom / SUB - ends[0, 2]])
     blocks = np.floor(ends[0] + (cells - low + 0.5) * side + moved).astype(int)
     return CellsDesign(design, blocks, fit)
+
+
+def _ends_flush(tall: float, bottom: int) -> bool:
+    """Whether a height in blocks ends less than a third of a block below a block's top."""
+    rest = (tall + bottom / SUB) % 1
+    return rest > 1 - FLUSH or rest < TIE
 
 
 def _target(mask: np.ndarray, side: float, voxel_m: float, bottom: int) -> Target:

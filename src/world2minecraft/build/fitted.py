@@ -15,6 +15,7 @@ from world2minecraft.furniture import Part
 from world2minecraft.types import Placement
 
 TIE = 1e-6
+LAID_ON = (SemanticClass.TABLE,)  # Things lie on these; a top in mid-block would leave a gap.
 
 
 class Design(NamedTuple):
@@ -64,7 +65,9 @@ def design_of_parts(
     base, bottom = standing(middle[2] - sizes[2] / 2, lattice)
     counts, start = _plan(placement, sizes, middle)
     boxes = tuple(tuple(np.round(part.box_m, 4).tolist()) for part in parts)
-    fit, part = _fit_of_parts(boxes, lattice.blocks_per_metre, kinds, counts, bottom)
+    fit, part = _fit_of_parts(
+        boxes, lattice.blocks_per_metre, kinds, counts, bottom, placement.class_id in LAID_ON
+    )
     shapes, turns = shape_set(kinds), placement.quarter_turns
     numbers = shapes.turns[turns][np.rot90(fit.numbers, turns)]
     centre = turned_middle(fit, turns)
@@ -73,9 +76,14 @@ def design_of_parts(
 
 
 @lru_cache(maxsize=512)
-def _fit_of_parts(boxes, blocks_per_metre, kinds, counts, bottom) -> PartsFit:
+def _fit_of_parts(boxes, blocks_per_metre, kinds, counts, bottom, flush) -> PartsFit:
     return fit_parts(
-        np.array(boxes), blocks_per_metre, shape_set(kinds), counts=counts, bottom=bottom
+        np.array(boxes),
+        blocks_per_metre,
+        shape_set(kinds),
+        counts=counts,
+        bottom=bottom,
+        flush=flush,
     )
 
 

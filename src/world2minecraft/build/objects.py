@@ -15,11 +15,11 @@ from world2minecraft.build.celled import (
     solid_of,
 )
 from world2minecraft.build.cells import shape_of_cells
-from world2minecraft.build.fitted import Design, design_of_parts, of_halves, one_block
+from world2minecraft.build.fitted import LAID_ON, Design, design_of_parts, of_halves, one_block
 from world2minecraft.build.fitting import best_place, best_step
 from world2minecraft.build.halves import FULL
 from world2minecraft.build.hues import default_colour, spread
-from world2minecraft.build.idioms import Thing, idiom_box, put_idiom
+from world2minecraft.build.idioms import Thing, filled_by, idiom_box, put_idiom
 from world2minecraft.build.lattice import volume_shares
 from world2minecraft.build.materials import WEIGHTS, materials_of
 from world2minecraft.build.morphology import beside
@@ -34,7 +34,7 @@ from world2minecraft.build.tops import top_cells
 from world2minecraft.build.worktops import Worktop, find_worktop, joined
 from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.fit import without_loose
-from world2minecraft.furniture import idiom, template
+from world2minecraft.furniture import Idiom, idiom, template
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.metrics.solids import own_cells
 from world2minecraft.minecraft.colours import colours_of
@@ -47,6 +47,7 @@ MOST_GIVEN_UP = 0.06  # Oklab distance that a colour may lose for the sake of a 
 BULKY = {"slab", "stairs"}  # Without them a fit is of cubes, and those are better laid by parts.
 LEAST_IOU, LEAST_THIN = 0.3, 0.5  # Below these a fit is worse than the library's design.
 MOST_COLOURS = 400  # Of an object, looked at to see which shapes exist in them.
+FINE_SCALE = 3.0  # Blocks per metre from which a design is held against what was seen free.
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 
 
@@ -72,7 +73,6 @@ class ObjectBuilder:
         self.parameters = parameters
         self.lattice = canvas.lattice
         self.materials = materials_of(palette)
-        self.solids: dict[int, Solid] = {}
         self.worktops: dict[int, Worktop] = {}
         self.paints = chair_paints(
             grid, colours, coloured & self.exposed, parameters.lightness_weight
@@ -84,14 +84,15 @@ class ObjectBuilder:
         voxels = self.parameters.style == "voxels"
         held = {id(one): self._cells_of(one) for one in placements}
         own = [one for one in placements if one.template == CELLS or voxels]
-        self.solids = self._solids_of(own, held)
+        solids = self._solids_of(own, held)
         for placement in sorted(placements, key=in_order):
             cells = held[id(placement)]
             known = placement.template != CELLS
-            if voxels and known and len(cells) and self.put_well(placement, cells):
+            solid = solids.get(id(placement))
+            if voxels and known and solid and self.put_well(placement, cells, solid):
                 continue
             if not known or not self.put_template(placement, cells, forced=not len(cells)):
-                self.put_cells(cells, placement.class_id, placement.object_id)
+                self.put_cells(cells, placement.class_id, placement.object_id, solid)
         rest = np.isin(self.grid.labels, OBJECT_CLASSES)
         rest &= ~self._shown()
         keys = (self.grid.labels.astype(np.int32) << 16) + self.grid.instance
@@ -165,17 +166,16 @@ class ObjectBuilder:
     def _solids_of(
         self, placements: Sequence[Placement], held: Mapping[int, np.ndarray]
     ) -> dict[int, Solid]:
-        """Return what the objects of placements are fitted to, copies alike, by their number."""
+        """Return what placements are fitted to, copies alike, by the id of each."""
         solids: dict[int, Solid] = {}
         for one in placements:
-            cells = held[id(one)]
-            if len(cells) and one.object_id and one.object_id not in solids:
-                whole, _ = self._with_tops(cells)
-                inner = inner_cells(whole, self.grid, one.class_id)
-                solids[one.object_id] = solid_of(whole, inner, one.quarter_turns)
-        return shared_solids(solids, {one.object_id: one.class_id for one in placements})
+            if len(held[id(one)]):
+                cells, _ = self._with_tops(held[id(one)])
+                inner = inner_cells(cells, self.grid, one.class_id)
+                solids[id(one)] = solid_of(cells, inner, one.quarter_turns)
+        return shared_solids(solids, {id(one): one.class_id for one in placements})
 
-    def put_well(self, placement: Placement, cells: np.ndarray) -> bool:
+    def put_well(self, placement: Placement, cells: np.ndarray, solid: Solid) -> bool:
         """Set an object of a template from its own cells; False, and nothing, where they fit badly.
 
         The guard of reference/fit.md: an object that loses over half of its thin parts, or is
@@ -186,26 +186,28 @@ class ObjectBuilder:
         kinds = self._kinds(hues, thing)
         if not kinds & BULKY:
             return False
-        solid = self.solids.get(placement.object_id) or self._solid(cells, placement.class_id)
-        made = design_of_cells(cells, solid, self.grid, self.lattice, kinds, shift=True)
+        made = design_of_cells(
+            cells, solid, self.grid, self.lattice, kinds, True, placement.class_id in LAID_ON
+        )
         if made.fit.iou < LEAST_IOU or made.fit.thin_recall < LEAST_THIN:
             return False
         self._put_design(made.design, Hues(hues, made.blocks), thing)
         return True
 
-    def _solid(self, cells: np.ndarray, class_id: int) -> Solid:
-        return solid_of(cells, inner_cells(cells, self.grid, class_id), 0)
-
-    def put_cells(self, cells: np.ndarray, class_id: int, number: int) -> None:
-        """Set an object from its own cells."""
+    def put_cells(
+        self, cells: np.ndarray, class_id: int, number: int, solid: Solid | None = None
+    ) -> None:
+        """Set an object from its own cells; ``solid`` is what they are fitted to, where known."""
         if not len(cells):
             return
         cells, hues = self._with_tops(cells)
         thing = Thing(class_id, number)
         kinds = self._kinds(hues, thing)
         if kinds & BULKY:
-            solid = self.solids.pop(number, None) or self._solid(cells, class_id)
-            made = design_of_cells(cells, solid, self.grid, self.lattice, kinds, number > 0)
+            solid = solid or solid_of(cells, inner_cells(cells, self.grid, class_id), 0)
+            made = design_of_cells(
+                cells, solid, self.grid, self.lattice, kinds, number > 0, class_id in LAID_ON
+            )
             design, blocks = made.design, made.blocks
         else:
             share = self.parameters.object_share
@@ -240,14 +242,7 @@ class ObjectBuilder:
         thing = Thing(placement.class_id, placement.object_id)
         found = idiom(placement, self.lattice.blocks_per_metre)
         if found is not None:
-            low, size = idiom_box(found, placement, self.lattice)
-            hues = self._stretched(cells, placement, low, size.tolist())
-            seen = block_colours(tuple(size.tolist()), hues.blocks - low, *self._coloured(hues))
-            hue = Hue(*seen, self.paints.get(thing.instance))
-            put_idiom(
-                self.canvas, found, low, thing, hue, self.palette, self.within, self.parameters
-            )
-            return True
+            return self._put_idiom(found, placement, cells, thing, forced)
         parts = template(placement.template).parts(placement.size_m, placement.parameters)
         kinds = self._kinds(cells, thing)
         if kinds & BULKY:
@@ -256,10 +251,7 @@ class ObjectBuilder:
             coarse = design_of(placement, parts, self.lattice)
             design = of_halves(coarse.low, coarse.halves, coarse.part)
         window = self._window(design.low, design.numbers.shape)
-        limit = self.parameters.most_contradicted
-        if placement.class_id == SemanticClass.CHAIR:
-            limit = self.parameters.chair_contradicted
-        if not forced and self._contradicted(design, window) > limit:
+        if not forced and self._contradicted(design, window) > self._limit(placement):
             return False
         design = design.moved(self._step(design.filled, design.low))
         self._plate_over(design, thing.instance)
@@ -268,6 +260,34 @@ class ObjectBuilder:
         numbers = design.numbers[window.box] * window.free
         self._put_shapes(design.cut(window.low, window.box, numbers), hues, thing)
         return True
+
+    def _put_idiom(
+        self, found: Idiom, placement: Placement, cells: np.ndarray, thing: Thing, forced: bool
+    ) -> bool:
+        """Set a vanilla design; at fine scales not where most of it was seen free."""
+        low, size = idiom_box(found, placement, self.lattice)
+        if self.lattice.blocks_per_metre >= FINE_SCALE:
+            filled = filled_by(found)
+            if not forced and self._open_in(filled, low) > self._limit(placement):
+                return False
+            low = low + self._step(filled, low)
+        hues = self._stretched(cells, placement, low, size.tolist())
+        seen = block_colours(tuple(size.tolist()), hues.blocks - low, *self._coloured(hues))
+        hue = Hue(*seen, self.paints.get(thing.instance))
+        put_idiom(self.canvas, found, low, thing, hue, self.palette, self.within, self.parameters)
+        return True
+
+    def _limit(self, placement: Placement) -> float:
+        """Return how much of a design may stand in space that was seen free."""
+        if placement.class_id == SemanticClass.CHAIR:
+            return self.parameters.chair_contradicted
+        return self.parameters.most_contradicted
+
+    def _open_in(self, filled: np.ndarray, low: np.ndarray) -> float:
+        """Return the share of blocks, bool [X, Y, Z] at ``low``, that were seen free."""
+        at = np.argwhere(filled) + low
+        inside = ((at >= 0) & (at < self.open_share.shape)).all(axis=1)
+        return float((self.open_share[tuple(at[inside].T)] > OPEN).mean()) if inside.any() else 0.0
 
     def _kinds(self, cells: np.ndarray, thing: Thing) -> frozenset[str]:
         """Return the kinds of shape that exist in the colours of an object with cells [N, 3]."""

@@ -4,22 +4,32 @@
 choose from a ``ShapeSet`` and give numbers of its shapes.
 """
 
-from world2minecraft.fit.coverage import covered
-from world2minecraft.fit.objects import Fit, Target, fit_solid, solve, without_loose
+from world2minecraft.fit.coverage import covered, covered_blocks, thin_cells
+from world2minecraft.fit.finish import finished, without_loose
+from world2minecraft.fit.objects import Fit, even_of, fit_of, fit_solid, solve
 from world2minecraft.fit.parts import PartsFit, fit_parts
+from world2minecraft.fit.problem import Problem, Rules, Target, problem_of
 from world2minecraft.fit.shapes import CALM, Shape, ShapeSet, shape_set
 
 __all__ = [
     "CALM",
     "Fit",
     "PartsFit",
+    "Problem",
+    "Rules",
     "Shape",
     "ShapeSet",
     "Target",
     "covered",
+    "covered_blocks",
+    "even_of",
+    "finished",
+    "fit_of",
     "fit_parts",
     "fit_solid",
+    "problem_of",
     "shape_set",
     "solve",
+    "thin_cells",
     "without_loose",
 ]

@@ -2,24 +2,23 @@
 
 Block by block the best shapes of a chair are a plate at the top of one block and a leg at the
 bottom of it: a hovering seat. So a pair of shapes pays where the wanted runs through the face
-between them and they do not touch, and what is joined to nothing in the end is left out.
+between them and they do not touch.
 """
 
 from functools import lru_cache
 
 import numpy as np
 
-from world2minecraft.fit.masks import SUB
+from world2minecraft.fit.problem import WAYS, Problem
 from world2minecraft.fit.shapes import ShapeSet
 from world2minecraft.geometry.parts import connected_parts
 
-LEAST_FLOW = 0.5  # Sub-cells of a face (of 64) from which the wanted runs through it.
 BROKEN = 60.0  # Sub-cells given up for a joint: a plate half a block lower, not a whole block.
+LEG_BROKEN = 160.0  # The same for a leg: a corner of a table may become a stair for it.
 ROUNDS = 6
-WAYS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)])
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=16)
 def touching(shapes: ShapeSet) -> np.ndarray:
     """Return whether a shape touches another on one side of it, bool [6, S, S], ways as WAYS."""
     flat = shapes.faces.reshape(len(shapes), 3, 2, -1).astype(np.float32)
@@ -30,30 +29,8 @@ def touching(shapes: ShapeSet) -> np.ndarray:
     return np.stack(rows)
 
 
-def flows(wanted: np.ndarray) -> np.ndarray:
-    """Return through which faces the wanted runs, bool [6, X, Y, Z], of blocks [X, Y, Z, 512]."""
-    cells = wanted.reshape(*wanted.shape[:3], SUB, SUB, SUB)
-    result = np.zeros((6, *wanted.shape[:3]), bool)
-    for axis in range(3):
-        high = np.take(cells, SUB - 1, 3 + axis)
-        low = np.take(cells, 0, 3 + axis)
-        inner = [slice(None)] * 3
-        inner[axis] = slice(None, -1)
-        outer = [slice(None)] * 3
-        outer[axis] = slice(1, None)
-        runs = np.minimum(high[tuple(inner)], low[tuple(outer)]).sum((3, 4)) > LEAST_FLOW
-        result[(2 * axis, *inner)] = runs
-        result[(2 * axis + 1, *outer)] = runs
-    return result
-
-
 def joined(
-    grid: np.ndarray,
-    cells: np.ndarray,
-    scores: np.ndarray,
-    flow: np.ndarray,
-    shapes: ShapeSet,
-    broken: float = BROKEN,
+    grid: np.ndarray, rows: np.ndarray, scores: np.ndarray, problem: Problem, shapes: ShapeSet
 ) -> np.ndarray:
     """Return shapes, int [X, Y, Z], changed so that neighbours touch where the wanted runs on.
 
@@ -61,31 +38,46 @@ def joined(
 
     Args:
         grid: int [X, Y, Z], the shapes to begin with.
-        cells: int [N, 3], the blocks that may change.
-        scores: float32 [N, S], what each shape gains there; -inf where it may not stand.
-        flow: bool [6, X, Y, Z], as of ``flows``.
+        rows: int [M], the blocks of the problem that may change.
+        scores: float32 [N, S], what each shape gains in each block; -inf where it may not stand.
+        problem: what is wanted.
         shapes: the set.
-        broken: what a joint that does not touch costs, in sub-cells.
     """
-    contact = touching(shapes)
+    contact = touching(shapes)[:, : shapes.free]
+    posts = shapes.kinds == "post"
     padded = np.pad(grid, 1)
-    inner = padded[1:-1, 1:-1, 1:-1]
-    live = grid[tuple(cells.T)] > 0
-    cells, scores = cells[live], scores[live]
-    odd = cells.sum(1) % 2
+    places = tuple((problem.cells + 1).T)
+    rows = rows[padded[places][rows] > 0]
+    odd = problem.cells[rows].sum(1) % 2
+    moved = [True, True]
     for turn in range(2 * ROUNDS):
-        mine = np.flatnonzero(odd == turn % 2)
-        energy = scores[mine].copy()
+        mine = rows[odd == turn % 2]
+        energy = scores[mine, : shapes.free].copy()
         for way, step in enumerate(WAYS):
-            at = tuple(cells[mine].T)
-            other = padded[tuple((cells[mine] + 1 + step).T)]
-            apart = ~contact[way][:, other].T & (other > 0)[:, None] & flow[way][at][:, None]
-            energy -= np.float32(broken) * apart
+            other = padded[tuple((problem.cells[mine] + 1 + step).T)]
+            asked = problem.flows[way, mine] & (other > 0)
+            cost = np.where(posts[other], LEG_BROKEN, BROKEN).astype(np.float32)
+            energy -= cost[:, None] * (~contact[way][:, other].T & asked[:, None])
         best = energy.argmax(1)
-        if turn > 1 and (inner[tuple(cells[mine].T)] == best).all():
+        here = tuple(axis[mine] for axis in places)
+        moved[turn % 2] = bool((padded[here] != best).any())
+        padded[here] = best
+        if not any(moved):
             break
-        inner[tuple(cells[mine].T)] = best
-    return inner.copy()
+    return padded[1:-1, 1:-1, 1:-1].copy()
+
+
+def broken_share(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> float:
+    """Return the share of the joints of the wanted at which shapes [X, Y, Z] do not touch."""
+    contact, padded = touching(shapes), np.pad(grid, 1)
+    held = broken = 0
+    for way in (0, 2, 4):
+        mine = problem.flows[way]
+        here = problem.cells[mine] + 1
+        own, other = padded[tuple(here.T)], padded[tuple((here + WAYS[way]).T)]
+        held += len(own)
+        broken += int((~contact[way][own, other]).sum())
+    return broken / max(held, 1)
 
 
 def parts_of_shapes(grid: np.ndarray, shapes: ShapeSet) -> np.ndarray:
@@ -95,11 +87,10 @@ def parts_of_shapes(grid: np.ndarray, shapes: ShapeSet) -> np.ndarray:
     board = np.zeros([2 * side - 1 for side in grid.shape], bool)
     board[::2, ::2, ::2] = grid > 0
     for axis in range(3):
-        inner = [slice(None)] * 3
-        inner[axis] = slice(None, -1)
-        outer = [slice(None)] * 3
-        outer[axis] = slice(1, None)
+        inner, outer, between = ([slice(None)] * 3 for _ in range(3))
+        inner[axis], outer[axis] = slice(None, -1), slice(1, None)
         between = [slice(None, None, 2)] * 3
         between[axis] = slice(1, None, 2)
-        board[tuple(between)] = contact[2 * axis][grid[tuple(inner)], grid[tuple(outer)]]
+        meet = contact[2 * axis][grid[tuple(inner)], grid[tuple(outer)]]
+        board[tuple(between)] = meet
     return connected_parts(board, corners=False)[0][::2, ::2, ::2]

@@ -4,19 +4,21 @@ A seat at 1.8 blocks cannot be joined to legs that end at 1 or 2. What a builder
 the chair a hand higher; so sizes may change by up to a quarter, at a price.
 """
 
-from collections.abc import Sequence
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
 from world2minecraft.fit.coverage import THIN_M, covered_by_boxes
-from world2minecraft.fit.joins import flows, touching
+from world2minecraft.fit.finish import finished
+from world2minecraft.fit.joins import broken_share
 from world2minecraft.fit.masks import SUB
-from world2minecraft.fit.objects import Fit, Target, attempts, solve
+from world2minecraft.fit.objects import Fit, attempts, fit_of
+from world2minecraft.fit.problem import Rules, Target, problem_at
 from world2minecraft.fit.shapes import ShapeSet
 
 MOST, LEAST = 1.25, 0.8
+TALLEST = 1.15  # A higher chair does not fit under its table.
 STRETCH_COST = 0.25  # IoU given up for a stretch by the factor e.
 JOINT_COST = 0.5  # IoU given up where no joint touches.
 THIN_WORTH = 0.2  # IoU that all of the thin parts are worth.
@@ -38,6 +40,7 @@ def fit_parts(
     *,
     counts: tuple[int, int] | None = None,
     bottom: int = 0,
+    flush: bool = False,
 ) -> PartsFit:
     """Return the best stable shapes for furniture of boxes.
 
@@ -47,18 +50,22 @@ def fit_parts(
         shapes: what may be chosen.
         counts: whole blocks that it must fill along x and y; None leaves that to the fit.
         bottom: the sub-cell, from 0 up to 7, at which it begins over a block's lower face.
+        flush: whether flat tops end with their block, so that things can lie on them.
     """
     boxes = np.asarray(boxes_m, np.float64).reshape(-1, 6) * blocks_per_metre
     boxes = boxes - np.tile(
         [*((boxes[:, :2].min(0) + boxes[:, 3:5].max(0)) / 2), boxes[:, 2].min()], 2
     )
     thin = (boxes[:, 3:] - boxes[:, :3]).min(1) < THIN_M * blocks_per_metre
-    even = (_is_even(boxes, 0), _is_even(boxes, 1))
+    rules = Rules(even=(_is_even(boxes, 0), _is_even(boxes, 1)), flush=flush)
     best: tuple[float, Fit, np.ndarray] | None = None
-    for factors, phase in _finalists(boxes, thin, shapes, even, counts, bottom):
+    for factors, phase in _finalists(boxes, thin, shapes, rules, counts, bottom):
         target = _target(boxes * np.tile(factors, 2), thin, bottom)
-        fit = solve(target, phase, shapes, even=even)
-        score = _worth(fit, target, phase, shapes) - _cost(factors, counts)
+        problem = problem_at(target, phase, shapes)
+        grid, lam = finished(problem, shapes, rules)
+        fit = fit_of(grid, problem, shapes, lam)
+        score = fit.iou + THIN_WORTH * fit.thin_recall - _cost(factors, counts)
+        score -= JOINT_COST * broken_share(grid, problem, shapes)
         if best is None or score > best[0] + SAME:
             best = score, fit, factors
     assert best is not None  # There always is the factor 1.
@@ -66,7 +73,7 @@ def fit_parts(
     return PartsFit(fit, _owners(boxes * np.tile(factors, 2), fit, shapes, bottom))
 
 
-def _finalists(boxes, thin, shapes, even, counts, bottom):
+def _finalists(boxes, thin, shapes, rules, counts, bottom):
     """Return for each height the stretch and phase that are best without joints."""
     size = boxes[:, 3:].max(0) - boxes[:, :3].min(0)
     sides = [_sides(size[axis], None if counts is None else counts[axis]) for axis in (0, 1)]
@@ -76,7 +83,7 @@ def _finalists(boxes, thin, shapes, even, counts, bottom):
         for wide in product(*sides):
             factors = np.array([*wide, tall])
             target = _target(boxes * np.tile(factors, 2), thin, bottom)
-            for phase, reached in attempts(target, shapes, even):
+            for phase, reached in attempts(target, shapes, rules):
                 if counts is not None and phase != tuple(4 * (n % 2) for n in counts):
                     continue
                 tried.append((reached - _cost(factors, counts), factors, phase))
@@ -102,7 +109,7 @@ def _heights(boxes: np.ndarray, bottom: int) -> list[float]:
     for level in levels[levels > 0.25].tolist():
         for edge in (np.floor(level + start), np.ceil(level + start)):
             factor = (edge - start) / level
-            if LEAST <= factor <= MOST:
+            if LEAST <= factor <= TALLEST:
                 factors.add(round(float(factor), 4))
     return sorted(factors, key=lambda one: abs(np.log(one)))[:HEIGHTS]
 
@@ -132,23 +139,6 @@ def _cost(factors: np.ndarray, counts: tuple[int, int] | None) -> float:
     return STRETCH_COST * float(np.abs(np.log(free)).sum())
 
 
-def _worth(fit: Fit, target: Target, phase: tuple[int, int], shapes: ShapeSet) -> float:
-    """Return how good a fit is: IoU, thin parts shown, joints that touch."""
-    runs = flows(fit.wanted)
-    contact = touching(shapes)
-    held = broken = 0
-    for axis in range(3):
-        inner = [slice(None)] * 3
-        inner[axis] = slice(None, -1)
-        outer = [slice(None)] * 3
-        outer[axis] = slice(1, None)
-        low, high = fit.numbers[tuple(inner)], fit.numbers[tuple(outer)]
-        meet = runs[(2 * axis, *inner)]
-        held += int(meet.sum())
-        broken += int((meet & ~contact[2 * axis][low, high]).sum())
-    return fit.iou + THIN_WORTH * fit.thin_recall - JOINT_COST * broken / max(held, 1)
-
-
 def _owners(boxes: np.ndarray, fit: Fit, shapes: ShapeSet, bottom: int) -> np.ndarray:
     """Return which box fills most of what is shown of each block, int16 [X, Y, Z]."""
     moved = boxes + np.tile([*fit.middle, bottom / SUB], 2)
@@ -167,8 +157,3 @@ def _owners(boxes: np.ndarray, fit: Fit, shapes: ShapeSet, bottom: int) -> np.nd
     result[~filled] = 0
     result[filled & (result == 0)] = 1
     return result
-
-
-def stacked(boxes: Sequence[np.ndarray]) -> np.ndarray:
-    """Return boxes as one array, float64 [N, 6]."""
-    return np.array(boxes, np.float64).reshape(-1, 6)

@@ -141,6 +141,23 @@ class ShapeSet:
         return np.array(rows, np.intp)
 
     @cached_property
+    def is_low(self) -> np.ndarray:
+        """Bool [S]: which shapes are flat and end below the top of their block."""
+        low = [("type", "bottom"), ("half", "bottom")]
+        rows = [
+            one.kind == "carpet"
+            or (one.kind == "slab" and low[0] in one.properties)
+            or (one.kind == "trapdoor" and {low[1], ("open", "false")} <= set(one.properties))
+            for one in self.shapes
+        ]
+        return np.array([False, *rows])
+
+    @cached_property
+    def is_upright(self) -> np.ndarray:
+        """Bool [S]: which shapes are upright panels."""
+        return np.array([False, *(("open", "true") in one.properties for one in self.shapes)])
+
+    @cached_property
     def stairs(self) -> np.ndarray:
         """int16 [S]: for stairs 8 * facing + 4 * (half is top) + 0, else -1; facing as SIDES."""
         rows = np.full(len(self), -1, np.int16)

@@ -1,0 +1,175 @@
+"""From gains to shapes that stand: stable, on legs, joined, symmetric, and without crumbs."""
+
+import numpy as np
+
+from world2minecraft.fit.joins import joined, parts_of_shapes
+from world2minecraft.fit.masks import SUB
+from world2minecraft.fit.problem import UP, Problem, Rules
+from world2minecraft.fit.settle import settled, with_corners
+from world2minecraft.fit.shapes import ShapeSet
+
+LEG_SHARE = 0.5  # Of what a column of blocks holds, so much is thin: then it is a leg.
+POLE_FILL, POLE_CELLS = 0.2, 16  # Seen from above a pole takes a quarter of its block at most.
+CRUMB_SHARE = 0.12  # A loose part of less than this share of an object is left out.
+
+
+def finished(
+    problem: Problem, shapes: ShapeSet, rules: Rules, held: np.ndarray | None = None
+) -> tuple[np.ndarray, float]:
+    """Return the shape of each block, intp [X, Y, Z], and the lam that chose it.
+
+    Args:
+        problem: what is wanted.
+        shapes: what may be chosen.
+        rules: how.
+        held: bool [X, Y, Z], the blocks that have a wall or a ceiling beside them; None for none.
+    """
+    barred = _barred(problem, shapes, rules)
+    ground = 0 if rules.stands else None
+    grid, lam = settled(
+        problem.gains, problem.cells, problem.shape, shapes, rules.lam, barred, ground
+    )
+    grid = evened(grid, shapes, rules.even)
+    scores = problem.gains.scores(lam)
+    scores[barred] = -np.inf
+    apart = np.isin(shapes.kinds, ("carpet", "post"))
+    scores[:, apart] = -np.inf
+    if rules.stands:
+        _add_legs(grid, problem, shapes)
+    movable = np.flatnonzero(~apart[grid[problem.at]])
+    grid = joined(grid, movable, scores, problem, shapes)
+    grid = with_corners(evened(grid, shapes, rules.even), shapes)
+    grid = without_crumbs(grid, shapes, rules.stands, held, problem.floor)
+    return with_corners(_without_bare_carpets(grid, shapes, ground), shapes), lam
+
+
+def _barred(problem: Problem, shapes: ShapeSet, rules: Rules) -> np.ndarray:
+    """Return what may not stand where, bool [N, S]."""
+    barred = np.zeros((len(problem.cells), len(shapes)), bool)
+    for axis in (0, 1):  # On a mirror plane, only what is its own mirror image.
+        if rules.even[axis] and problem.shape[axis] % 2:
+            on = problem.cells[:, axis] == problem.shape[axis] // 2
+            barred |= on[:, None] & (shapes.mirrors[axis] != np.arange(len(shapes)))
+    poles = _poles(problem)
+    if (shapes.kinds == "post").any():
+        barred |= ~poles[:, None] & (shapes.kinds == "post")
+        barred |= poles[:, None] & shapes.is_upright
+    if rules.flush:
+        barred |= shapes.is_low
+    return barred
+
+
+def evened(grid: np.ndarray, shapes: ShapeSet, even: tuple[bool, bool]) -> np.ndarray:
+    """Return shapes, int [X, Y, Z], with the high half made the mirror image of the low one."""
+    result = grid.copy()
+    for axis in (0, 1):
+        if even[axis]:
+            half = result.shape[axis] // 2
+            low, high = [slice(None)] * 3, [slice(None)] * 3
+            low[axis], high[axis] = slice(0, half), slice(result.shape[axis] - half, None)
+            result[tuple(high)] = shapes.mirrors[axis][np.flip(result[tuple(low)], axis)]
+    return result
+
+
+def _poles(problem: Problem) -> np.ndarray:
+    """Return which blocks hold a leg or a pole, bool [N]: upright, thin both ways, or its foot."""
+    filled = problem.wanted.reshape(-1, SUB, SUB, SUB) > POLE_FILL
+    upright = filled.any((1, 2)).sum(1) >= SUB - 1
+    slim = filled.any(3).sum((1, 2)) <= POLE_CELLS
+    foot = np.median(filled.sum((1, 2)), axis=1) <= POLE_CELLS
+    foot &= problem.cells[:, 2] == 0
+    thin = problem.thin.sum(1) > LEG_SHARE * problem.wanted.sum(1)
+    return upright & (slim | foot) & thin
+
+
+def _add_legs(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> None:
+    """Set posts, in place, where legs or a pole run from the floor to what was chosen."""
+    numbers = np.flatnonzero(shapes.kinds == "post")
+    if not len(numbers):
+        return
+    poles, runs = (np.zeros(problem.shape, bool) for _ in range(2))
+    poles[problem.at] = _poles(problem)
+    runs[problem.at] = problem.flows[UP]
+    tall = np.logical_and.accumulate(poles & runs, axis=2).sum(2)
+    for x, y in np.argwhere(tall):
+        top = int(tall[x, y])
+        if top < grid.shape[2] and grid[x, y, top]:
+            grid[x, y, :top] = numbers[0]
+
+
+def without_crumbs(
+    grid: np.ndarray,
+    shapes: ShapeSet,
+    stands: bool,
+    held: np.ndarray | None = None,
+    floor: int = 0,
+) -> np.ndarray:
+    """Return shapes, int [X, Y, Z], without the parts that touch neither floor, wall nor rest.
+
+    Of what does not stand the larger parts stay; of what stands the largest stays in any case,
+    on posts where it has them. ``floor`` is the sub-cell of the lowest layer on which it stands.
+    """
+    parts = parts_of_shapes(grid, shapes)
+    volumes = np.bincount(parts.ravel(), shapes.volumes[grid].ravel())
+    volumes[0] = 0
+    if not volumes.any():
+        return grid
+    keep = np.zeros(len(volumes), bool)
+    if held is not None:
+        keep[parts[held]] = True
+    if stands:
+        lowest = grid[:, :, 0]
+        stood = shapes.faces[lowest, 2, 0].any((2, 3)) if floor == 0 else lowest > 0
+        keep[parts[:, :, 0][stood]] = True
+        largest = int(volumes.argmax())
+        if not keep[largest] and volumes[largest] > CRUMB_SHARE * volumes.sum():
+            keep[largest] = _on_stilts(grid, parts == largest, shapes)
+    else:
+        keep |= volumes >= CRUMB_SHARE * volumes.sum()
+    keep[0] = False
+    if not keep.any():
+        keep[int(volumes.argmax())] = True
+    return np.where(keep[parts] | _stilts_of(grid, parts, shapes), grid, 0)
+
+
+def _stilts_of(grid: np.ndarray, parts: np.ndarray, shapes: ShapeSet) -> np.ndarray:
+    """Return where posts were set after the parts were numbered, bool [X, Y, Z]."""
+    return (parts == 0) & (grid > 0) & (shapes.kinds[grid] == "post")
+
+
+def _on_stilts(grid: np.ndarray, part: np.ndarray, shapes: ShapeSet) -> bool:
+    """Set a part on posts, in place, from the floor to blocks that touch the face below them."""
+    posts = np.flatnonzero(shapes.kinds == "post")
+    if not len(posts):
+        return False
+    middle = shapes.faces[grid, 2, 0][..., SUB // 2, SUB // 2]
+    first = np.where(part.any(2), part.argmax(2), -1)
+    ways = [
+        (int(x), int(y), int(first[x, y]))
+        for x, y in np.argwhere(first > 0)
+        if middle[x, y, first[x, y]] and not grid[x, y, : first[x, y]].any()
+    ]
+    if not ways:
+        return False
+    spots = np.array(ways)
+    corners = {int((spots[:, 0] * a + spots[:, 1] * b).argmax()) for a in (1, -1) for b in (1, -1)}
+    for index in sorted(corners):
+        x, y, top = ways[index]
+        grid[x, y, :top] = posts[0]
+    return True
+
+
+def _without_bare_carpets(grid: np.ndarray, shapes: ShapeSet, ground: int | None) -> np.ndarray:
+    """Return shapes, int [X, Y, Z], without carpets under which nothing is left."""
+    bare = np.zeros(grid.shape, bool)
+    bare[:, :, 1:] = grid[:, :, :-1] == 0
+    bare[:, :, 0] = ground is None
+    return np.where(bare & (shapes.kinds[grid] == "carpet"), 0, grid)
+
+
+def without_loose(grid: np.ndarray, shapes: ShapeSet, held: np.ndarray) -> np.ndarray:
+    """Return shapes, int [X, Y, Z], without single blocks that touch nothing and are not held."""
+    parts = parts_of_shapes(grid, shapes)
+    sizes = np.bincount(parts.ravel())
+    keep = (sizes > 1) | np.isin(np.arange(len(sizes)), parts[held])
+    return np.where(keep[parts] & (parts > 0), grid, 0)
