@@ -26,6 +26,7 @@ from world2minecraft.minecraft.nbt import (
     unpack,
     write_nbt,
 )
+from world2minecraft.minecraft.sign_texts import signs_for, signs_of_today
 from world2minecraft.minecraft.straddled import (
     bits_for,
     pack_straddled,
@@ -94,6 +95,7 @@ def write_regions(
         UsageError: there is no region, or an empty one. OutputError: it cannot be written.
     """
     version = version or game_version()
+    regions = {key: signs_for(volume, version.data_version) for key, volume in regions.items()}
     if not regions or not all(volume.states.size for volume in regions.values()):
         raise UsageError("a Litematica file holds one region or more, and at least a block each")
     corners = np.array([volume.corner for volume in regions.values()])
@@ -266,12 +268,13 @@ def _region_volume(
         raise DamagedFileError(source, f"has a block of number {wrong}, which its palette lacks")
     corner = low + shift
     x, y, z = corner.tolist()
+    held = [_block_entity(nbt, corner) for nbt in region.get("TileEntities", [])]
     start = np.array([int(region["Position"][axis]) for axis in "xyz"]) + shift
     return unlabelled(
         states,
         palette,
         (x, y, z),
-        [_block_entity(nbt, corner) for nbt in region.get("TileEntities", [])],
+        signs_of_today(held, int(data_version)),
         [_entity(nbt, start) for nbt in region.get("Entities", [])],
     )
 

@@ -20,6 +20,7 @@ from world2minecraft.minecraft.nbt import (
     write_nbt,
 )
 from world2minecraft.minecraft.packing import read_varints, write_varints
+from world2minecraft.minecraft.sign_texts import signs_for, signs_of_today
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.unlabelled import check_size, palette_of, unlabelled
 from world2minecraft.minecraft.versions import GameVersion, game_version
@@ -50,6 +51,7 @@ def write_schem(
         UsageError: a side is longer than 65,535 blocks. OutputError: it cannot be written.
     """
     version = version or game_version()
+    volume = signs_for(volume, version.data_version)
     if max(volume.states.shape) > 0xFFFF or not volume.states.size:
         raise UsageError(f"a schematic holds 1 to 65,535 blocks a side, not {volume.states.shape}")
     palette = {
@@ -165,19 +167,19 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
     data = blocks["Data" if version == 3 else "BlockData"].view(np.uint8)
     if len(data) < cell_count:
         raise DamagedFileError(source, f"says {cell_count:,} blocks and holds fewer")
-    palette, number_of = _palette(
-        blocks["Palette"], int(tree.get("DataVersion", DEFAULT_GAME)), source
-    )
+    game = int(tree.get("DataVersion", DEFAULT_GAME))
+    palette, number_of = _palette(blocks["Palette"], game, source)
     width, height, length = size
     states = np.empty((width, height, length), np.uint16)
     _fill(states.transpose(1, 2, 0), data, number_of, source)
     corner = _corner(tree)
-    held = blocks.get("BlockEntities", tree.get("TileEntities", []))
+    nbts = blocks.get("BlockEntities", tree.get("TileEntities", []))
+    held = [_block_entity(nbt, corner, version) for nbt in nbts]
     return unlabelled(
         states,
         palette,
         corner,
-        [_block_entity(nbt, corner, version) for nbt in held],
+        signs_of_today(held, game),
         [_entity(nbt, corner, version) for nbt in tree.get("Entities", [])],
     )
 

@@ -19,6 +19,7 @@ from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.entries import palette_texts, state_entry
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import NbtLimits, pack_gzip, unpack, write_nbt
+from world2minecraft.minecraft.sign_texts import signs_for, signs_of_today
 from world2minecraft.minecraft.unlabelled import (
     check_size,
     own_tag,
@@ -65,6 +66,7 @@ def write_structure(
 
 def structure_bytes(volume: BlockVolume, version: GameVersion, *, clears: bool = True) -> bytes:
     """Return the bytes of a structure file. Args and errors as ``write_structure``."""
+    volume = signs_for(volume, version.data_version)
     # Bottom up, as builders do: y, then z, then x.
     cells = volume.states.transpose(1, 2, 0)
     air = volume.palette.index(AIR)
@@ -149,9 +151,8 @@ def structure_of(
 def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: int) -> BlockVolume:
     size = check_size((int(side) for side in root["size"]), source)
     blocks = BlockList.of(root["blocks"], source)
-    texts = palette_texts(
-        _palette(root, source, losses, variant), root.get("DataVersion", DEFAULT_GAME), source
-    )
+    game = int(root.get("DataVersion", DEFAULT_GAME))
+    texts = palette_texts(_palette(root, source, losses, variant), game, source)
     palette, number_of = palette_of(texts, source)
     places, numbers = blocks.places, blocks.states
     if len(numbers) and not 0 <= numbers.min() <= numbers.max() < len(texts):
@@ -167,7 +168,7 @@ def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: i
     corner = stated_corner(root, source) or (0, 0, 0)
     held = [_block_entity(places[n].tolist(), nbt, corner) for n, nbt in blocks.nbt.items()]
     entities = [_entity(nbt, corner) for nbt in root.get("entities", [])]
-    return unlabelled(states, palette, corner, held, entities)
+    return unlabelled(states, palette, corner, signs_of_today(held, game), entities)
 
 
 def _palette(

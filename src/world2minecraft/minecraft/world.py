@@ -22,6 +22,7 @@ from world2minecraft.minecraft.old_chunks import (
     FIRST_WITHOUT_LEVEL,
     OldChunkWriter,
 )
+from world2minecraft.minecraft.sign_texts import signs_for
 from world2minecraft.minecraft.sizes import size_pack
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.world_reading import Place, read_level, read_world
@@ -59,6 +60,7 @@ def write_world(
         UsageError: the volume is higher or lower than the game's world.
     """
     target, version = Path(folder), version or game_version()
+    volume = signs_for(volume, version.level_data_version)
     _check_heights(volume, version)
     _check_free(target)
     try:

@@ -13,6 +13,7 @@ from world2minecraft.minecraft.chunks import read_chunk
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, unpack
 from world2minecraft.minecraft.packing import SECTION, unpack_section
 from world2minecraft.minecraft.sections import Section
+from world2minecraft.minecraft.sign_texts import signs_of_today
 from world2minecraft.minecraft.unlabelled import MAX_CELLS, palette_of, unlabelled
 from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
@@ -107,7 +108,8 @@ def _gather(
             if unpacked > MAX_UNPACKED_BYTES or len(sections) > MAX_SECTIONS:
                 reason = f"the world has more than {MAX_CELLS:,} blocks"
                 raise LimitError(path, f"{reason}, or takes too much memory; give a box of it")
-            block_entities.extend(_block_entities(root, path))
+            held = _block_entities(root, path)
+            block_entities.extend(signs_of_today(held, root["DataVersion"]))
             entities.extend(_entities(root.get("Entities", []), path))
     return sections, block_entities, entities
 
