@@ -74,14 +74,12 @@ def faces_of_boxes(
     plane = np.cumsum(is_first[:-1]) - 1
     us, u_starts, u_ranks = _ranks(plane, rows[:, [4, 6]])
     vs, v_starts, v_ranks = _ranks(plane, rows[:, [5, 7]])
+    tables = (rows, starts, us, u_starts, u_ranks, vs, v_starts, v_ranks, is_clear)
     found = np.empty((len(rows), 9), np.int32)
-    for _ in range(2):
-        count = _visible(
-            rows, starts, us, u_starts, u_ranks, vs, v_starts, v_ranks, is_clear, found
-        )
-        if count <= len(found):
-            break
-        found = np.empty((count, 9), np.int32)  # Parts of faces may be more than the faces.
+    count = _visible(*tables, found)
+    if count > len(found):  # Parts of faces may be more than the faces.
+        found = np.empty((count, 9), np.int32)
+        _visible(*tables, found)
     owner, axis, plane, side, u0, v0, u1, v1, material = np.ascontiguousarray(found[:count].T)
     return Faces(owner, axis, plane, side, np.stack([u0, u1], 1), np.stack([v0, v1], 1), material)
 

@@ -189,7 +189,8 @@ def _put_materials(writer: GlbWriter, looks: Sequence[Look]) -> None:
     for name, pixels in (("colours", colours), ("glow", glows)):
         image = {"name": name, "mimeType": "image/png", "bufferView": writer.view(_png(pixels))}
         writer.add("textures", {"sampler": 0, "source": writer.add("images", image)})
-    for name in ("blocks", "glass"):
+    has_glass = any(look.is_clear for look in looks)
+    for name in ("blocks", "glass") if has_glass else ("blocks",):
         material: dict[str, Any] = {
             "name": name,
             "pbrMetallicRoughness": {

@@ -245,5 +245,5 @@ def _parts(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
 
 
 def _is_kept(line: str) -> bool:
-    """Whether a line of a pack builds; the others order the parts."""
-    return not line.startswith(("schedule ", "forceload "))
+    """Whether a line of a pack builds; the others order the parts or clear their place."""
+    return not line.startswith(("schedule ", "forceload ", "kill @e[tag=w2m_"))
