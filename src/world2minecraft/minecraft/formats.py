@@ -23,6 +23,7 @@ FORMATS = Registry(
         "datapack": "world2minecraft.minecraft.formats:DatapackFormat",
         "litematic": "world2minecraft.minecraft.shared_formats:LitematicFormat",
         "structure": "world2minecraft.minecraft.shared_formats:StructureFormat",
+        "legacy": "world2minecraft.minecraft.shared_formats:LegacySchematicFormat",
         "mcfunction": "world2minecraft.minecraft.command_list:CommandListFormat",
         "mcstructure": "world2minecraft.minecraft.bedrock:McstructureFormat",
     },
