@@ -66,7 +66,7 @@ def test_what_is_not_there_or_unknown_is_refused(tmp_path):
         read_blocks(tmp_path)
     with pytest.raises(UsageError, match="no block format ends so; known: a world folder, .schem"):
         write_blocks(VOLUME, tmp_path / "a.obj")
-    with pytest.raises(UsageError, match="schem_version must be 2 or 3"):
+    with pytest.raises(UsageError, match="schem_version must be 1, 2 or 3"):
         write_blocks(VOLUME, tmp_path / "a.schem", WriteOptions(schem_version=4))
     with pytest.raises(UnknownNameError, match="no Minecraft version"):
         write_blocks(VOLUME, tmp_path / "a.schem", WriteOptions(mc_version="1.7.10"))

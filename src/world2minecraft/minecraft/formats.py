@@ -191,18 +191,20 @@ class SchemFormat:
         return read_schem(path)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
-        """Write version 2, or 3 where the options say so."""
+        """Write version 2, or 1 or 3 where the options say so."""
         from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
         from world2minecraft.minecraft.schem import write_schem  # noqa: PLC0415  # numba.
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
-        if options.schem_version not in (2, 3):
-            raise UsageError(f"schem_version must be 2 or 3, not {options.schem_version}")
+        if options.schem_version not in (1, 2, 3):
+            raise UsageError(f"schem_version must be 1, 2 or 3, not {options.schem_version}")
+        if options.schem_version == 1:
+            losses.add("entities, which version 1 has no place for", len(volume.entities))
         count_unknown(volume, game_version(options.mc_version), losses)
         write_schem(
             volume,
             path,
-            schem_version=3 if options.schem_version == 3 else 2,
+            schem_version=options.schem_version,
             version=game_version(options.mc_version),
         )
 
@@ -228,7 +230,9 @@ class DatapackFormat:
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write the pack under the namespace of the options' name."""
         from world2minecraft.minecraft.datapack import write_datapack  # noqa: PLC0415  # numba.
+        from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         version = game_version(options.mc_version)
+        count_unknown(volume, version, losses)
         write_datapack(volume, path, version=version, name=options.name)

@@ -20,7 +20,6 @@ from world2minecraft.types import BlockVolume
 FIRST_1_14 = 1952  # Its first release; the names changed in snapshots before.
 FIRST_1_16 = 2566
 FIRST_1_17 = 2724
-TABLE_VERSION = 3463  # 1.20: from here to 3697 nothing is called otherwise.
 _OLD_SIGNS = {
     "minecraft:sign": "minecraft:oak_sign",
     "minecraft:wall_sign": "minecraft:oak_wall_sign",
@@ -44,7 +43,7 @@ def read_state(text: str, data_version: int) -> str:
         ('minecraft:grass', 'minecraft:oak_sign')
     """
     name, bracket, rest = text.partition("[")
-    if name in new_names() and data_version >= TABLE_VERSION:
+    if name in new_names():  # No older block was ever called so.
         return new_names()[name] + bracket + rest
     if data_version >= FIRST_1_17:
         return text

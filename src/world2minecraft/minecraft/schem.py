@@ -1,4 +1,4 @@
-"""Sponge schematics, versions 2 and 3: what WorldEdit and most tools read."""
+"""Sponge schematics, versions 1 to 3: what WorldEdit and most tools read."""
 
 import math
 from collections.abc import Mapping
@@ -34,7 +34,7 @@ def write_schem(
     volume: BlockVolume,
     path: str | Path,
     *,
-    schem_version: Literal[2, 3] = 2,
+    schem_version: Literal[1, 2, 3] = 2,
     version: GameVersion | None = None,
 ) -> None:
     """Write a volume as a Sponge schematic. Its Offset is the volume's corner.
@@ -44,7 +44,8 @@ def write_schem(
     Args:
         volume: the blocks; states are written as they stand in its palette.
         path: the file, ``.schem``.
-        schem_version: 2, which every WorldEdit since 7.0 reads, or 3, since 7.3.
+        schem_version: 2, which every WorldEdit since 7.0 reads, 3, since 7.3, or 1, for tools
+            that know nothing newer: it holds no entities and does not say its game.
         version: the game whose data version it carries; 1.20.1 where it is left out.
 
     Raises:
@@ -72,7 +73,7 @@ def write_schem(
         "Length": length,
         "Offset": np.array(volume.corner, np.int32),
     }
-    write = _tree_v3 if schem_version == 3 else _tree_v2
+    write = {1: _tree_v1, 2: _tree_v2, 3: _tree_v3}[schem_version]
     name, root = write(head, palette, data, volume)
     write_bytes(path, pack_gzip(write_nbt(root, name), level=4))
 
@@ -100,6 +101,15 @@ def read_schem(path: str | Path) -> BlockVolume:
 
 
 # Writing.
+
+
+def _tree_v1(
+    head: dict[str, Any], palette: dict[str, int], data: np.ndarray, volume: BlockVolume
+) -> tuple[str, dict[str, Any]]:
+    name, tree = _tree_v2(head, palette, data, volume)
+    tiles = [{**held, "ContentVersion": 1} for held in tree["BlockEntities"]]
+    left_out = ("DataVersion", "BlockEntities", "Entities")
+    return name, {key: tree[key] for key in tree if key not in left_out} | {"TileEntities": tiles}
 
 
 def _tree_v2(
@@ -228,7 +238,7 @@ def _fill(cells: np.ndarray, data: np.ndarray, number_of: Mapping[int, int], sou
 def _block_entity(nbt: dict[str, Any], corner: tuple[int, int, int], version: int) -> BlockEntity:
     x, y, z = (int(low + step) for low, step in zip(corner, nbt["Pos"], strict=True))
     rest = nbt.get("Data", {}) if version == 3 else nbt
-    rest = {key: rest[key] for key in rest if key not in ("Id", "Pos")}
+    rest = {key: rest[key] for key in rest if key not in ("Id", "Pos", "ContentVersion")}
     return BlockEntity((x, y, z), str(nbt["Id"]), rest)
 
 
