@@ -1,5 +1,7 @@
 """Vanilla block designs: their states, their fronts and their quarter turns."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from world2minecraft.minecraft.states import complete, known_blocks, parse_state
 from world2minecraft.types import Placement
 
 NAMES = TEMPLATES.names()
-SCALES = (1.0, 2.0, 2.9)
+SCALES = (1.0, 2.0, 4.0)
 
 
 def _placed(name, quarter_turns=0, size_m=None, **parameters):
@@ -29,8 +31,8 @@ def _boxes(design):
 def _volume(design):
     """Return a design's collision boxes as bool cells of a sixteenth of a block."""
     east, up, south = design.size
-    volume = np.zeros((east * 16, up * 16 + 8, south * 16), bool)
-    for box in np.round(_boxes(design) * 16).astype(int):
+    volume = np.zeros((east * 16 + 32, up * 16 + 32, south * 16 + 32), bool)
+    for box in np.round(_boxes(design) * 16).astype(int) + 16:
         volume[box[0] : box[3], box[1] : box[4], box[2] : box[5]] = True
     return volume
 
@@ -38,9 +40,8 @@ def _volume(design):
 @pytest.mark.parametrize("scale", SCALES)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_quarter_turn_turns_every_box_of_the_design(name, scale):
-    for turns in range(4):
-        before = idiom(_placed(name, turns), scale)
-        after = idiom(_placed(name, (turns + 1) % 4), scale)
+    designs = [idiom(_placed(name, turns), scale) for turns in range(3)]
+    for before, after in pairwise(designs):
         assert after.size == (before.size[2], before.size[1], before.size[0])
         # Counter-clockwise from above carries east to north, which is -z: from axis 2 to axis 0.
         np.testing.assert_array_equal(_volume(after), np.rot90(_volume(before), axes=(2, 0)))
@@ -86,26 +87,27 @@ def test_the_head_of_a_bed_lies_at_its_back():
 
 
 @pytest.mark.parametrize(
-    ("height_m", "top_blocks"), [(0.55, 1.1875), (0.75, 1.5), (0.95, 2.0), (0.2, 0.5)]
+    ("scale", "height_m", "top_blocks"),
+    [(2.0, 0.75, 1.5), (2.0, 0.95, 2.1875), (4.0, 0.75, 3.0), (4.0, 0.9, 3.5), (1.0, 0.75, 1.0)],
 )
-def test_the_top_of_a_table_is_at_its_height(height_m, top_blocks):
-    boxes = _boxes(idiom(_placed("dining_table", size_m=(1.0, 1.5, height_m)), 2.0))
+def test_the_top_of_a_table_is_at_its_height(scale, height_m, top_blocks):
+    boxes = _boxes(idiom(_placed("dining_table", size_m=(1.0, 1.5, height_m)), scale))
     wide = boxes[boxes[:, 3] - boxes[:, 0] > 0.8]
     assert wide[:, 4].max() == top_blocks
 
 
-def test_a_plate_lies_on_a_fence():
+def test_a_plate_of_one_block_lies_on_a_fence():
     blocks = idiom(_placed("coffee_table", size_m=(0.5, 0.5, 0.53)), 2.0).blocks
     names = [parse_state(block.state).name for block in blocks]
     assert names == ["minecraft:spruce_fence", "minecraft:spruce_pressure_plate"]
 
 
 def test_fences_join_their_neighbours_as_the_game_joins_them():
-    blocks = idiom(_placed("desk", size_m=(0.5, 1.0, 0.75)), 2.0).blocks
-    legs = sorted(block.state for block in blocks if block.role == "leg")
-    assert len(legs) == 2
-    assert "north=true" in legs[0] or "south=true" in legs[0]
-    assert all("east=false" in leg and "west=false" in leg for leg in legs)
+    blocks = idiom(_placed("chair", size_m=(0.5, 0.5, 0.9)), 4.0).blocks
+    legs = [parse_state(block.state) for block in blocks if block.role == "leg"]
+    assert len(legs) == 4
+    ways = ("east", "north", "south", "west")
+    assert [sum(leg.get(way) == "true" for way in ways) for leg in legs] == [2, 2, 2, 2]
 
 
 def test_a_corner_sofa_runs_on_at_the_side_it_says():
@@ -116,7 +118,8 @@ def test_a_corner_sofa_runs_on_at_the_side_it_says():
     assert min(b.offset[2] for b in right.blocks if b.offset[0] == front) > 0
 
 
-def test_parts_are_built_from_three_blocks_a_metre():
-    assert idiom(_placed("chair"), 3.0) is None
+def test_parts_are_built_from_six_blocks_a_metre():
+    assert idiom(_placed("chair"), 5.9) is not None
+    assert idiom(_placed("chair"), 6.0) is None
     own = Placement(1, 5, "cells", np.zeros(3), np.ones(3), 0, 0.2)
     assert idiom(own, 1.0) is None

@@ -18,7 +18,7 @@ NAMES = TEMPLATES.names()
 def test_the_library_covers_every_object_class():
     assert len(set(NAMES)) == len(NAMES) >= 24
     held = [one.name for class_id in OBJECT_CLASSES for one in templates_of(class_id)]
-    assert sorted(held) == sorted(NAMES)
+    assert sorted(held) == sorted(name for name in NAMES if template(name).matched)
     assert all(templates_of(class_id) for class_id in OBJECT_CLASSES)
 
 

@@ -65,6 +65,21 @@ def idiom_box(
     return np.clip(low, least, np.maximum(most, least)), size
 
 
+def filled_by(design: Idiom) -> np.ndarray:
+    """Return the blocks that a design fills, bool [X, Y, Z] in room axes."""
+    along, up, across = design.size
+    filled = np.zeros((along, across, up), bool)
+    filled[tuple(_cells_of(design).T)] = True
+    return filled
+
+
+def _cells_of(design: Idiom) -> np.ndarray:
+    """Return where the blocks of a design stand in its box, int [N, 3] in room axes."""
+    offsets = np.array([block.offset for block in design.blocks]).reshape(-1, 3)
+    # Offsets are in block axes already: their inverse map is the map itself.
+    return cells_to_block_axes(offsets[:, [0, 2, 1]], design.size[2])[:, [0, 2, 1]]
+
+
 def put_idiom(
     canvas: Canvas,
     design: Idiom,
@@ -88,9 +103,7 @@ def put_idiom(
         parameters: how colours are weighed.
     """
     shape = canvas.states.shape
-    offsets = np.array([block.offset for block in design.blocks]).reshape(-1, 3)
-    # Offsets are in block axes already: their inverse map is the map itself.
-    local = cells_to_block_axes(offsets[:, [0, 2, 1]], design.size[2])[:, [0, 2, 1]]
+    local = _cells_of(design)
     states = _states(design, local, thing, hue, palette, parameters or BuildParameters())
     for cell, state in zip(local.tolist(), states, strict=True):
         at = tuple((low + cell).tolist())

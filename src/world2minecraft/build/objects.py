@@ -291,6 +291,8 @@ class ObjectBuilder:
 
     def _kinds(self, cells: np.ndarray, thing: Thing) -> frozenset[str]:
         """Return the kinds of shape that exist in the colours of an object with cells [N, 3]."""
+        if self.parameters.shapes == "cubes":
+            return frozenset(("full",))
         paint = self.paints.get(thing.instance)
         if paint is not None:
             colours = np.reshape(paint, (-1, 3))

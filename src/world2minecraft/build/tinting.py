@@ -16,9 +16,15 @@ from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.surfaces import painted
 from world2minecraft.furniture import IdiomBlock, Material
-from world2minecraft.furniture.materials import PLAIN, Swatch, restated, shape_of, swatches
+from world2minecraft.furniture.materials import FIXED, PLAIN, Swatch, restated, shape_of, swatches
+from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.minecraft.colours import colour_of, colours_of
+from world2minecraft.minecraft.shapes import is_full_cube
 
 OTHER_KIND = 0.1  # Oklab: what another kind of material must come nearer by. A guess.
+OWN_LOOK = 0.1  # Oklab: up to this far off a fixed block keeps its own look. A guess.
+FADED = 0.05  # Oklab: a grey that stands for a clear colour: a blue chair stays blue. A guess.
+CLEAR_CHROMA, FAINT_CHROMA, CLEAR_SHARE = 0.06, 0.03, 0.3
 PLAIN_PAINTS = 3  # Blocks of one plain role: a front, its trim and one thing in it.
 
 
@@ -66,12 +72,24 @@ def tinted(
                 for index, state in zip(indices, renewed, strict=True):
                     states[index] = state
                 continue
+        if material.kind == FIXED:
+            if _is_far(material, colour) and hue.paint is None:
+                renewed = _painted(cells[indices], hue, class_id, palette, parameters)
+                for index, state in zip(indices, renewed, strict=True):
+                    states[index] = state if is_full_cube(states[index]) else states[index]
+            continue
         own = [states[index] for index in indices]
         for index, state in zip(
             indices, _restated(own, material.kind, colour, parameters), strict=True
         ):
             states[index] = state
     return states
+
+
+def _is_far(material: Material, colour: np.ndarray) -> bool:
+    """Whether a fixed material looks unlike an object: books in a red cupboard."""
+    own = oklab_of_srgb(np.array(colour_of(material.block("full") or ""), np.uint8))
+    return float(np.linalg.norm(own - colour)) > OWN_LOOK
 
 
 def _colour(cells: np.ndarray, hue: Hue) -> np.ndarray:
@@ -81,6 +99,9 @@ def _colour(cells: np.ndarray, hue: Hue) -> np.ndarray:
     at = tuple(cells.T)
     usable = hue.known[at]
     chosen = hue.colours[at][usable] if usable.any() else hue.colours[hue.known]
+    clear = np.hypot(chosen[:, 1], chosen[:, 2]) >= CLEAR_CHROMA
+    if clear.mean() >= CLEAR_SHARE:  # Shade and what shines through take a colour's hue away.
+        chosen = chosen[clear]
     return np.median(chosen, axis=0).astype(np.float32)
 
 
@@ -131,5 +152,8 @@ def _nearest(
         return None
     handicaps = np.array([0.0] * len(own) + [OTHER_KIND] * (len(offered) - len(own)))
     samples = [one.sample for one in offered]
+    if np.hypot(*colour[1:]) >= CLEAR_CHROMA:
+        chroma = np.hypot(*oklab_of_srgb(colours_of(samples))[:, 1:].T)
+        handicaps = handicaps + FADED * (chroma < FAINT_CHROMA)
     costs = costs_of(colour[None], samples, parameters.lightness_weight, handicaps)
     return offered[int(costs[0].argmin())]

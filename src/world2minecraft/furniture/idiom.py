@@ -15,7 +15,7 @@ from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Parameters, Template
 from world2minecraft.types import Placement
 
-PARTS_FROM = 3.0  # Blocks per metre from which parts are at least a third of a block (fit.md).
+PARTS_FROM = 6.0  # Blocks per metre from which parts of 8 cm are half a block thick and fit well.
 
 
 class IdiomBlock(NamedTuple):

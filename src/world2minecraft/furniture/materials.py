@@ -39,7 +39,8 @@ class Material:
 
     kind: one of ``kinds()``, ``plain`` or ``fixed``.
     value: which of the kind; the full block's name for ``plain`` and ``fixed``.
-    takes_colour: whether it takes the real object's colour, by another value of the kind.
+    takes_colour: whether it takes the real object's colour, by another value of the kind; a
+        ``fixed`` one gives way to plain blocks where the object is of quite another colour.
     shapes: the blocks of a ``fixed`` one by shape, beside its full block.
     """
 
@@ -53,8 +54,6 @@ class Material:
             for name in (self.value, *(block for _, block in self.shapes)):
                 if f"minecraft:{name}" not in known_blocks():
                     raise ValueError(f"no block is named {name!r}")
-            if self.kind == FIXED and self.takes_colour:
-                raise ValueError("a fixed material takes no colour")
         elif self.kind not in kinds():
             known = ", ".join((*kinds(), PLAIN, FIXED))
             raise ValueError(f"no kind of material is named {self.kind!r}; known: {known}")

@@ -45,11 +45,13 @@ def _is_small(size: BlockSize, look: Look) -> bool:
 
 
 def _seat(plan: Plan) -> int:
-    """Lay a seat at its height, to half a block; a low one rises at the back to meet it."""
+    """Lay a thin seat that rises at its back to meet the panels there; a soft one is whole."""
     height = plan.look["seat_height"] * plan.size.per_metre
-    layer = lay_plate(plan, "seat", plan.depth, plan.width, height, ("slab", "full"))
-    if layer + 0.75 > height and plan.look.has("seat", "slab", "stairs"):
-        plan.stairs("seat", 0, plan.width, layer, "back")
+    if not plan.look.has("seat", "slab", "stairs"):
+        return lay_plate(plan, "seat", plan.depth, plan.width, height, ("full",))
+    layer = max(int(height), 1)
+    plan.slab("seat", plan.depth, plan.width, layer)
+    plan.stairs("seat", 0, plan.width, layer, "back")
     return layer
 
 

@@ -11,7 +11,7 @@ from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 
-THICK = 0.6  # Blocks: a screen this deep is a whole block.
+THICK = 0.3  # Blocks: a screen this deep is a whole block.
 
 
 def _wall_screen(depth: float, width: float, height: float, look: Look) -> list[Part]:

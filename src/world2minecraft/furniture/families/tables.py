@@ -26,6 +26,8 @@ def _table_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan = Plan(size, look)
     if _is_low(plan):
         return plan.blocks
+    if _is_braced(plan):
+        return plan.blocks
     layer = lay_plate(plan, "top", plan.depth, plan.width, size.exact[2], _tops(look))
     if look.option("legs") == "trestle" and size.width > 3:
         feet = [(i, j) for i in plan.depth for j in (1, size.width - 2)]
@@ -37,6 +39,23 @@ def _table_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     else:
         lay_legs(plan, "leg", feet, layer)
     return plan.blocks
+
+
+def _is_braced(plan: Plan) -> bool:
+    """Lay a table whose top ends level with a block, with braces at its corners; whether it does.
+
+    A plate in the lower half of a block would leave no room for what stands on the table.
+    """
+    layer = round(plan.size.exact[2]) - 1
+    fine = abs(plan.size.exact[2] - layer - 1) <= 0.3 and min(plan.size[:2]) > 2 and layer > 1
+    if not fine or not plan.look.has("top", "trapdoor", "stairs"):
+        return False
+    plan.plate("top", plan.depth, plan.width, layer, "top")
+    last = plan.size.width - 1
+    for i, j in plan.corners:
+        plan.stairs("top", i, j, layer, "left" if j == last else "right", "top")
+    lay_legs(plan, "leg", plan.corners, layer)
+    return True
 
 
 def _tops(look: Look) -> tuple[str, ...]:
