@@ -10,6 +10,7 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
+from world2minecraft.furniture.own import own_files, read_own
 from world2minecraft.furniture.reading import read_design
 from world2minecraft.furniture.template import Template
 from world2minecraft.registry import Registry
@@ -52,7 +53,7 @@ class Library(Registry):
     def names(self) -> tuple[str, ...]:
         """All names: those that are matched first in their order, then the others, sorted."""
         own = design_files()
-        rest = sorted({*own, *super().names()} - set(FIRST))
+        rest = sorted({*own, *own_files(), *super().names()} - set(FIRST))
         return (*(name for name in FIRST if name in own), *rest)
 
     def load(self, name: str) -> Template:
@@ -61,8 +62,11 @@ class Library(Registry):
         Raises:
             UnknownNameError: there is none. InputError: its file is no design.
         """
-        found = design_files().get(name)
-        return super().load(name) if found is None else read_design(found)
+        if name in design_files():
+            return read_design(design_files()[name])
+        if name in own_files():
+            return read_own(own_files()[name])
+        return super().load(name)
 
 
 @cache

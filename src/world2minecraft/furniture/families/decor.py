@@ -233,8 +233,7 @@ def _bicycle_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
         plan.panel("wheel", [0, last], 0, 0, "right")
         plan.put("frame", range(1, last), 0, 0, "fence")
         if size.height > 1:
-            plan.put("frame", last, 0, 1, "fence")
-            plan.plate("saddle", 0, 0, 1, "bottom")
+            plan.put("frame", [min(1, last - 1), last], 0, 1, "fence")
         return plan.blocks
     plan.panel("wheel", [0, 1, last - 1, last], 1, [0, 1], "right")
     plan.put("frame", range(2, last - 1), 1, 1, "fence")

@@ -1,0 +1,128 @@
+"""``w2m furniture add``: blocks that someone built become furniture of the library."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from world2minecraft.errors import UsageError
+
+if TYPE_CHECKING:
+    from world2minecraft.furniture.adopting import Adopted
+
+EXAMPLES = """\
+w2m furniture add my_chair.schem --class chair --blocks-per-metre 2
+w2m furniture add sofa.litematic --class sofa --blocks-per-metre 4 --front south
+w2m furniture add lamp.nbt --class objs --blocks-per-metre 1 --size 0.4 0.4 1.6 --recolour
+"""
+
+
+def run(
+    source: Annotated[
+        Path, typer.Argument(metavar="FILE", help="A .schem, .litematic, .nbt or another build.")
+    ],
+    kind: Annotated[
+        str, typer.Option("--class", help="chair, bed, sofa, table, tvs, furn or objs.")
+    ],
+    blocks_per_metre: Annotated[
+        float, typer.Option("--blocks-per-metre", help="The scale at which it was built.")
+    ],
+    name: Annotated[str, typer.Option("--name", help="Its name; that of the file.")] = "",
+    title: Annotated[str, typer.Option("--title", help="What people call it.")] = "",
+    front: Annotated[
+        str | None, typer.Option("--front", help="north, east, south or west; seen by its blocks.")
+    ] = None,
+    size: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option("--size", metavar="DEPTH WIDTH HEIGHT", help="Real size in metres."),
+    ] = None,
+    mount: Annotated[str, typer.Option("--mount", help="floor, wall, ceiling or any.")] = "floor",
+    recolour: Annotated[
+        bool, typer.Option("--recolour", help="Let wood, wool and stone take an object's colour.")
+    ] = False,
+    match: Annotated[
+        bool, typer.Option("--match/--no-match", help="Whether objects are matched against it.")
+    ] = True,
+    force: Annotated[bool, typer.Option("--force", help="Replace one of this name.")] = False,
+) -> None:
+    """Add a piece of furniture of your own, block for block.
+
+    The air around it is cut off. At its own scale it is built as it is; at another its shape is
+    fitted. Objects of its class and about its size are matched against it from now on. It is
+    kept in the folder that W2M_FURNITURE names, else with the user's settings.
+
+    Args:
+        source: what to read.
+        kind: the class.
+        blocks_per_metre: the scale.
+        name: its name.
+        title: what people call it.
+        front: the side that is its front.
+        size: depth, width and height in metres; else that of its blocks.
+        mount: what holds it.
+        recolour: whether it takes the colour of the object it stands for.
+        match: whether objects are matched against it.
+        force: whether to replace one of this name.
+
+    Raises:
+        UsageError: a name or a class is none, or is taken. InputError: the file cannot be read.
+    """
+    from world2minecraft.furniture.adopting import Wish, adopt
+    from world2minecraft.furniture.own import check_name
+    from world2minecraft.minecraft.formats import read_blocks
+    from world2minecraft.minecraft.losses import Losses
+
+    chosen = check_name(name or source.stem.lower().replace("-", "_").replace(" ", "_"))
+    target = check_free(chosen, force)
+    losses = Losses()
+    wish = Wish(
+        chosen, kind, blocks_per_metre, front, size, title, mount, recolour=recolour, match=match
+    )
+    volume = read_blocks(source, losses)
+    lost = [f"{count} {what} left behind" for what, count in losses]
+    if volume.block_entities or volume.entities:
+        count = len(volume.block_entities) + len(volume.entities)
+        lost.append(f"what {count} blocks or entities hold is left behind")
+    adopted = adopt(volume, wish)
+    write_checked(adopted, target)
+    _tell(adopted, target, front, lost)
+
+
+def check_free(name: str, force: bool) -> Path:
+    """Return the file of a new piece.
+
+    Raises:
+        UsageError: the library has a piece of this name, or the user has and ``force`` is not
+            given.
+    """
+    from world2minecraft.furniture.library import design_files
+    from world2minecraft.furniture.own import own_folder
+
+    if name in design_files():
+        raise UsageError(f"the library has a {name} of its own; add --name another_name")
+    target = own_folder() / f"{name}.json"
+    if target.exists() and not force:
+        raise UsageError(f"{target} is there already; add --force to replace it, or --name another")
+    return target
+
+
+def write_checked(adopted: "Adopted", target: Path) -> None:
+    """Write a piece that can be read again. Raises ``OutputError``."""
+    from world2minecraft.files import write_json
+    from world2minecraft.furniture.own import own_template
+
+    own_template(adopted.content)
+    write_json(target, adopted.content)
+
+
+def _tell(adopted: "Adopted", target: Path, front: str | None, lost: list[str]) -> None:
+    content = adopted.content
+    size = " x ".join(f"{content['size_m'][key][1]:.2f}" for key in ("depth", "width", "height"))
+    count = sum(length for number, length in content["blocks"]["runs"] if number)
+    seen = "" if front else " (seen by its blocks; else say --front)"
+    print(f"{content['name']}: {count} blocks, {size} m deep, wide and high")
+    print(f"Its front looked {adopted.front}{seen}.")
+    for note in (*lost, *adopted.notes):
+        print(f"note: {note}")
+    print(f"Written to {target}")
+    print(f"  look   w2m furniture show {content['name']} --picture {content['name']}.png")

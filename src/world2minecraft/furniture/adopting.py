@@ -1,0 +1,278 @@
+"""Blocks that someone built become a piece of furniture: what a file of ``own.py`` says.
+
+The box of the blocks is trimmed of air and turned so that its front looks east. What is seen of
+each block gives the metric boxes, by which a match knows the piece.
+"""
+
+from collections import Counter
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.coordinates import block_axes_to_grid
+from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.furniture.own import (
+    MAX_BLOCKS,
+    MAX_KINDS,
+    MAX_PARTS,
+    MAX_SIDE,
+    PARTS_PER_BLOCK,
+    check_name,
+    role_of,
+)
+from world2minecraft.minecraft.states import parse_state
+from world2minecraft.minecraft.turn import SIDES, turn_volume
+from world2minecraft.types import BlockVolume
+
+SEATS = ("chair", "sofa", "bed")
+OPPOSITE = {"north": "south", "south": "north", "east": "west", "west": "east"}
+SIZE_SHARE = 0.25  # Objects up to a quarter smaller or larger may be this piece. A guess.
+LEAST_M, MOST_M = 0.02, 20.0
+INVISIBLE = ("air", "cave_air", "void_air", "structure_void", "barrier", "light")
+
+
+class Wish(NamedTuple):
+    """What the one who adds a piece says of it; None leaves it to the blocks."""
+
+    name: str
+    kind: str  # chair, bed, sofa, table, tvs, furn or objs
+    blocks_per_metre: float
+    front: str | None = None  # north, east, south or west
+    size_m: tuple[float, float, float] | None = None  # depth, width, height
+    title: str = ""
+    mount: str = "floor"
+    recolour: bool = False
+    match: bool = True
+
+
+class Adopted(NamedTuple):
+    """The content of an own file, and what its adder should know."""
+
+    content: dict[str, Any]
+    front: str
+    notes: tuple[str, ...]
+
+
+def adopt(volume: BlockVolume, wish: Wish) -> Adopted:
+    """Return the file of a piece that is built of a volume's blocks.
+
+    Args:
+        volume: the blocks; block entities and entities are left behind.
+        wish: what it is called, what it is, and its scale.
+
+    Raises:
+        UsageError: the wish or the blocks cannot be: no blocks, too many, an unknown class, no
+            front to be seen.
+    """
+    _check(wish)
+    trimmed = _trimmed(volume)
+    front = wish.front or front_of(trimmed, wish.kind)
+    if front is None:
+        raise UsageError(
+            "no block shows which side is the front; add --front north|east|south|west"
+        )
+    turned = _joined(turn_volume(trimmed, -SIDES.index(front)))
+    cells = block_axes_to_grid(turned.states)
+    parts = _parts(turned)
+    shown = np.array([corners for _, *corners in parts])
+    extent = (shown[:, 3:].max(axis=0) - shown[:, :3].min(axis=0)) / PARTS_PER_BLOCK
+    size = np.array(wish.size_m or extent / wish.blocks_per_metre)
+    _check_size(size)
+    content = {
+        "name": wish.name,
+        "title": wish.title or wish.name.replace("_", " ").capitalize(),
+        "class": wish.kind,
+        "mount": wish.mount,
+        "turns": _turns(turned),
+        "match": wish.match,
+        "size_m": dict(zip(("depth", "width", "height"), map(_around, size), strict=True)),
+        "blocks_per_metre": wish.blocks_per_metre,
+        "colour": "object" if wish.recolour else "own",
+        "blocks": _packed(cells, turned.palette),
+        "parts": [[role, *map(int, corners)] for role, *corners in parts],
+    }
+    return Adopted(content, front, tuple(_notes(turned)))
+
+
+def _check(wish: Wish) -> None:
+    check_name(wish.name)
+    offered = [CLASS_NAMES[number] for number in OBJECT_CLASSES]
+    if wish.kind not in offered:
+        raise UnknownNameError("class of furniture", wish.kind, offered)
+    if wish.front is not None and wish.front not in SIDES:
+        raise UnknownNameError("side", wish.front, SIDES)
+    if wish.mount not in ("floor", "wall", "ceiling", "any"):
+        raise UnknownNameError("mount", wish.mount, ("floor", "wall", "ceiling", "any"))
+    if not 0.1 <= wish.blocks_per_metre <= 64:
+        raise UsageError(
+            f"--blocks-per-metre must lie between 0.1 and 64, not {wish.blocks_per_metre:g}"
+        )
+
+
+def _check_size(size: np.ndarray) -> None:
+    if not (np.isfinite(size).all() and (size >= LEAST_M).all() and (size <= MOST_M).all()):
+        told = " x ".join(f"{side:.2f}" for side in size)
+        raise UsageError(
+            f"a piece is {LEAST_M:g} to {MOST_M:g} m each way, not {told}; "
+            "say its scale with --blocks-per-metre"
+        )
+
+
+def _trimmed(volume: BlockVolume) -> BlockVolume:
+    """Return the part of a volume that holds blocks one sees, without entities."""
+    seen = np.array([role_of(state) not in INVISIBLE for state in volume.palette])
+    filled = seen[volume.states]
+    if not filled.any():
+        raise UsageError("there is no block in it, so there is nothing to add")
+    held = np.argwhere(filled)
+    low, high = held.min(axis=0), held.max(axis=0) + 1
+    size = high - low
+    if (size > MAX_SIDE).any() or int(np.prod(size)) > MAX_BLOCKS:
+        told = " x ".join(str(side) for side in size.tolist())
+        raise UsageError(
+            f"a piece is {MAX_SIDE} blocks at most each way and {MAX_BLOCKS:,} in all, not {told}"
+        )
+    window = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
+    states = np.where(filled[window], volume.states[window], 0)
+    used, numbers = np.unique(states, return_inverse=True)
+    kept = [state for state in used.tolist() if state]
+    if len(kept) > MAX_KINDS:
+        raise UsageError(f"a piece has {MAX_KINDS} kinds of blocks at most, not {len(kept)}")
+    numbers = numbers.reshape(states.shape) + (0 if used[0] == 0 else 1)
+    return BlockVolume(
+        numbers.astype(np.uint16),
+        ("minecraft:air", *(volume.palette[state] for state in kept)),
+        np.zeros(states.shape, np.uint8),
+        np.zeros(states.shape, np.uint16),
+        (0, 0, 0),
+        np.eye(4),
+    )
+
+
+def _joined(volume: BlockVolume) -> BlockVolume:
+    """Return a volume with the connections and stair shapes that the game would compute."""
+    from world2minecraft.minecraft.connections import connected  # noqa: PLC0415  # It needs numba.
+
+    states, palette = connected(volume.states, volume.palette)
+    used = sorted({0, *np.unique(states).tolist()})
+    numbers = np.zeros(len(palette), np.uint16)
+    numbers[used] = np.arange(len(used))
+    return replace(
+        volume, states=numbers[states], palette=tuple(palette[number] for number in used)
+    )
+
+
+def front_of(volume: BlockVolume, kind: str) -> str | None:
+    """Return the side to which most blocks that have a front look; None where none has.
+
+    Stairs and beds rise to where they face, so what one sits or lies on looks the other way; a
+    barrel, a chest or a furnace looks where it faces. Doors and what hangs on walls tell nothing.
+    """
+    votes: Counter[str] = Counter()
+    counts = np.bincount(volume.states.ravel(), minlength=len(volume.palette))
+    for state, count in zip(volume.palette, counts.tolist(), strict=True):
+        parsed = parse_state(state)
+        facing = parsed.get("facing")
+        if facing not in OPPOSITE or not count:
+            continue
+        if parsed.name.endswith(("_stairs", "_bed")):
+            if kind in SEATS and parsed.get("half") != "top":
+                votes[OPPOSITE[facing]] += count
+        elif not parsed.name.endswith(("_trapdoor", "_door", "_gate", "_banner", "_sign")):
+            votes[facing] += count
+    most = max(votes.values(), default=0)
+    best = [side for side in SIDES if votes[side] == most]
+    return best[0] if most and len(best) == 1 else None
+
+
+def _parts(volume: BlockVolume) -> list[tuple]:
+    """Return boxes (role, x0 .. z1) in the piece's own axes, in eighths of a block."""
+    from world2minecraft.geometry.boxes import partition  # noqa: PLC0415  # It needs numba.
+
+    roles = sorted({role_of(state) for state in volume.palette[1:]})
+    labels = block_axes_to_grid(_fine(volume, roles))
+    for coarse in (1, 2, 4, 8):
+        seen = labels if coarse == 1 else _pooled(labels, coarse)
+        boxes = partition(seen)
+        if len(boxes) <= MAX_PARTS:
+            break
+    else:
+        raise UsageError(f"its shape takes over {MAX_PARTS} boxes; add a plainer one")
+    return [(roles[label - 1], *(np.array(corners) * coarse)) for label, *corners in boxes.tolist()]
+
+
+def _fine(volume: BlockVolume, roles: list[str]) -> np.ndarray:
+    """Return the role, from 1, that is seen in each eighth of a block, int16 in block axes."""
+    from world2minecraft.minecraft.visual import visual_boxes_of  # noqa: PLC0415
+
+    count = PARTS_PER_BLOCK
+    fine = np.zeros(np.array(volume.states.shape) * count, np.int16)
+    shapes = []
+    for state in volume.palette:
+        mask = np.zeros((count,) * 3, bool)
+        for box in visual_boxes_of(state):
+            low = np.clip(np.floor(box[:3] * count + 0.25), 0, count - 1).astype(int)
+            high = np.clip(np.floor(box[3:] * count + 0.75), low + 1, count).astype(int)
+            mask[tuple(slice(a, b) for a, b in zip(low, high, strict=True))] = True
+        shapes.append(mask)
+    for x, y, z in np.argwhere(volume.states):
+        number = volume.states[x, y, z]
+        place = tuple(slice(count * at, count * (at + 1)) for at in (x, y, z))
+        fine[place] = np.where(shapes[number], 1 + roles.index(role_of(volume.palette[number])), 0)
+    if not fine.any():
+        raise UsageError("none of its blocks is seen, so there is nothing to add")
+    return fine
+
+
+def _pooled(labels: np.ndarray, coarse: int) -> np.ndarray:
+    """Return labels at a coarser step, each the largest of its cells."""
+    x, y, z = (side // coarse for side in labels.shape)
+    return labels.reshape(x, coarse, y, coarse, z, coarse).max(axis=(1, 3, 5))
+
+
+def _turns(volume: BlockVolume) -> int:
+    """Return how many quarter turns of a piece differ: 1, 2 or 4."""
+
+    def same(turns: int) -> bool:
+        turned = turn_volume(volume, turns)
+        if turned.states.shape != volume.states.shape:
+            return False
+        return np.array_equal(
+            np.array(turned.palette, object)[turned.states],
+            np.array(volume.palette, object)[volume.states],
+        )
+
+    return 1 if same(1) else 2 if same(2) else 4
+
+
+def _around(side: float) -> list[float]:
+    """Return the span of a size: smallest, usual, largest."""
+    return [round(float(side) * share, 4) for share in (1 - SIZE_SHARE, 1.0, 1 + SIZE_SHARE)]
+
+
+def _packed(cells: np.ndarray, palette: tuple[str, ...]) -> dict[str, Any]:
+    flat = cells.ravel().astype(int)
+    starts = np.flatnonzero(np.diff(flat, prepend=-1))
+    lengths = np.diff(starts, append=len(flat))
+    runs = [[int(flat[start]), int(length)] for start, length in zip(starts, lengths, strict=True)]
+    return {"size": list(cells.shape), "palette": list(palette[1:]), "runs": runs}
+
+
+def _notes(volume: BlockVolume) -> list[str]:
+    """Return what is to be said of the blocks: those that would not stay, and mods'."""
+    from world2minecraft.minecraft.stability import unstable_cells  # noqa: PLC0415
+    from world2minecraft.minecraft.states import known_blocks  # noqa: PLC0415
+
+    floored = np.pad(volume.states, ((1, 1), (1, 1), (1, 1)))
+    floored[:, 0] = len(volume.palette)
+    palette = (*volume.palette, "minecraft:stone")
+    loose = [reason for _, _, reason in unstable_cells(floored.astype(np.uint16), palette)]
+    notes = []
+    if loose:
+        notes.append(f"{len(loose)} blocks would not stay by themselves: {loose[0]}")
+    strange = sorted({role_of(s) for s in volume.palette} - {role_of(s) for s in known_blocks()})
+    if strange:
+        notes.append(f"not in the plain game, taken as full blocks: {', '.join(strange[:5])}")
+    return notes

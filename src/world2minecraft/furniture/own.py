@@ -1,0 +1,251 @@
+"""Furniture of the user's own: block for block, as one file a piece in a folder of the user's.
+
+A file holds the blocks as they were built, at the scale they were built at, and the boxes that
+they show; ``adopting.py`` makes it. At its own scale the piece is those blocks; at any other its
+boxes are fitted like any template's. A design file of a family may lie in the folder too.
+"""
+
+import math
+import os
+import re
+import sys
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.errors import DamagedFileError, UsageError
+from world2minecraft.files import read_json
+from world2minecraft.furniture.look import Look
+from world2minecraft.furniture.materials import FIXED, Material, kinds, places_of
+from world2minecraft.furniture.reading import design_of
+from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span, Template
+
+NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
+MAX_BYTES = 4 << 20
+MAX_SIDE, MAX_BLOCKS, MAX_KINDS, MAX_PARTS = 32, 8192, 256, 512
+PARTS_PER_BLOCK = 8
+NEAR_SCALE = 1.26  # Up to this factor off its scale a piece keeps its blocks: a third of an octave.
+FRONT = "the side that was said when it was added"
+
+
+def own_folder(environment: Mapping[str, str] = os.environ, platform: str = sys.platform) -> Path:
+    """Return where the user's own furniture lies; it need not be there.
+
+    ``W2M_FURNITURE`` names it, else it is ``world2minecraft/furniture`` in the folder of settings.
+    """
+    if environment.get("W2M_FURNITURE"):
+        return Path(environment["W2M_FURNITURE"])
+    home = Path.home()
+    usual = home / ".config" if platform != "win32" else home / "AppData" / "Roaming"
+    key = "APPDATA" if platform == "win32" else "XDG_CONFIG_HOME"
+    return Path(environment.get(key) or usual) / "world2minecraft" / "furniture"
+
+
+def own_files() -> dict[str, Path]:
+    """Return the user's furniture files by name, sorted; files of other names are no furniture."""
+    folder = own_folder()
+    if not folder.is_dir():
+        return {}
+    found = {path.stem: path for path in sorted(folder.glob("*.json"))}
+    return {name: path for name, path in found.items() if NAME.fullmatch(name)}
+
+
+def check_name(name: str) -> str:
+    """Return a name that a piece may have.
+
+    Raises:
+        UsageError: it is none.
+    """
+    if not NAME.fullmatch(name):
+        raise UsageError(
+            f"a name of furniture begins with a letter and has up to 40 of a-z, 0-9 and _, not "
+            f"{name[:60]!r}; add --name my_chair"
+        )
+    return name
+
+
+def read_own(path: Path) -> Template:
+    """Return the template that a file of the user's own holds.
+
+    Raises:
+        InputError: the file cannot be read. DamagedFileError: it says what none may.
+        LimitError: it is too large.
+    """
+    raw = read_json(path, MAX_BYTES)
+    try:
+        found = own_template(raw) if isinstance(raw, dict) and "blocks" in raw else design_of(raw)
+        if found.name != path.stem:
+            raise ValueError(f"its name must be that of its file, not {found.name!r}")
+    except (ValueError, UsageError) as error:
+        hint = "add it anew with w2m furniture add, or take the file away"
+        raise DamagedFileError(path, f"{error}; {hint}") from error
+    return found
+
+
+def own_template(raw: Mapping[str, Any]) -> Template:
+    """Return the template of a file's content.
+
+    Raises:
+        ValueError: a key is missing or wrong; it says which and what was expected.
+    """
+    kind = _text(raw, "class")
+    if kind not in CLASS_NAMES or CLASS_NAMES.index(kind) not in OBJECT_CLASSES:
+        raise ValueError(f"class must be an object class, not {kind!r}")
+    sizes = _mapping(raw, "size_m")
+    scale = _number("blocks_per_metre", raw.get("blocks_per_metre"), 0.1, 64.0)
+    blocks = _blocks(_mapping(raw, "blocks"))
+    parts = _parts(raw.get("parts"), blocks)
+    recoloured = _one_of(raw, "colour", ("own", "object")) == "object"
+
+    def build(depth: float, width: float, height: float, look: Look) -> list[Part]:
+        size = np.array([depth, width, height] * 2)
+        shift = np.array([depth / 2, width / 2, 0.0] * 2)
+        return [Part(box * size - shift, role) for box, role in parts]
+
+    def design(size: BlockSize, look: Look) -> list[LocalBlock]:
+        off = size.per_metre / scale
+        return list(blocks) if 1 / NEAR_SCALE <= off <= NEAR_SCALE else []
+
+    return Template(
+        name=check_name(_text(raw, "name")),
+        title=_text(raw, "title"),
+        class_id=CLASS_NAMES.index(kind),
+        family=_text(raw, "name"),
+        size_m=(_span(sizes, "depth"), _span(sizes, "width"), _span(sizes, "height")),
+        build=build,
+        design=design,
+        materials={block.role: material_of(block.role, recoloured) for block in blocks},
+        turns=_one_of(raw, "turns", (1, 2, 4)),
+        mount=_one_of(raw, "mount", ("floor", "wall", "ceiling", "any")),
+        matched=_one_of(raw, "match", (True, False)),
+    )
+
+
+@lru_cache(maxsize=4096)
+def material_of(role: str, recoloured: bool) -> Material:
+    """Return what a role of an own piece is made of: the block whose name the role is.
+
+    A block of a known kind takes another value of its kind where ``recoloured`` says so; any
+    other is that block for good, drawn as the full block that comes nearest to it in colour.
+    """
+    places = [place for place in places_of(f"minecraft:{role}") if place.shape != "bed"]
+    if places and recoloured:
+        return Material(places[0].kind, places[0].value, True)
+    if places and "full" in kinds()[places[0].kind].blocks[places[0].value]:
+        full = kinds()[places[0].kind].blocks[places[0].value]["full"]
+        return Material(FIXED, full.removeprefix("minecraft:"))
+    return Material(FIXED, _full_block_like(f"minecraft:{role}"))
+
+
+def _full_block_like(block: str) -> str:
+    from world2minecraft.minecraft.colours import colour_of, nearest_block  # noqa: PLC0415
+    from world2minecraft.minecraft.shapes import is_full_cube  # noqa: PLC0415
+    from world2minecraft.minecraft.states import known_blocks  # noqa: PLC0415
+
+    if block in known_blocks() and is_full_cube(block):
+        return block.removeprefix("minecraft:")
+    offered = sorted(
+        shapes["full"]
+        for name in ("paint", "wood", "stone")
+        for shapes in kinds()[name].blocks.values()
+    )
+    rgb = np.array([colour_of(block)], np.uint8)
+    return offered[int(nearest_block(rgb, offered)[0])].removeprefix("minecraft:")
+
+
+def _blocks(raw: Mapping[str, Any]) -> tuple[LocalBlock, ...]:
+    size = tuple(_whole("size", one, 1, MAX_SIDE) for one in _list("size", raw.get("size"), 3, 3))
+    count = math.prod(size)
+    if count > MAX_BLOCKS:
+        raise ValueError(f"size must hold {MAX_BLOCKS:,} blocks at most, not {count:,}")
+    palette = [_state(one) for one in _list("palette", raw.get("palette"), 1, MAX_KINDS)]
+    numbers: list[int] = []
+    for run in _list("runs", raw.get("runs"), 1, count):
+        number, length = _list("a run", run, 2, 2)
+        length = _whole("the length of a run", length, 1, count - len(numbers))
+        numbers += [_whole("the number of a run", number, 0, len(palette))] * length
+    if len(numbers) != count or not any(numbers):
+        raise ValueError(f"runs must hold {count} blocks, not all of them air; have {len(numbers)}")
+    cells = np.array(numbers).reshape(size)
+    found = [
+        (tuple(map(int, cell)), palette[cells[tuple(cell)] - 1]) for cell in np.argwhere(cells)
+    ]
+    return tuple(LocalBlock(cell, state, role_of(state)) for cell, state in found)  # pyright: ignore
+
+
+def role_of(state: str) -> str:
+    """Return the role of a block of an own piece: its name, without namespace and properties."""
+    return state.partition("[")[0].rpartition(":")[2]
+
+
+def _parts(raw: Any, blocks: tuple[LocalBlock, ...]) -> tuple[tuple[np.ndarray, str], ...]:
+    """Return boxes as shares of the piece's own box, float64 [6], and their roles."""
+    roles = {block.role for block in blocks}
+    found = []
+    for one in _list("parts", raw, 1, MAX_PARTS):
+        role, *corners = _list("a part", one, 7, 7)
+        if role not in roles:
+            raise ValueError(f"a part must be of one of its blocks, not {role!r}")
+        box = np.array([_whole("a corner", value, 0, MAX_SIDE * 16) for value in corners], float)
+        if (box[3:] <= box[:3]).any():
+            raise ValueError(f"a part must have a volume, not {corners}")
+        found.append((box, role))
+    boxes = np.array([box for box, _ in found])
+    low, high = boxes[:, :3].min(axis=0), boxes[:, 3:].max(axis=0)
+    spread = np.tile(high - low, 2)
+    return tuple(((box - np.tile(low, 2)) / spread, role) for box, role in found)
+
+
+def _state(value: Any) -> str:
+    from world2minecraft.minecraft.states import parse_state  # noqa: PLC0415
+
+    if not isinstance(value, str):
+        raise ValueError(f"a block state must be a text, not {value!r:.60}")
+    return str(parse_state(value))
+
+
+def _text(raw: Mapping[str, Any], key: str) -> str:
+    value = raw.get(key)
+    if not isinstance(value, str) or not 0 < len(value) <= 200:
+        raise ValueError(f"{key} must be a text of 1 to 200 letters, not {value!r:.60}")
+    return value
+
+
+def _mapping(raw: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    value = raw.get(key)
+    if not isinstance(value, dict):
+        raise ValueError(f"{key} must be an object of keys, not {value!r:.60}")
+    return value
+
+
+def _list(key: str, value: Any, least: int, most: int) -> list:
+    if not isinstance(value, list) or not least <= len(value) <= most:
+        raise ValueError(f"{key} must be a list of {least} to {most}, not {value!r:.60}")
+    return value
+
+
+def _whole(key: str, value: Any, least: int, most: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise ValueError(f"{key} must be a whole number from {least} to {most}, not {value!r:.60}")
+    return value
+
+
+def _number(key: str, value: Any, least: float, most: float) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not least <= value <= most:
+        raise ValueError(f"{key} must be a number from {least:g} to {most:g}, not {value!r:.60}")
+    return float(value)
+
+
+def _span(sizes: Mapping[str, Any], key: str) -> Span:
+    return Span(*(_number(key, one, 0.01, 64.0) for one in _list(key, sizes.get(key), 3, 3)))
+
+
+def _one_of(raw: Mapping[str, Any], key: str, choices: tuple) -> Any:
+    value = raw.get(key)
+    if not any(value == one and type(value) is type(one) for one in choices):
+        raise ValueError(f"{key} must be one of {', '.join(map(str, choices))}, not {value!r:.60}")
+    return value
