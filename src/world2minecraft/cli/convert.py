@@ -34,7 +34,7 @@ def run(
     mc_version: Annotated[
         str, typer.Option(help="Game version to write for; newer games upgrade it.")
     ] = "1.20.1",
-    schem_version: Annotated[int, typer.Option(help="Sponge schematic version: 2 or 3.")] = 2,
+    schem_version: Annotated[int, typer.Option(help="Sponge schematic version: 1, 2 or 3.")] = 2,
     name: Annotated[str, typer.Option(help="What a world or pack is called; B's name.")] = "",
     blocks_per_metre: Annotated[
         float | None,
@@ -53,7 +53,7 @@ def run(
         target: the file or folder to write.
         force: whether to replace ``target``.
         mc_version: the game version to write for.
-        schem_version: 2 or 3, for a schematic.
+        schem_version: 1, 2 or 3, for a schematic.
         name: what a world or datapack is called; empty for the target's name.
         blocks_per_metre: the scale, for meshes and for the player's size.
 
