@@ -79,6 +79,20 @@ def test_a_list_by_hand_is_read(tmp_path):
     }
 
 
+def test_names_are_those_of_the_game_and_come_back(tmp_path):
+    grass = volume_of(np.ones((1, 1, 1)), (AIR, "minecraft:grass"), (0, 0, 0))
+    write_blocks(grass, tmp_path / "a.mcfunction", WriteOptions(mc_version="1.21.4"))
+    assert (tmp_path / "a.mcfunction").read_text().endswith(" minecraft:short_grass\n")
+    assert read_blocks(tmp_path / "a.mcfunction").palette == grass.palette
+
+
+def test_blocks_that_the_game_does_not_know_are_counted(tmp_path):
+    volume = volume_of(np.ones((1, 2, 1)), (AIR, "minecraft:pitcher_plant"), (0, 0, 0))
+    losses, old = Losses(), WriteOptions(mc_version="1.19.4")
+    write_blocks(volume, tmp_path / "a.mcfunction", old, losses)
+    assert [count for _, count in losses] == [2]
+
+
 def test_the_head_says_what_is_needed(tmp_path):
     write_blocks(VOLUME, tmp_path / "a.mcfunction")
     head = (tmp_path / "a.mcfunction").read_text().splitlines()[:3]

@@ -12,6 +12,7 @@ from world2minecraft.minecraft.commands import (
 )
 from world2minecraft.minecraft.displays import check_displays
 from world2minecraft.minecraft.formats import WriteOptions
+from world2minecraft.minecraft.game_names import count_unknown
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.types import BlockVolume
@@ -64,4 +65,6 @@ class CommandListFormat:
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write it for the game's version in the options."""
-        write_command_list(volume, path, version=game_version(options.mc_version))
+        version = game_version(options.mc_version)
+        count_unknown(volume, version, losses)
+        write_command_list(volume, path, version=version)

@@ -17,6 +17,7 @@ import numpy as np
 
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.files import UNREADABLE, read_bytes
+from world2minecraft.minecraft.game_names import read_state
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.snbt import read_snbt
 from world2minecraft.minecraft.states import parse_state
@@ -24,6 +25,7 @@ from world2minecraft.minecraft.unlabelled import MAX_CELLS, check_size, palette_
 from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
 MAX_BYTES = 256 << 20
+ANY_VERSION = 1 << 30  # A list does not say its game's; names of newer ones mean what they mean.
 MAX_COMMANDS = 2_000_000
 MAX_FILLED = 4 * MAX_CELLS  # Of all commands together: setting blocks again and again takes time.
 Place = tuple[int, int, int]
@@ -96,7 +98,7 @@ class _Site:
     def place(self, box: tuple[int, ...], text: str) -> None:
         """Put a block, or a block and its data, into a box."""
         name, brace, rest = text.partition("{")
-        name = str(parse_state(name))
+        name = read_state(str(parse_state(name)), ANY_VERSION)
         number = self.states.setdefault(name, len(self.states))
         low = tuple(min(a, b) for a, b in zip(box[:3], box[3:], strict=True))
         high = tuple(max(a, b) for a, b in zip(box[:3], box[3:], strict=True))

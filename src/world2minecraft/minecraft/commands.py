@@ -12,10 +12,11 @@ import numpy as np
 
 from world2minecraft.errors import UsageError
 from world2minecraft.minecraft.boxes import MAX_FILL, merge_boxes
+from world2minecraft.minecraft.game_names import written_state
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.minecraft.states import parse_state
-from world2minecraft.minecraft.versions import GameVersion, name_in_version
+from world2minecraft.minecraft.versions import GameVersion
 from world2minecraft.types import BlockVolume
 
 MAX_LOADED_CHUNKS = 256  # What one forceload command takes.
@@ -111,9 +112,7 @@ def entity_tag(volume: BlockVolume) -> str:
 
 def state_in_version(state: str, version: GameVersion) -> str:
     """Return a block state as a version of the game writes it. Raises what ``parse_state`` does."""
-    parsed = parse_state(state)
-    name = name_in_version(parsed.name, version.data_version)
-    return name + str(parsed)[len(parsed.name) :]
+    return written_state(str(parse_state(state)), version.data_version)
 
 
 def snbt(value: Any) -> str:
