@@ -47,6 +47,7 @@ MOST_GIVEN_UP = 0.06  # Oklab distance that a colour may lose for the sake of a 
 BULKY = {"slab", "stairs"}  # Without them a fit is of cubes, and those are better laid by parts.
 LEAST_IOU, LEAST_THIN = 0.3, 0.5  # Below these a fit is worse than the library's design.
 MOST_COLOURS = 400  # Of an object, looked at to see which shapes exist in them.
+SURE_IOU = 0.5  # What matched as well as this is no guess; a block of a thin part is mostly free.
 FINE_SCALE = 3.0  # Blocks per metre from which a design is held against what was seen free.
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 
@@ -264,11 +265,12 @@ class ObjectBuilder:
     def _put_idiom(
         self, found: Idiom, placement: Placement, cells: np.ndarray, thing: Thing, forced: bool
     ) -> bool:
-        """Set a vanilla design; at fine scales not where most of it was seen free."""
+        """Set a vanilla design; at fine scales a guessed one not where it was seen free."""
         low, size = idiom_box(found, placement, self.lattice)
         if self.lattice.blocks_per_metre >= FINE_SCALE:
             filled = filled_by(found)
-            if not forced and self._open_in(filled, low) > self._limit(placement):
+            guessed = not forced and placement.iou < SURE_IOU
+            if guessed and self._open_in(filled, low) > self._limit(placement):
                 return False
             low = low + self._step(filled, low)
         hues = self._stretched(cells, placement, low, size.tolist())
