@@ -1,17 +1,30 @@
-"""Which blocks a surface of a class may be made of: palette files, read and checked."""
+"""Which blocks a room may be built of: palettes by name, or a file of one's own.
 
-import json
+A palette says which full blocks a surface of each class may be made of. A mod's says beside it
+which of its blocks stand for which furniture (``own_furniture``) and what its blocks mean
+(``meanings``). One that lists ``blocks`` is restricted to them (``restricting``). Files are read
+and checked by ``palette_files``; docs/palettes.md says how they are written.
+"""
+
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.errors import UnknownNameError
-from world2minecraft.minecraft.states import check_state, complete, parse_state
+from world2minecraft.errors import InputError, UnknownNameError
 
-# A block that is to stand by itself for good: it does not fall, grow, melt, shine or decay.
-PALETTE_FILES = {"vanilla": "palette_vanilla.json"}
+if TYPE_CHECKING:
+    from world2minecraft.build.meanings import Meanings
+    from world2minecraft.build.own_furniture import Piece
+
+PALETTE_FILES = {
+    "vanilla": "palette_vanilla.json",
+    "tmeo": "palette_tmeo.json",
+    "refurbished_furniture": "palette_refurbished_furniture.json",
+}
+FILE_SUFFIXES = (".yaml", ".yml", ".json")
 
 
 @dataclass(frozen=True)
@@ -19,6 +32,8 @@ class Palette:
     """Blocks by class. States are complete; ``slabs`` and ``fences`` go by full block.
 
     ``preferred`` are the blocks that win where colours are about as near: a table is of wood.
+    ``only`` are the names of all blocks that may be seen; None allows every one. ``furniture``
+    are the pieces of a mod, ``meanings`` what its blocks stand for.
     """
 
     name: str
@@ -29,50 +44,35 @@ class Palette:
     fences: Mapping[str, str]
     glass: str
     pane: str
+    only: frozenset[str] | None = None
+    furniture: tuple["Piece", ...] = field(default=())
+    meanings: "Meanings | None" = None
 
     def allows(self, state: str) -> bool:
-        """Whether a full block may be used at all; a palette of its own kind may say no."""
-        return True
+        """Whether a state, as text, may be used: it is one of ``only``, where there are such."""
+        return self.only is None or state.partition("[")[0] in self.only
 
 
 @cache
 def load_palette(name: str) -> Palette:
-    """Return a palette by its name.
+    """Return a palette by its name, or by the path of a file of one's own.
 
     Raises:
-        UnknownNameError: no palette has this name, or it names a block that the game lacks.
+        UnknownNameError: no palette and no file has this name.
+        InputError: the file is no palette; the message says what it lacks.
     """
-    if name not in PALETTE_FILES:
-        raise UnknownNameError("palette", name, PALETTE_FILES)
+    from world2minecraft.build.palette_files import read_palette, source_of  # noqa: PLC0415
+
+    if name in PALETTE_FILES:
+        return source_of(name)
+    if name.endswith(FILE_SUFFIXES):
+        return read_palette(Path(name))
+    if Path(name).is_file():
+        raise InputError(name, f"a palette's file ends with {', '.join(FILE_SUFFIXES)}")
+    raise UnknownNameError("palette", name, PALETTE_FILES)
+
+
+def shipped(name: str) -> str:
+    """Return the text of a palette file of the program."""
     source = files("world2minecraft.build") / "data" / PALETTE_FILES[name]
-    return palette_of(json.loads(source.read_text("utf-8")))
-
-
-def palette_of(raw: Mapping) -> Palette:
-    """Return the palette that a palette file holds; docs/building.md says how it is written."""
-    groups = {name: [_full(block) for block in blocks] for name, blocks in raw["groups"].items()}
-    classes = {CLASS_NAMES.index(name): chosen for name, chosen in raw["classes"].items()}
-    return Palette(
-        name=raw["name"],
-        blocks={
-            number: tuple(block for group in chosen for block in groups[group])
-            for number, chosen in classes.items()
-        },
-        preferred={
-            number: frozenset(
-                block
-                for group in raw["prefers"].get(CLASS_NAMES[number], ())
-                for block in groups[group]
-            )
-            for number in classes
-        },
-        defaults={CLASS_NAMES.index(k): _full(block) for k, block in raw["defaults"].items()},
-        slabs={_full(block): slab for block, slab in raw["slabs"].items()},
-        fences={_full(block): fence for block, fence in raw["fences"].items()},
-        glass=_full(raw["glass"]),
-        pane=_full(raw["pane"]),
-    )
-
-
-def _full(text: str) -> str:
-    return str(complete(check_state(parse_state(text))))
+    return source.read_text("utf-8")

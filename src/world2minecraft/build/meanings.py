@@ -1,0 +1,104 @@
+"""What the blocks of a world stand for: ids to classes and designs, by words in their names.
+
+Mods of furniture name hundreds of blocks by a few words, so a palette lists words. Of all that
+occur in a block's name the longest says what it is, the last of two as long.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.types import BlockVolume
+
+LONGEST_WORD = 60
+MOST_OBJECTS = 65_535
+
+
+class Meaning(NamedTuple):
+    """A class, and the design that shows it best; "" where none does."""
+
+    class_id: int
+    design: str
+
+
+@dataclass(frozen=True, eq=False)
+class Meanings:
+    """The words of a palette. ``namespaces`` are the beginnings of those that it speaks of."""
+
+    namespaces: tuple[str, ...]
+    words: Mapping[str, Meaning]
+
+    @cached_property
+    def _by_length(self) -> list[str]:
+        return sorted(self.words, key=len, reverse=True)
+
+    def of(self, state: str) -> Meaning | None:
+        """Return what a block state stands for; None where no word tells.
+
+        Example:
+            >>> Meanings(("mod",), {"chair": Meaning(5, "chair")}).of("mod:oak_chair[facing=east]")
+            Meaning(class_id=5, design='chair')
+        """
+        namespace, _, name = state.partition("[")[0].rpartition(":")
+        if not (namespace or "minecraft").startswith(self.namespaces):
+            return None
+        found = [word for word in self._by_length if word in name]
+        if not found:
+            return None
+        alike = [word for word in found if len(word) == len(found[0])]
+        return self.words[max(alike, key=name.rfind)]
+
+
+def meanings_of(raw: Any) -> Meanings:
+    """Return the meanings that ``reads`` of a palette file holds.
+
+    Raises:
+        ValueError: it holds none.
+    """
+    if not isinstance(raw, dict) or set(raw) != {"namespaces", "words"}:
+        raise ValueError("reads must have namespaces and words")
+    spaces, words = raw["namespaces"], raw["words"]
+    if not (isinstance(spaces, list) and spaces and all(isinstance(s, str) and s for s in spaces)):
+        raise ValueError(f"namespaces must be a list of names, not {spaces!r}")
+    if not isinstance(words, dict) or not words:
+        raise ValueError(f"words must be keys with values such as chair/stool, not {words!r}")
+    return Meanings(tuple(spaces), {str(w): _meaning(str(w), said) for w, said in words.items()})
+
+
+def labelled(volume: BlockVolume, meanings: Meanings) -> BlockVolume:
+    """Return a volume with the class and the object of every block whose meaning is known.
+
+    Blocks of one design that touch by a face are one object; those of structure are none. Labels
+    that the volume has already stay.
+    """
+    known = [meanings.of(state) for state in volume.palette]
+    classes = np.array([0 if one is None else one.class_id for one in known], np.uint8)
+    designs = sorted({one.design for one in known if one is not None})
+    kinds = np.array([0 if one is None else 1 + designs.index(one.design) for one in known])
+    semantic = np.where(volume.semantic > 0, volume.semantic, classes[volume.states])
+    instance = volume.instance.copy()
+    here = kinds[volume.states] * np.isin(semantic, OBJECT_CLASSES) * (volume.instance == 0)
+    following = int(instance.max(initial=0))
+    keys = here * len(CLASS_NAMES) + semantic
+    for key in np.unique(keys[here > 0]).tolist():
+        parts, count = connected_parts((keys == key) & (here > 0), corners=False)
+        if following + count > MOST_OBJECTS:
+            break
+        instance[parts > 0] = (parts[parts > 0] + following).astype(np.uint16)
+        following += count
+    return replace(volume, semantic=semantic, instance=instance)
+
+
+def _meaning(word: str, said: Any) -> Meaning:
+    name, _, design = str(said).partition("/")
+    if not 0 < len(word) <= LONGEST_WORD or name not in CLASS_NAMES:
+        classes = ", ".join(CLASS_NAMES)
+        raise ValueError(
+            f"{word!r} must mean a class, such as chair/stool, not {said!r}: {classes}"
+        )
+    return Meaning(CLASS_NAMES.index(name), design)
