@@ -14,8 +14,10 @@ from world2minecraft.build.lamps import hang_lamps
 from world2minecraft.build.lattice import is_exact, lattice_over, snapped_corner_m
 from world2minecraft.build.lights import put_lights
 from world2minecraft.build.objects import ObjectBuilder
+from world2minecraft.build.own_furniture import put_own_furniture
 from world2minecraft.build.palettes import Palette, load_palette
 from world2minecraft.build.parameters import BuildParameters
+from world2minecraft.build.restricting import restrict
 from world2minecraft.build.shell import put_edge, put_shell
 from world2minecraft.build.storeys import with_storeys
 from world2minecraft.build.structure import build_shell
@@ -61,6 +63,7 @@ def build_volume(
         footprints = put_cells_exactly(canvas, *source)
     else:
         footprints = _put_room(canvas, placements, instances, *source)
+    restrict(canvas, palette)
     settle(canvas)
     if chosen.edge == "barrier":
         put_edge(canvas, footprints)
@@ -68,6 +71,7 @@ def build_volume(
         hang_lamps(canvas, footprints)
     if chosen.lights != "off":
         put_lights(canvas, footprints)
+    restrict(canvas, palette)
     return canvas.volume()
 
 
@@ -92,7 +96,8 @@ def _put_room(
         DisplayBuilder(canvas, *source, instances).put_all(placements)
         return shell.footprints
     builder = ObjectBuilder(canvas, grid, painted, coloured, palette, parameters, shell.footprints)
-    builder.put_all(placements)
+    source = (placements, painted, grid, builder.within)
+    builder.put_all(put_own_furniture(canvas, palette.furniture, *source))
     carry_floaters(canvas)
     close_gaps(canvas)
     return shell.footprints
