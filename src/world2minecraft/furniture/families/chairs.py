@@ -154,7 +154,8 @@ def _pedestal_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     if size.exact[2] < 1.3 and look.has("seat", "slab"):
         plan.slab("seat", plan.depth, plan.width, 0)
         return plan.blocks
-    shapes = tuple(shape for shape in ("trapdoor", "carpet", "slab") if look.has("seat", shape))
+    thin = ("trapdoor", "carpet") if max(size[:2]) <= 2 else ("trapdoor",)  # A carpet needs a post.
+    shapes = [shape for shape in (*thin, "slab") if look.has("seat", shape)] or ["full"]
     layer = lay_plate(plan, "seat", plan.depth, plan.width, max(size.exact[2], 1.06), shapes)
     lay_legs(plan, "post", _middle(size), layer)
     return plan.blocks

@@ -14,7 +14,7 @@ from world2minecraft.furniture.shapes import arms, backrest, part, slab
 from world2minecraft.furniture.template import BlockSize, Build, LocalBlock, Part, Span
 
 FINE = 3.0  # Blocks per metre from which a seat has layers of its own.
-OFTEN = 3  # Blocks of a seat from which its ends may be arms.
+WIDE = 3  # Blocks of a seat from which its ends may be arms.
 BACK_M, ARM_M = 0.2, 0.18
 
 
@@ -72,7 +72,7 @@ def _stair_seat(plan: Plan, run: _Run) -> None:
         plan.stairs("seat", i, j, 0, side)
     for (i, j), side in turned.items():
         corner = any((i, j) == cell[:2] for cell in run.back)
-        if not corner or (not deep and plan.size.width >= OFTEN):
+        if not corner or (not deep and plan.size.width >= WIDE):
             plan.stairs("arm", i, j, 0, side)
     for i, j, side in run.back:
         if plan.look.has("back", "trapdoor"):
@@ -88,7 +88,7 @@ def _plush_seat(plan: Plan, run: _Run) -> None:
         return
     for i, j in run.seat:
         plan.put("seat", i, j, 0)
-    for i, j, _ in run.arms if plan.size.width >= OFTEN else ():
+    for i, j, _ in run.arms if plan.size.width >= WIDE else ():
         if plan.look.has("arm", "trapdoor"):
             plan.plate("arm", i, j, 1, "bottom")
     for i, j, _ in run.back:
@@ -96,13 +96,14 @@ def _plush_seat(plan: Plan, run: _Run) -> None:
 
 
 def _as_stairs(plan: Plan, run: _Run) -> None:
-    """Lay one layer of stairs: blocks of cloth would read as a box.
+    """Lay one layer of stairs and slabs: blocks of cloth would read as a box.
 
     They are of the arms' wood, or of what comes nearest to the seat's colour and has stairs.
     """
+    slab = plan.look.state("arm", "slab", type="bottom")
     for i, j in run.seat:
-        plan.put("seat", i, j, 0)
-    ends = {(i, j): side for i, j, side in run.arms} if plan.size.width >= OFTEN else {}
+        plan.put_state("seat", slab, i, j, 0)
+    ends = {(i, j): side for i, j, side in run.arms} if plan.size.width >= WIDE else {}
     for i, j, side in run.back:
         facing = FACING[ends.get((i, j), side)]
         stairs = plan.look.state("arm", "stairs", facing=facing, half="bottom")
@@ -139,7 +140,7 @@ def _plush_layers(plan: Plan, run: _Run) -> None:
     back = max(int(plan.size.exact[2] + 0.65), seat + 1, arm)
     for i, j in run.seat:
         plan.put("seat", i, j, range(seat))
-    for i, j, _ in run.arms:
+    for i, j, _ in run.arms if plan.size.width >= WIDE else ():
         plan.put("seat", i, j, range(arm))
         if low and look.has("arm", "trapdoor"):
             plan.plate("arm", i, j, arm, "bottom")

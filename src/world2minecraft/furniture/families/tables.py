@@ -30,7 +30,7 @@ def _table_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
         return plan.blocks
     layer = lay_plate(plan, "top", plan.depth, plan.width, size.exact[2], _tops(look))
     if look.option("legs") == "trestle" and size.width > 3:
-        feet = [(i, j) for i in plan.depth for j in (1, size.width - 2)]
+        feet = [(i, j) for i in (0, size.depth - 1) for j in (1, size.width - 2)]
     else:
         feet = plan.corners
     if size.depth == size.width == 2 and look.has("leg", "trapdoor"):
