@@ -13,6 +13,7 @@ paper line   what                                               here
 Each stage reads the files that the stage before it wrote, so that any of them can be run again.
 """
 
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -30,6 +31,7 @@ from world2minecraft.scan import open_scan, realigned, settled
 from world2minecraft.steps import LATER_STEPS
 from world2minecraft.types import Scan
 
+NAMELESS = ("capture", "scan", "data", "input")  # Folders of every scene, and names of none.
 STAGES = ("scan", "register", "fuse", *LATER_STEPS)
 
 
@@ -59,7 +61,7 @@ def reconstruct(
     run = RunFolder(out, STAGES, start)
     options = {"voxel_m": chosen.voxel_m, "labels": labels, "options": chosen.capture}
     with run.timed("scan"):
-        scan = open_scan(capture, progress=progress, **options)
+        scan = replace(open_scan(capture, progress=progress, **options), name=scene_name(capture))
     run.begin(manifest(capture, labels, chosen))
     if run.needs("scan"):
         with run.stage("scan"):
@@ -86,6 +88,12 @@ def reconstruct(
                 step(run.folder, chosen)
             progress(stage, 1, 1)
     return scan
+
+
+def scene_name(capture: Path) -> str:
+    """Return what a capture's scene is called: its folder's name, where that says anything."""
+    name = capture.resolve().name.replace("_", " ")
+    return name if name.isprintable() and name not in NAMELESS else ""
 
 
 def registered_before(scan: Scan, out: Path) -> Scan:

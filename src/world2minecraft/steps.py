@@ -22,7 +22,7 @@ from world2minecraft.exchange.occupancy import inner_corner_m
 from world2minecraft.exchange.paper import write_centers_json, write_occ_json
 from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.exchange.rooms import read_rooms
-from world2minecraft.exchange.scan import read_room_size
+from world2minecraft.exchange.scan import read_room_size, read_scene_name
 from world2minecraft.find import find_objects
 from world2minecraft.furnish import furnish
 from world2minecraft.fuse import (
@@ -88,7 +88,14 @@ def built_volume(folder: Path, chosen: Parameters) -> BlockVolume:
         corner_m=corner_m(folder, grid),
         blocks_per_metre=chosen.blocks_per_metre,
         parameters=chosen.build,
+        name=scene_name(folder),
     )
+
+
+def scene_name(folder: Path) -> str:
+    """Return what the scene of a run is called, or nothing where no scan says so."""
+    path = folder / "scan.json"
+    return read_scene_name(path) if path.is_file() else ""
 
 
 def corner_m(folder: Path, grid: OccupancyGrid) -> np.ndarray:

@@ -16,7 +16,7 @@ LAMP_M = 0.3  # A shade's width.
 CORD_M = 0.35
 WALK_M, WALK_BLOCKS = 2.0, 2  # What stays free under a lamp: a person, and a player.
 TABLE_M = 1.45  # Over a table nobody walks.
-REACH_M = 2.2  # How far one lamp is taken to light. A guess: 4 m between two.
+REACH_M = 2.6  # How far one lamp is taken to light. A guess: about 4 m between two.
 WALL_M = 0.5  # No lamp hangs nearer to a wall, unless the room is that narrow.
 MOST = 24  # Lamps a storey.
 CHAIN = "minecraft:chain[axis=y,waterlogged=false]"

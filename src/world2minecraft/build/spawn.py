@@ -52,7 +52,8 @@ def standing_cells(volume: BlockVolume) -> np.ndarray:
     """Return the columns, bool [X, Z], where a player stands on the floor's layer."""
     ground = ROOM_CORNER_BLOCK[1] - volume.corner[1]
     free = np.isin(
-        volume.states, [i for i, state in enumerate(volume.palette) if state in (AIR, LIGHT)]
+        volume.states,
+        [i for i, state in enumerate(volume.palette) if state in (AIR, LIGHT) or "_sign[" in state],
     )
     floor = volume.semantic[:, ground - 1] == SemanticClass.FLOOR
     return floor & free[:, ground : ground + PLAYER_BLOCKS].all(1) & _within(volume, ground)

@@ -142,7 +142,9 @@ def _walls(grid, free, open_share, lattice, parameters, patches, coloured) -> np
             sheet = _closed(
                 votes.area >= parameters.face_share, axis, open_share, lattice, parameters
             )
-            coloured.append((votes.cells, blocks_behind(votes, grid, lattice)))
+            # A window's cells show the sky, and would paint the wall around it.
+            own = grid.labels[tuple(votes.cells.T)] == WALL
+            coloured.append((votes.cells[own], blocks_behind(votes, grid, lattice)[own]))
             fresh = sheet & ~walls
             layers = np.indices(lattice.shape, sparse=True)[axis]
             number = 1 + int(patches.max()) + layers

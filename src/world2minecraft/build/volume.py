@@ -17,6 +17,7 @@ from world2minecraft.build.objects import ObjectBuilder
 from world2minecraft.build.own_furniture import put_own_furniture
 from world2minecraft.build.palettes import Palette, load_palette
 from world2minecraft.build.parameters import BuildParameters
+from world2minecraft.build.plaque import SIGN, WALL_SIGN, with_plaque
 from world2minecraft.build.restricting import restrict
 from world2minecraft.build.shell import put_edge, put_shell
 from world2minecraft.build.storeys import with_storeys
@@ -34,6 +35,7 @@ def build_volume(
     corner_m: np.ndarray | None = None,
     blocks_per_metre: float = 4.0,
     parameters: BuildParameters | None = None,
+    name: str = "",
 ) -> BlockVolume:
     """Build a room of blocks.
 
@@ -45,6 +47,8 @@ def build_volume(
             (0, 64, 0); rounded to whole voxels. None takes the grid's own corner.
         blocks_per_metre: the scale. At one block a voxel, every occupied cell is one block.
         parameters: how to build.
+        name: the scene's name for the plaque; without one there is none but where the
+            parameters say a text.
 
     Raises:
         UsageError: the scale is not above 0, or makes too many blocks.
@@ -72,7 +76,10 @@ def build_volume(
     if chosen.lights != "off":
         put_lights(canvas, footprints)
     restrict(canvas, palette)
-    return canvas.volume()
+    volume = canvas.volume()
+    text = {"auto": name, "off": ""}.get(chosen.plaque, chosen.plaque)
+    allowed = palette.allows(SIGN) and palette.allows(WALL_SIGN)
+    return with_plaque(volume, text) if text and allowed else volume
 
 
 def _put_room(

@@ -11,6 +11,8 @@ from world2minecraft.errors import DamagedFileError
 from world2minecraft.files import read_json, write_json
 from world2minecraft.types import Scan
 
+MOST_NAME = 60
+
 
 def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | None = None) -> None:
     """Write everything of a scan but its pictures, and what registration found."""
@@ -18,6 +20,7 @@ def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | N
         path,
         {
             "source": scan.source,
+            "name": scan.name,
             "scan_to_room": scan.scan_to_room.tolist(),
             "room_size_m": scan.room_size_m.tolist(),
             "frames_used": list(scan.frames_used),
@@ -40,6 +43,19 @@ def read_registration(path: str | Path) -> dict[str, Any]:
     if not isinstance(found, dict) or not isinstance(found.get("registration", {}), dict):
         raise DamagedFileError(path, "is no scan.json")
     return found.get("registration", {})
+
+
+def read_scene_name(path: str | Path) -> str:
+    """Return the scene's name of a ``scan.json``, printable; empty where it holds none.
+
+    Raises:
+        InputError: the file is missing. DamagedFileError: it is no ``scan.json``.
+    """
+    found = read_json(path)
+    if not isinstance(found, dict):
+        raise DamagedFileError(path, "is no scan.json")
+    name = found.get("name", "")
+    return name[:MOST_NAME] if isinstance(name, str) and name.isprintable() else ""
 
 
 def placed_as_written(scan: Scan, path: str | Path) -> Scan:

@@ -12,8 +12,9 @@ LUMINOUS = (
     "beacon",
     "candle",
 )
+DARK = ("torchflower", "lit=false")  # A flower, and candles and torches that do not burn.
 
 
 def is_luminous(state: str) -> bool:
     """Tell whether a state is drawn at full brightness."""
-    return any(part in state for part in LUMINOUS)
+    return any(part in state for part in LUMINOUS) and not any(part in state for part in DARK)

@@ -128,7 +128,8 @@ class Scan:
     """A capture that is aligned: where the room is in it, and how sure its scale is.
 
     ``scan_to_room`` carries the scan's frame to the room frame; the inner box of the room is
-    from (0, 0, 0) to ``room_size_m``. ``notes`` are sentences for the report.
+    from (0, 0, 0) to ``room_size_m``. ``notes`` are sentences for the report; ``name`` is what
+    the scene is called.
     """
 
     views: ViewStream
@@ -140,6 +141,7 @@ class Scan:
     scale_sigma: float = 0.0
     source: str = ""
     notes: tuple[str, ...] = ()
+    name: str = ""
 
     def __post_init__(self):
         put = object.__setattr__
