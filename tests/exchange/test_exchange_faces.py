@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.exchange.faces import Faces, faces_of_boxes
@@ -47,6 +47,7 @@ def slow_faces(cells: np.ndarray, is_clear) -> dict:
     return squares
 
 
+@settings(max_examples=20)
 @given(st.integers(0, 1000), st.integers(1, 4))
 def test_faces_are_those_of_every_unit(seed, kinds):
     rng = np.random.default_rng(seed)

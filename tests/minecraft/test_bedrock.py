@@ -364,7 +364,7 @@ def test_what_is_wrong_is_named(change, reason, tmp_path):
 
 
 def test_an_empty_volume_is_refused(tmp_path):
-    with pytest.raises(UsageError, match="1 to 24 million blocks, not 0"):
+    with pytest.raises(UsageError, match="1 to 12 million blocks, not 0"):
         write_mcstructure(volume_of(np.zeros((0, 1, 1)), (AIR,), (0, 0, 0)), tmp_path / "a")
 
 

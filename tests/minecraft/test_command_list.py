@@ -16,7 +16,7 @@ from world2minecraft.minecraft.commands import snbt
 from world2minecraft.minecraft.formats import WriteOptions, read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
-from world2minecraft.minecraft.snbt import read_snbt
+from world2minecraft.minecraft.snbt import SnbtReader, read_snbt
 from world2minecraft.types import AIR
 
 VOLUME = random_volume((9, 6, 7), 6, (2, 60, -3))
@@ -138,9 +138,14 @@ def test_a_pack_of_others_is_refused(tmp_path):
 
 
 def test_the_limits_hold(tmp_path, monkeypatch):
-    monkeypatch.setattr(command_reading, "MAX_COMMANDS", 2)
-    with pytest.raises(InputError, match="holds more than 2 commands"):
+    monkeypatch.setattr(command_reading, "MAX_LINES", 2)
+    with pytest.raises(InputError, match="has more than 2 lines"):
         built("setblock 0 0 0 a\n" * 3, tmp_path)
+    monkeypatch.setattr(command_reading, "MAX_DATA", 1)
+    with pytest.raises(InputError, match="has data for more than 1 blocks and entities"):
+        built("summon cat 0 0 0\nsummon cat 0 0 0", tmp_path)
+    with pytest.raises(UsageError, match="holds too many values"):
+        SnbtReader(3).read("[1,2,3]")
 
 
 @given(st.text(alphabet="setblockfill0123 ~-{}[]:,\"'\\=minecraft\n#/", max_size=120))

@@ -9,17 +9,23 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.errors import DamagedFileError, LimitError, UsageError
 from world2minecraft.minecraft.nbt import NbtLimits, pack_gzip, read_nbt, unpack, write_nbt
 from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
-MAX_CELLS = 64 << 20
-LIMITS = NbtLimits(bytes=512 << 20)
+MAX_CELLS = 32 << 20  # 320 blocks a side; with its labels such a volume takes 160 MB.
+LIMITS = NbtLimits(bytes=6 * MAX_CELLS)
 _ARRAYS = (("states", np.uint16), ("semantic", np.uint8), ("instance", np.uint16))
 
 
 def pack_volume(volume: BlockVolume) -> bytes:
-    """Return the bytes of a volume; the same volume gives the same bytes."""
+    """Return the bytes of a volume; the same volume gives the same bytes.
+
+    Raises:
+        UsageError: it is larger than is read back.
+    """
+    if volume.states.size > MAX_CELLS:
+        raise UsageError(f"a .glb holds at most {MAX_CELLS:,} blocks, not {volume.states.size:,}")
     tree: dict[str, Any] = {
         "format": 1,
         "size": np.array(volume.states.shape, np.int32),
@@ -76,8 +82,7 @@ def unpack_volume(data: bytes, path: str | Path) -> BlockVolume:
 
 
 def _array(raw: np.ndarray, kind: type, shape: tuple[int, int, int]) -> np.ndarray:
-    values = np.frombuffer(raw.tobytes(), np.dtype(kind).newbyteorder("<"))
-    return values.reshape(shape).astype(kind)
+    return raw.view(np.dtype(kind).newbyteorder("<")).reshape(shape).astype(kind, copy=False)
 
 
 def _block_entity(row: dict[str, Any]) -> BlockEntity:

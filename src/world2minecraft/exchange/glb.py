@@ -15,8 +15,8 @@ from world2minecraft.errors import DamagedFileError, LimitError
 from world2minecraft.files import read_bytes
 
 MAGIC, JSON_CHUNK, BIN_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
-MAX_BYTES = 1 << 30
-MAX_JSON_BYTES = 64 << 20
+MAX_BYTES = 192 << 20
+MAX_JSON_BYTES = 8 << 20  # A thousand objects take one; JSON grows thirtyfold in memory.
 VERTICES, INDICES = 34962, 34963  # Which buffer of a graphics card a view is for.
 _COMPONENTS = {np.dtype("<f4"): 5126, np.dtype("<u4"): 5125, np.dtype("<u2"): 5123}
 _KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
@@ -77,7 +77,7 @@ class GlbWriter:
         return _HEAD.pack(MAGIC, 2, _HEAD.size + len(chunks)) + chunks
 
 
-def read_glb(path: str | Path) -> tuple[dict[str, Any], bytes]:
+def read_glb(path: str | Path) -> tuple[dict[str, Any], memoryview]:
     """Read a binary glTF file.
 
     Returns:
@@ -90,19 +90,20 @@ def read_glb(path: str | Path) -> tuple[dict[str, Any], bytes]:
     data = read_bytes(path, MAX_BYTES)
     if len(data) < _HEAD.size + _CHUNK.size or _HEAD.unpack_from(data)[:2] != (MAGIC, 2):
         raise DamagedFileError(path, "is no binary glTF 2.0")
-    chunks: dict[int, bytes] = {}
+    chunks: dict[int, memoryview] = {}
     at, end = _HEAD.size, min(len(data), _HEAD.unpack_from(data)[2])
     while at + _CHUNK.size <= end:
         size, kind = _CHUNK.unpack_from(data, at)
         at += _CHUNK.size
         if size > end - at:
             raise DamagedFileError(path, f"says {size:,} bytes in a chunk and holds fewer")
-        chunks.setdefault(kind, data[at : at + size])
+        chunks.setdefault(kind, memoryview(data)[at : at + size])
         at += size
-    return _tree_of(chunks.get(JSON_CHUNK, b""), path), chunks.get(BIN_CHUNK, b"")
+    nothing = memoryview(b"")
+    return _tree_of(chunks.get(JSON_CHUNK, nothing), path), chunks.get(BIN_CHUNK, nothing)
 
 
-def view_bytes(tree: dict[str, Any], numbers: bytes, index: Any, path: str | Path) -> bytes:
+def view_bytes(tree: dict[str, Any], numbers: memoryview, index: Any, path: str | Path) -> bytes:
     """Return the bytes of a buffer view.
 
     Raises:
@@ -117,14 +118,14 @@ def view_bytes(tree: dict[str, Any], numbers: bytes, index: Any, path: str | Pat
         raise DamagedFileError(path, f"has no buffer view {str(index)[:20]}") from error
     if start < 0 or size < 0 or start + size > len(numbers):
         raise DamagedFileError(path, f"its buffer view {index} reaches beyond its numbers")
-    return numbers[start : start + size]
+    return bytes(numbers[start : start + size])
 
 
-def _tree_of(text: bytes, path: str | Path) -> dict[str, Any]:
+def _tree_of(text: memoryview, path: str | Path) -> dict[str, Any]:
     if len(text) > MAX_JSON_BYTES:
         raise LimitError(path, f"has {len(text):,} bytes of JSON; at most {MAX_JSON_BYTES:,}")
     try:
-        tree = json.loads(text)
+        tree = json.loads(bytes(text))
     except (ValueError, RecursionError) as error:
         raise DamagedFileError(path, f"its JSON chunk is no JSON ({error})") from error
     if not isinstance(tree, dict):

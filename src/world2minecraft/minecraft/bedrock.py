@@ -31,7 +31,7 @@ from world2minecraft.minecraft.unlabelled import check_size, palette_of, unlabel
 from world2minecraft.types import AIR, BlockEntity, BlockVolume
 
 FORMAT_VERSION = 1
-MAX_BYTES = 192 << 20  # 24 million blocks; the tree is read in place.
+MAX_BYTES = 96 << 20  # 12 million blocks, eight bytes each; the numbers are read in place.
 LIMITS = NbtLimits(bytes=MAX_BYTES)
 WATER = "minecraft:water[level=0]"
 IN_WATER = ("kelp", "kelp_plant", "seagrass", "tall_seagrass", "bubble_column")
@@ -49,7 +49,7 @@ def write_mcstructure(volume: BlockVolume, path: str | Path, losses: Losses | No
     """
     told = Losses() if losses is None else losses
     if not volume.states.size or volume.states.size * 8 > MAX_BYTES - (1 << 20):
-        raise UsageError(f"a .mcstructure holds 1 to 24 million blocks, not {volume.states.size:,}")
+        raise UsageError(f"a .mcstructure holds 1 to 12 million blocks, not {volume.states.size:,}")
     _count_losses(volume, told)
     palette, numbers, is_wet = _bedrock_palette(volume.palette)
     cells = np.ascontiguousarray(volume.states).ravel()  # x, y, z with z fastest, as ours are.

@@ -5,8 +5,10 @@ coordinates, or such after ``~``, which count from the corner of the world. Othe
 counted as lost.
 """
 
+import io
 import re
 import zipfile
+from array import array
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from math import prod
@@ -19,14 +21,15 @@ from world2minecraft.errors import DamagedFileError, InputError, LimitError, Usa
 from world2minecraft.files import UNREADABLE, read_bytes
 from world2minecraft.minecraft.game_names import read_state
 from world2minecraft.minecraft.losses import Losses
-from world2minecraft.minecraft.snbt import read_snbt
+from world2minecraft.minecraft.snbt import SnbtReader
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.unlabelled import MAX_CELLS, check_size, palette_of, unlabelled
 from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
-MAX_BYTES = 256 << 20
+MAX_BYTES = 64 << 20  # Two million commands of this program take about as much.
+MAX_LINES = 4_000_000
 ANY_VERSION = 1 << 30  # A list does not say its game's; names of newer ones mean what they mean.
-MAX_COMMANDS = 2_000_000
+MAX_DATA = 50_000  # Entities, and blocks with data.
 MAX_FILLED = 4 * MAX_CELLS  # Of all commands together: setting blocks again and again takes time.
 Place = tuple[int, int, int]
 _PART = re.compile(r"data/[^/]+/functions?/build/part_(\d+)\.mcfunction")
@@ -89,11 +92,12 @@ class _Site:
 
     path: Path
     losses: Losses
-    boxes: list[tuple[int, ...]] = field(default_factory=list)  # x0 y0 z0 x1 y1 z1 state
+    boxes: array = field(default_factory=lambda: array("i"))  # x0 y0 z0 x1 y1 z1 state, ...
     states: dict[str, int] = field(default_factory=lambda: {AIR: 0})
     data: dict[Place, dict[str, Any]] = field(default_factory=dict)
     entities: list[Entity] = field(default_factory=list)
     filled: int = 0
+    reader: SnbtReader = field(default_factory=SnbtReader)
 
     def place(self, box: tuple[int, ...], text: str) -> None:
         """Put a block, or a block and its data, into a box."""
@@ -106,37 +110,42 @@ class _Site:
         self.filled += prod(sides)
         if self.filled > MAX_FILLED:
             raise LimitError(self.path, f"sets more than {MAX_FILLED:,} blocks; at most that")
-        self.boxes.append((*low, *high, number))
+        self.boxes.extend((*low, *high, number))
         if brace:
             self.merge((low[0], low[1], low[2]), f"{{{rest}")
 
     def merge(self, place: Place, text: str) -> None:
         """Add data to a block."""
-        value, _ = read_snbt(text)
+        self.data[place] = self.data.get(place, {}) | self.compound(text)
+
+    def compound(self, text: str) -> dict[str, Any]:
+        """Read data of a block or an entity."""
+        value, _ = self.reader.read(text)
         if not isinstance(value, dict):
-            raise UsageError(f"block data {text[:40]!r} must be like {{name:value}}")
-        self.data[place] = self.data.get(place, {}) | value
+            raise UsageError(f"data {text[:40]!r} must be like {{name:value}}")
+        if len(self.data) + len(self.entities) >= MAX_DATA:
+            raise LimitError(self.path, f"has data for more than {MAX_DATA:,} blocks and entities")
+        return value
 
 
 def _built(lines: Iterable[str], path: Path, losses: Losses) -> BlockVolume:
     site = _Site(path, losses)
-    for number, line in enumerate(lines):
-        if number >= MAX_COMMANDS:
-            raise LimitError(path, f"holds more than {MAX_COMMANDS:,} commands")
+    for line in lines:
         try:
             _obey(site, line)
         except UsageError as error:
             raise DamagedFileError(path, f"has a line that is no command: {error}") from error
     if not site.boxes:
         raise InputError(path, "holds no setblock or fill command; nothing to read")
-    boxes = np.array(site.boxes, np.int64)
+    boxes = np.frombuffer(site.boxes, np.int32).reshape(-1, 7).astype(np.int64)
     low = boxes[:, :3].min(axis=0)
     shape = check_size(boxes[:, 3:6].max(axis=0) + 1 - low, path)
     palette, number_of = palette_of(site.states, path)
     ours = [number_of[state] for state in site.states]
     states = np.zeros(shape, np.uint16)
     boxes[:, :3], boxes[:, 3:6] = boxes[:, :3] - low, boxes[:, 3:6] - low
-    for x0, y0, z0, x1, y1, z1, state in boxes.tolist():
+    for row in boxes:
+        x0, y0, z0, x1, y1, z1, state = row.tolist()
         states[x0 : x1 + 1, y0 : y1 + 1, z0 : z1 + 1] = ours[state]
     x, y, z = low.tolist()
     blocks = _block_entities(site, states, palette, (x, y, z))
@@ -201,9 +210,7 @@ def _summon(site: _Site, rest: str) -> None:
     if len(place) != 3 or not all(numbers) or not _ID.fullmatch(full):
         raise UsageError(f"summon {rest[:60]!r} must be like: summon minecraft:cat 1.0 64.0 2.0")
     x, y, z = (float(match[1] or 0) for match in numbers if match)
-    nbt, _ = read_snbt(data)
-    if not isinstance(nbt, dict):
-        raise UsageError(f"entity data {data[:40]!r} must be like {{name:value}}")
+    nbt = site.compound(data)
     if isinstance(nbt.get("Tags"), list):
         nbt["Tags"] = [tag for tag in nbt["Tags"] if not _OWN_TAG.fullmatch(str(tag))]
         nbt = nbt if nbt["Tags"] else {key: nbt[key] for key in nbt if key != "Tags"}
@@ -226,14 +233,15 @@ def _block_entities(
 
 def _lines(data: bytes, path: str | Path) -> Iterator[str]:
     """Yield the commands: lines that say something and are no remark."""
-    try:
-        text = data.decode("utf-8")
-    except UnicodeError as error:
-        raise DamagedFileError(path, f"is no text ({error})") from error
-    for line in text.splitlines():
-        plain = line.strip().removeprefix("/")
-        if plain and not plain.startswith("#"):
-            yield plain
+    for number, raw in enumerate(io.BytesIO(data)):
+        if number >= MAX_LINES:
+            raise LimitError(path, f"has more than {MAX_LINES:,} lines")
+        try:
+            line = raw.decode("utf-8").strip().removeprefix("/")
+        except UnicodeError as error:
+            raise DamagedFileError(path, f"is no text ({error})") from error
+        if line and not line.startswith("#"):
+            yield line
 
 
 def _parts(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:

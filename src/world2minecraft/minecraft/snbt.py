@@ -10,6 +10,7 @@ from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 
 MAX_DEPTH = 100
 MAX_SHOWN = 40
+MAX_VALUES = 500_000  # As of a file of NBT.
 _SPACE = re.compile(r"\s*")
 _WORD = re.compile(r"[A-Za-z0-9_.+-]+")
 _QUOTED = {mark: re.compile(rf"(?:[^{mark}\\]|\\.)*{mark}", re.DOTALL) for mark in "\"'"}
@@ -31,64 +32,77 @@ def read_snbt(text: str, start: int = 0) -> tuple[Any, int]:
         The value, as ``minecraft.nbt`` gives it, and where it ends.
 
     Raises:
-        UsageError: the text is no NBT, or nests deeper than 100 tags.
+        UsageError: the text is no NBT, nests deeper than 100 tags or holds too many values.
 
     Example:
         >>> read_snbt('{Count:3b, list:[1.5f, 2f], "name":\'my room\'}')[0]
         {'Count': 3, 'list': [1.5, 2.0], 'name': 'my room'}
     """
-    return _value(text, start, 0)
+    return SnbtReader().read(text, start)
 
 
-def _value(text: str, at: int, depth: int) -> tuple[Any, int]:
-    if depth > MAX_DEPTH:
-        raise UsageError(f"NBT text nests deeper than {MAX_DEPTH} tags; at most that is read")
-    at = _skip(text, at)
-    first = text[at : at + 1]
-    if first == "{":
-        return _compound(text, at + 1, depth)
-    if first == "[":
-        return _items(text, at + 1, depth)
-    if first in _QUOTED and first:
-        return _quoted(text, at)
-    word = _WORD.match(text, at)
-    if word is None:
-        raise _unreadable(text, at, "a value")
-    return _plain(word[0]), word.end()
+class SnbtReader:
+    """Reads texts until they hold more values, together, than it allows."""
 
+    def __init__(self, values: int = MAX_VALUES) -> None:
+        self.values_left = values
 
-def _compound(text: str, at: int, depth: int) -> tuple[dict[str, Any], int]:
-    result: dict[str, Any] = {}
-    at = _skip(text, at)
-    while text[at : at + 1] != "}":
-        key, at = _key(text, at)
-        at = _expect(text, at, ":")
-        result[key], at = _value(text, at, depth + 1)
+    def read(self, text: str, start: int = 0) -> tuple[Any, int]:
+        """Read one value; see ``read_snbt``."""
+        return self._value(text, start, 0)
+
+    def _value(self, text: str, at: int, depth: int) -> tuple[Any, int]:
+        self.values_left -= 1
+        if self.values_left < 0:
+            raise UsageError("NBT text holds too many values")
+        if depth > MAX_DEPTH:
+            raise UsageError(f"NBT text nests deeper than {MAX_DEPTH} tags; at most that is read")
         at = _skip(text, at)
-        if text[at : at + 1] != "}":
-            at = _skip(text, _expect(text, at, ","))
-    return result, at + 1
+        first = text[at : at + 1]
+        if first == "{":
+            return self._compound(text, at + 1, depth)
+        if first == "[":
+            return self._items(text, at + 1, depth)
+        if first in _QUOTED and first:
+            return _quoted(text, at)
+        word = _WORD.match(text, at)
+        if word is None:
+            raise _unreadable(text, at, "a value")
+        return _plain(word[0]), word.end()
 
-
-def _items(text: str, at: int, depth: int) -> tuple[Any, int]:
-    kind = text[at : at + 1]
-    if kind in _ARRAYS and text[at + 1 : at + 2] == ";":
-        values, at = _items(text, at + 2, depth)
-        try:
-            return np.array(values, _ARRAYS[kind]).reshape(-1), at
-        except (ValueError, TypeError, OverflowError) as error:
-            raise UsageError(
-                f"NBT text has an array with other things than numbers: {error}"
-            ) from error
-    result = []
-    at = _skip(text, at)
-    while text[at : at + 1] != "]":
-        value, at = _value(text, at, depth + 1)
-        result.append(value)
+    def _compound(self, text: str, at: int, depth: int) -> tuple[dict[str, Any], int]:
+        result: dict[str, Any] = {}
         at = _skip(text, at)
-        if text[at : at + 1] != "]":
-            at = _skip(text, _expect(text, at, ","))
-    return result, at + 1
+        while text[at : at + 1] != "}":
+            key, at = _key(text, at)
+            at = _expect(text, at, ":")
+            result[key], at = self._value(text, at, depth + 1)
+            at = _skip(text, at)
+            if text[at : at + 1] != "}":
+                at = _skip(text, _expect(text, at, ","))
+        return result, at + 1
+
+    def _items(self, text: str, at: int, depth: int) -> tuple[Any, int]:
+        kind = text[at : at + 1]
+        if kind in _ARRAYS and text[at + 1 : at + 2] == ";":
+            values, at = self._items(text, at + 2, depth)
+            return _array(values, _ARRAYS[kind]), at
+        result = []
+        at = _skip(text, at)
+        while text[at : at + 1] != "]":
+            value, at = self._value(text, at, depth + 1)
+            result.append(value)
+            at = _skip(text, at)
+            if text[at : at + 1] != "]":
+                at = _skip(text, _expect(text, at, ","))
+        return result, at + 1
+
+
+def _array(values: Any, kind: type) -> np.ndarray:
+    try:
+        return np.array(values, kind).reshape(-1)
+    except (ValueError, TypeError, OverflowError) as error:
+        raise UsageError(f"NBT text has an array of other things than numbers: {error}") from error
 
 
 def _key(text: str, at: int) -> tuple[str, int]:
