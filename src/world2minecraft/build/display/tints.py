@@ -40,16 +40,31 @@ def states_of_parts(
         palette: the blocks that a class may be of.
         parameters: how colours are weighed.
     """
-    chosen: dict[str, str] = {}
-    for role in dict.fromkeys(part.role for part in parts):
-        chosen[role] = _state_of_role(
-            found.materials.get(role),
-            colours.get(role, colours.get("")),
-            found.class_id,
-            palette,
-            parameters,
-        )
+    roles = tuple(dict.fromkeys(part.role for part in parts))
+    sizes = {role: sum(_size(one) for one in parts if one.role == role) for role in roles}
+    main = max(roles, key=lambda role: (round(sizes[role], 9), role))
+    source = (found.class_id, palette, parameters)
+    whole = colours.get(main, colours.get(""))
+    chosen = {main: _state_of_role(found.materials.get(main), whole, True, *source)}
+    for role in roles:
+        material = found.materials.get(role)
+        if role not in colours and _is_alike(material, found.materials.get(main)):
+            chosen[role] = chosen[main]
+        elif role != main:
+            colour = colours.get(role, whole)
+            chosen[role] = _state_of_role(material, colour, role in colours, *source)
     return [chosen[part.role] for part in parts]
+
+
+def _is_alike(one: Material | None, main: Material | None) -> bool:
+    """Whether a role that nobody saw is of what most of its object is."""
+    if one is None or main is None:
+        return one is main
+    return one.takes_colour and main.takes_colour and one.kind == main.kind
+
+
+def _size(part: Part) -> float:
+    return float(np.prod(part.box_m[3:] - part.box_m[:3]))
 
 
 def role_colours(
@@ -112,6 +127,7 @@ def nearest_state(
 def _state_of_role(
     material: Material | None,
     colour: np.ndarray | None,
+    seen: bool,
     class_id: int,
     palette: Palette,
     parameters: BuildParameters,
@@ -132,7 +148,9 @@ def _state_of_role(
     if not allowed:
         return best
     same, apart = nearest_state(colour, allowed, parameters)
-    return same if apart <= away + OWN_KIND else best
+    if apart <= away + OWN_KIND:
+        return same
+    return best if seen else own  # The wooden legs of a blue chair are not blue.
 
 
 def _whole(material: Material, default: str) -> str:
