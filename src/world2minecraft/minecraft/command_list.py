@@ -9,6 +9,7 @@ from world2minecraft.minecraft.commands import (
     chunk_rows,
     data_commands,
     entity_commands,
+    entity_tag,
 )
 from world2minecraft.minecraft.displays import check_displays
 from world2minecraft.minecraft.formats import WriteOptions
@@ -37,6 +38,8 @@ def write_command_list(
     commands = [
         *block_commands(volume, version),
         *data_commands(volume),
+        # Those of an earlier run go first, so that none ever stands there twice.
+        *([f"kill @e[tag={entity_tag(volume)}]"] if volume.entities else []),
         *entity_commands(volume),
     ]
     head = [f"# {len(commands):,} commands for Minecraft {version.name}, made by World2Minecraft."]

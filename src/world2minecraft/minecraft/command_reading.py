@@ -26,6 +26,8 @@ from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.unlabelled import MAX_CELLS, check_size, palette_of, unlabelled
 from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
+# Commands that load chunks, order the parts of a pack, or clear the place of its entities.
+ORDERING = ("forceload ", "schedule ", "kill @e[tag=w2m_")
 MAX_BYTES = 64 << 20  # Two million commands of this program take about as much.
 MAX_LINES = 4_000_000
 ANY_VERSION = 1 << 30  # A list does not say its game's; names of newer ones mean what they mean.
@@ -82,7 +84,7 @@ def read_datapack(path: str | Path, losses: Losses | None = None) -> BlockVolume
         raise InputError(
             source, "has no function build/part_0; only packs of this program are read"
         )
-    lines = (line for text in texts for line in _lines(text, source) if _is_kept(line))
+    lines = (line for text in texts for line in _lines(text, source))
     return _built(lines, source, Losses() if losses is None else losses)
 
 
@@ -172,7 +174,7 @@ def _obey(site: _Site, line: str) -> None:
         site.merge((x, y, z), data)
     elif words[0] == "summon":
         _summon(site, rest)
-    elif words[0] not in ("forceload", "schedule"):
+    elif not line.startswith(ORDERING):
         site.losses.add(f"commands that set no block ({words[0][:20]})")
 
 
@@ -252,8 +254,3 @@ def _parts(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
         if part is not None and len(part[1]) <= 6:
             found.setdefault(int(part[1]), entry)
     return [found[number] for number in sorted(found)]
-
-
-def _is_kept(line: str) -> bool:
-    """Whether a line of a pack builds; the others order the parts or clear their place."""
-    return not line.startswith(("schedule ", "forceload ", "kill @e[tag=w2m_"))
