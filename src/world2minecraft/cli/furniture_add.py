@@ -17,33 +17,40 @@ w2m furniture add lamp.nbt --class objs --blocks-per-metre 1 --size 0.4 0.4 1.6 
 """
 
 
+Source = Annotated[
+    Path, typer.Argument(metavar="FILE", help="A .schem, .litematic, .nbt or another build.")
+]
+Kind = Annotated[str, typer.Option("--class", help="chair, bed, sofa, table, tvs, furn or objs.")]
+Scale = Annotated[float, typer.Option(help="The scale at which it was built.")]
+Name = Annotated[str, typer.Option(help="Its name; that of the file.")]
+Title = Annotated[str, typer.Option(help="What people call it.")]
+Front = Annotated[str | None, typer.Option(help="north, east, south or west; seen by its blocks.")]
+Size = Annotated[
+    tuple[float, float, float] | None,
+    typer.Option(metavar="DEPTH WIDTH HEIGHT", help="Real size in metres."),
+]
+Mount = Annotated[str, typer.Option(help="floor, wall, ceiling or any.")]
+Recolour = Annotated[
+    bool, typer.Option("--recolour", help="Let wood, wool and stone take an object's colour.")
+]
+Match = Annotated[
+    bool, typer.Option("--match/--no-match", help="Whether objects are matched against it.")
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace one of this name.")]
+
+
 def run(
-    source: Annotated[
-        Path, typer.Argument(metavar="FILE", help="A .schem, .litematic, .nbt or another build.")
-    ],
-    kind: Annotated[
-        str, typer.Option("--class", help="chair, bed, sofa, table, tvs, furn or objs.")
-    ],
-    blocks_per_metre: Annotated[
-        float, typer.Option("--blocks-per-metre", help="The scale at which it was built.")
-    ],
-    name: Annotated[str, typer.Option("--name", help="Its name; that of the file.")] = "",
-    title: Annotated[str, typer.Option("--title", help="What people call it.")] = "",
-    front: Annotated[
-        str | None, typer.Option("--front", help="north, east, south or west; seen by its blocks.")
-    ] = None,
-    size: Annotated[
-        tuple[float, float, float] | None,
-        typer.Option("--size", metavar="DEPTH WIDTH HEIGHT", help="Real size in metres."),
-    ] = None,
-    mount: Annotated[str, typer.Option("--mount", help="floor, wall, ceiling or any.")] = "floor",
-    recolour: Annotated[
-        bool, typer.Option("--recolour", help="Let wood, wool and stone take an object's colour.")
-    ] = False,
-    match: Annotated[
-        bool, typer.Option("--match/--no-match", help="Whether objects are matched against it.")
-    ] = True,
-    force: Annotated[bool, typer.Option("--force", help="Replace one of this name.")] = False,
+    source: Source,
+    kind: Kind,
+    blocks_per_metre: Scale,
+    name: Name = "",
+    title: Title = "",
+    front: Front = None,
+    size: Size = None,
+    mount: Mount = "floor",
+    recolour: Recolour = False,
+    match: Match = True,
+    force: Force = False,
 ) -> None:
     """Add a piece of furniture of your own, block for block.
 
@@ -51,18 +58,7 @@ def run(
     fitted. Objects of its class and about its size are matched against it from now on. It is
     kept in the folder that W2M_FURNITURE names, else with the user's settings.
 
-    Args:
-        source: what to read.
-        kind: the class.
-        blocks_per_metre: the scale.
-        name: its name.
-        title: what people call it.
-        front: the side that is its front.
-        size: depth, width and height in metres; else that of its blocks.
-        mount: what holds it.
-        recolour: whether it takes the colour of the object it stands for.
-        match: whether objects are matched against it.
-        force: whether to replace one of this name.
+    Args: as the options say.
 
     Raises:
         UsageError: a name or a class is none, or is taken. InputError: the file cannot be read.
@@ -75,17 +71,15 @@ def run(
     chosen = check_name(name or source.stem.lower().replace("-", "_").replace(" ", "_"))
     target = check_free(chosen, force)
     losses = Losses()
+    volume = read_blocks(source, losses)
+    losses.add("block entities", len(volume.block_entities))
+    losses.add("entities", len(volume.entities))
     wish = Wish(
         chosen, kind, blocks_per_metre, front, size, title, mount, recolour=recolour, match=match
     )
-    volume = read_blocks(source, losses)
-    lost = [f"{count} {what} left behind" for what, count in losses]
-    if volume.block_entities or volume.entities:
-        count = len(volume.block_entities) + len(volume.entities)
-        lost.append(f"what {count} blocks or entities hold is left behind")
     adopted = adopt(volume, wish)
     write_checked(adopted, target)
-    _tell(adopted, target, front, lost)
+    _tell(adopted, target, front, [f"{count} {what} left behind" for what, count in losses])
 
 
 def check_free(name: str, force: bool) -> Path:

@@ -10,7 +10,8 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 w2m furniture list                    all, by class
 w2m furniture list --class furn       one class
-w2m furniture list kitchen            those whose name or title has this word
+w2m furniture list --markdown         the tables of docs/furniture-library.md
+w2m furniture list fridge             those whose name or title has this word
 """
 
 
@@ -19,27 +20,33 @@ def run(
     kind: Annotated[
         str, typer.Option("--class", help="chair, bed, sofa, table, tvs, furn or objs.")
     ] = "",
+    as_markdown: Annotated[bool, typer.Option("--markdown", help="As tables in Markdown.")] = False,
 ) -> None:
     """List the furniture of the library and of your own, with its usual sizes.
 
     Args:
         word: part of a name or title; empty for all.
         kind: one class; empty for all.
+        as_markdown: whether to print tables in Markdown.
 
     Raises:
         UnknownNameError: there is no such class.
     """
-    from world2minecraft.classes import CLASS_NAMES, class_id
+    from world2minecraft.classes import class_id
     from world2minecraft.furniture import TEMPLATES, template
+    from world2minecraft.furniture.listing import by_class, markdown
     from world2minecraft.furniture.own import own_files
 
     number = class_id(kind) if kind else None
     every = [template(name) for name in TEMPLATES.names()]
     found = [one for one in every if _meant(one, word, number)]
+    if as_markdown:
+        print(markdown(found), end="")
+        return
     own = own_files()
-    for class_number in sorted({one.class_id for one in found}):
-        print(CLASS_NAMES[class_number])
-        for one in [one for one in found if one.class_id == class_number]:
+    for heading, members in by_class(found).items():
+        print(heading)
+        for one in members:
             print(line_of(one, own=one.name in own))
     matched = sum(one.matched for one in found)
     print(f"\n{len(found)} designs; * {matched} that objects are matched against.")

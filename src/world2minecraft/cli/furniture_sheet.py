@@ -16,15 +16,6 @@ w2m furniture sheet --class objs --out small_things.png
 w2m furniture sheet sofa corner_sofa --out sofas.png
 """
 SCALES = (1.0, 2.0, 4.0)
-HEADINGS = {
-    5: "Chairs",
-    6: "Beds",
-    7: "Sofas",
-    8: "Tables",
-    9: "Screens",
-    10: "Cupboards, kitchen and bath",
-    11: "Lamps, plants, curtains and small things",
-}
 
 
 def run(
@@ -68,11 +59,12 @@ def draw(templates: Sequence["Template"], out: Path, columns: int = 4) -> None:
     """
     from world2minecraft.errors import UsageError
     from world2minecraft.files import write_bytes
+    from world2minecraft.furniture.listing import by_class
     from world2minecraft.render.sheet import contact_sheet, sheet_png
 
+    found = by_class(templates).items()
     groups = {
-        heading: [card for one in templates if one.class_id == number for card in _card(one)]
-        for number, heading in HEADINGS.items()
+        heading: [card for one in members for card in _card(one)] for heading, members in found
     }
     if not any(groups.values()):
         raise UsageError("nothing of these has blocks at 1, 2 or 4 a metre, so nothing is drawn")

@@ -127,7 +127,8 @@ def thing_picture(volume: BlockVolume, side_px: int = TILE_PX) -> np.ndarray:
         outputs=("colour",),
         background=(CARD, CARD),
     )
-    assert picture.colour is not None  # It was asked for.
+    if picture.colour is None:
+        raise ValueError("the picture has no colour")
     fine = picture.colour.reshape(side_px, SUPERSAMPLE, side_px, SUPERSAMPLE, 3)
     return (fine.astype(np.uint32).mean(axis=(1, 3)) + 0.5).astype(np.uint8)
 
