@@ -73,7 +73,7 @@ def tinted(
                     states[index] = state
                 continue
         if material.kind == FIXED:
-            if _is_far(material, colour) and hue.paint is None:
+            if _is_far(material, colour, parameters.lightness_weight) and hue.paint is None:
                 renewed = _painted(cells[indices], hue, class_id, palette, parameters)
                 for index, state in zip(indices, renewed, strict=True):
                     states[index] = state if is_full_cube(states[index]) else states[index]
@@ -86,10 +86,10 @@ def tinted(
     return states
 
 
-def _is_far(material: Material, colour: np.ndarray) -> bool:
+def _is_far(material: Material, colour: np.ndarray, lightness_weight: float) -> bool:
     """Whether a fixed material looks unlike an object: books in a red cupboard."""
     own = oklab_of_srgb(np.array(colour_of(material.block("full") or ""), np.uint8))
-    return float(np.linalg.norm(own - colour)) > OWN_LOOK
+    return float(np.linalg.norm((own - colour) * [lightness_weight**0.5, 1, 1])) > OWN_LOOK
 
 
 def _colour(cells: np.ndarray, hue: Hue) -> np.ndarray:

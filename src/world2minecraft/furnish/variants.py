@@ -20,7 +20,7 @@ from world2minecraft.types import OccupancyGrid, Placement
 LOST_IOU = 0.02  # What another design may explain less: about the noise of a scan.
 SLACK_M = 0.04  # Half a cell: sizes are whole cells.
 NEUTRAL = 0.1  # Oklab: a design that suits any colour is as good as one this far off.
-SIZE_COST = 0.06  # The Oklab distance that the strangest size is worth. A guess.
+SIZE_COST = 0.1  # The Oklab distance that a side at the end of its span is worth. A guess.
 STAY = 0.02  # What another design must be better by than the match itself.
 LIGHT = np.sqrt(0.4)  # How much lightness counts against hue, as where blocks are chosen.
 SAME_SET, SAME_SIZE_M = 0.08, 0.12
@@ -149,14 +149,14 @@ def _best(members: list[Choice]) -> str:
 
 
 def _cost(design: Template, size_m: np.ndarray, colour: np.ndarray | None) -> float:
-    far = np.mean([_strangeness(*pair) for pair in zip(size_m, design.size_m, strict=True)])
+    far = max(_strangeness(*pair) for pair in zip(size_m, design.size_m, strict=True))
     if not design.suits:
-        return NEUTRAL + SIZE_COST * float(far)
+        return NEUTRAL + SIZE_COST * far
     if colour is None:
         return np.inf
     suited = oklab_of_srgb(np.array(design.suits, np.uint8))
     apart = min(_colours_apart(colour, one) for one in suited)
-    return apart + SIZE_COST * float(far)
+    return apart + SIZE_COST * far
 
 
 def _strangeness(side: float, span: Span) -> float:
