@@ -10,6 +10,7 @@ import numpy as np
 
 from world2minecraft.build.canvas import AIR, Canvas
 from world2minecraft.build.morphology import nearest_of
+from world2minecraft.build.palettes import Palette
 from world2minecraft.classes import SemanticClass
 
 LAMP_M = 0.3  # A shade's width.
@@ -33,16 +34,19 @@ class _Room(NamedTuple):
     columns: np.ndarray  # bool [X, Y]
 
 
-def hang_lamps(canvas: Canvas, footprints: tuple[np.ndarray, ...]) -> int:
+def hang_lamps(canvas: Canvas, footprints: tuple[np.ndarray, ...], palette: Palette) -> int:
     """Hang lamps, in place, in every storey that has a ceiling.
 
     Args:
         canvas: its finished blocks.
         footprints: bool [X, Y] for each storey, the columns within its rooms.
+        palette: what may be used; none hangs where it leaves out what lamps are made of.
 
     Returns:
         How many hang.
     """
+    if not all(map(palette.allows, (CHAIN, LANTERN, SHADE, DOWNLIGHT))):
+        return 0
     count = 0
     for (ground, end), footprint in zip(canvas.lattice.storeys, footprints, strict=True):
         room = _room(canvas, footprint, ground, end)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.build.ceilings import close_ceiling, find_ceiling
 from world2minecraft.build.doorways import open_doorways
 from world2minecraft.build.faces import blocks_behind, find_faces, see_through, straighten, vote
 from world2minecraft.build.lattice import Lattice, face_shares, overlaps, volume_shares
@@ -67,7 +68,7 @@ def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParamete
     coloured: list[tuple[np.ndarray, np.ndarray]] = []
     patches = np.zeros(lattice.shape, np.int32)
     walls = _walls(grid, free, open_share, lattice, parameters, patches, coloured)
-    ceiling = _ceiling(grid, free, lattice, parameters, coloured)
+    ceiling = find_ceiling(grid, free, lattice, parameters, coloured)
     footprints: list[np.ndarray] = []
     floor = np.zeros(lattice.shape, bool)
     for ground, top in lattice.storeys:
@@ -78,6 +79,7 @@ def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParamete
         _level_tops(walls, patches, open_share, (ground, top))
         open_doorways(walls, grid, lattice, (ground, top))
         footprints.append(footprint)
+        close_ceiling(ceiling, footprint, open_share < OPEN_SHARE, (ground, top))
         if ground > lattice.ground:
             _one_slab(ceiling, floor, ground - 1)
     windows = _windows(grid, walls, free, lattice, parameters)
@@ -215,25 +217,6 @@ def _level_tops(walls, patches, open_share, storey) -> None:
         level = int(np.quantile(tops[columns], 1 - LEVEL_SHARE, method="higher"))
         for z in range(int(tops[columns].min()), level):
             own[:, :, z] |= own[:, :, z - 1] & shut[:, :, z] & columns
-
-
-def _ceiling(grid, free, lattice, parameters, coloured) -> np.ndarray:
-    """Return the ceiling: one flat layer at each height at which much of it was seen."""
-    ceiling = np.zeros(lattice.shape, bool)
-    if parameters.ceiling == "off":
-        return ceiling
-    solid = grid.labels == CEILING
-    for faces in find_faces(grid, solid, free, lattice, 2):
-        if faces.side > 0:
-            continue  # A ceiling's upper side is not the room's.
-        straight = straighten(faces, grid.voxel_m, parameters)
-        votes = vote(straight, grid, lattice)
-        sheet = votes.area >= parameters.face_share
-        gap = max(1, round(parameters.gap_m * lattice.blocks_per_metre / 2))
-        ceiling |= closed(sheet, (gap, gap, 0))
-        coloured.append((votes.cells, blocks_behind(votes, grid, lattice)))
-    ceiling[:, :, : lattice.ground + 1] = False
-    return ceiling
 
 
 def _footprint(grid, open_share, walls, lattice, storey, open_floor) -> np.ndarray:

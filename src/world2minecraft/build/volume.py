@@ -72,7 +72,7 @@ def build_volume(
     if chosen.edge == "barrier":
         put_edge(canvas, footprints)
     if chosen.lights == "lamps" and not is_exact(grid, blocks_per_metre):
-        hang_lamps(canvas, footprints)
+        hang_lamps(canvas, footprints, palette)
     if chosen.lights != "off":
         put_lights(canvas, footprints)
     restrict(canvas, palette)
