@@ -278,6 +278,24 @@ def test_a_block_that_java_has_not_keeps_its_name(tmp_path):
     assert dict(losses) == {"blocks of minecraft:camera, which Java has not": 1}
 
 
+def test_data_that_java_keeps_otherwise_is_counted(tmp_path):
+    entry = {"name": "minecraft:barrel", "states": {"facing_direction": 1, "open_bit": Byte(0)}}
+    data = {"0": {"block_entity_data": {"id": "Barrel", "Items": [{"Name": "minecraft:coal"}]}}}
+    held = {"block_palette": [{**entry, "version": 1}], "block_position_data": data}
+    tree = {
+        "size": np.array([1, 1, 1], np.int32),
+        "structure": {
+            "block_indices": [np.array([0], np.int32), np.array([-1], np.int32)],
+            "palette": {"default": held},
+        },
+    }
+    (tmp_path / "a.mcstructure").write_bytes(write_little(tree))
+    losses = Losses()
+    found = read_mcstructure(tmp_path / "a.mcstructure", losses)
+    assert state_texts(found)[0, 0, 0] == "minecraft:barrel[facing=up,open=false]"
+    assert dict(losses) == {"data of blocks (Barrel)": 1}
+
+
 def test_the_same_volume_gives_the_same_bytes(tmp_path):
     volume = random_volume((4, 4, 4), 6, (0, 0, 0))
     for name in ("a", "b"):

@@ -15,6 +15,7 @@ from world2minecraft.errors import DamagedFileError, UsageError
 from world2minecraft.files import read_bytes, write_bytes
 from world2minecraft.minecraft.bedrock_data import (
     bedrock_data,
+    is_told,
     java_data,
     java_of_entry,
     java_state,
@@ -222,6 +223,8 @@ def _volume_of(tree: Mapping[str, Any], source: Path, losses: Losses) -> BlockVo
         cell = np.unravel_index(number, shape)
         states[cell] = number_of[_wet(state) if wet[number] else state]
         java = java_data(data)
+        if not is_told(data):
+            losses.add(f"data of blocks ({str(data.get('id'))[:30]})")
         if java is not None:
             place = tuple(int(c) + low for c, low in zip(cell, (x, y, z), strict=True))
             block_entities.append(BlockEntity(place, *java))  # type: ignore[arg-type]

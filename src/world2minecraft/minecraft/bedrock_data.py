@@ -42,6 +42,7 @@ CLOCKWISE = ("north", "east", "south", "west")  # Seen from above.
 STEPS = {"north": (0, -1), "east": (1, 0), "south": (0, 1), "west": (-1, 0)}  # Along x and z.
 CHESTS = ("chest", "trapped_chest")
 Place = tuple[int, int, int]
+KINDS = ("Bed", "Banner", "Skull", "FlowerPot", "ShulkerBox", "Chest", *SIGNS.values())
 SIDES = (("front_text", "FrontText"), ("back_text", "BackText"))
 MAX_LINES = 4
 
@@ -144,6 +145,11 @@ def java_data(data: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
         ]
         return "minecraft:banner", {"Patterns": patterns} if patterns else {}
     return None
+
+
+def is_told(data: Mapping[str, Any]) -> bool:
+    """Whether Java keeps all that a Bedrock block entity says: things in a chest it does not."""
+    return data.get("id") in KINDS and not _list(data.get("Items"))
 
 
 def palette_entry(name: str, states: Mapping[str, Any]) -> dict[str, Any]:
