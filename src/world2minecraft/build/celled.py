@@ -29,6 +29,8 @@ CLOSED = (SemanticClass.FURN, SemanticClass.SOFA, SemanticClass.BED)
 NOISY = 4.0  # The factor on prices for cells of a scan: stairs where noise is, look like rubble.
 SIZE_CELLS = 2  # Copies differ by at most so many cells along each axis,
 COPY_IOU = 0.5  # and meet in so much of what either fills.
+FRINGE = 0.25  # A layer with less than this share of the fullest one's cells is noise.
+LEAST, MOST = 0.8, 1.25  # By so much a side may be stretched to end with a block.
 FLUSH = 0.35  # Blocks by which a table may be made higher, so that its top ends a block.
 MAJORITY = 0.5  # A cell belongs to copies where so many of them have it.
 
@@ -150,17 +152,16 @@ def design_of_cells(
         flush: whether its top must end with a block where it nearly does: things lie on tables.
     """
     low, high = cells.min(0), cells.max(0) + 1
-    ends = np.stack(
-        [[lattice.edges_of(grid, axis)[at[axis]] for axis in range(3)] for at in (low, high)]
-    )
+    ends = np.array([[lattice.edges_of(grid, a)[at[a]] for a in range(3)] for at in (low, high)])
     side = grid.voxel_m * lattice.blocks_per_metre
     base, bottom = standing(float(ends[0, 2]), lattice)
-    centre = ends[:, :2].mean(0)
-    target = _target(solid.mask, side, grid.voxel_m, bottom)
+    body = _body_of(solid.mask, side, bottom, shift, flush)
+    target = _target(solid.mask, body, grid.voxel_m, bottom)
     shapes, turns = shape_set(kinds), solid.turns
-    rules = Rules(calm=NOISY, flush=flush and _ends_flush(solid.mask.shape[2] * side, bottom))
+    centre = ends[:, :2].mean(0) + _turned_way(body.middle, turns) * side
+    rules = Rules(calm=NOISY, flush=body.flush, legs=True, phase=body.phase)
     if shift:
-        fit = fit_solid(target, shapes, replace(rules, even=even_of(target)))
+        fit = fit_solid(target, shapes, replace(rules, even=_even(target, body)))
     else:
         at = np.round(centre * SUB).astype(int) % SUB
         fit = solve(target, (int(at[0]), int(at[1])), shapes, rules)
@@ -170,24 +171,90 @@ def design_of_cells(
     design = Design(np.array([*xy, base]), numbers, (numbers > 0).astype(np.int16), shapes)
     moved = np.array([*(xy + middle - centre), base + bottom / SUB - ends[0, 2]])
     blocks = np.floor(ends[0] + (cells - low + 0.5) * side + moved).astype(int)
-    return CellsDesign(design, blocks, fit)
+    last = design.low + numbers.shape - 1
+    return CellsDesign(design, np.where(shift, np.clip(blocks, design.low, last), blocks), fit)
 
 
-def _ends_flush(tall: float, bottom: int) -> bool:
-    """Whether a height in blocks ends less than a third of a block below a block's top."""
-    rest = (tall + bottom / SUB) % 1
+class Body(NamedTuple):
+    """The bulk of an object in its own frame, and how it is stretched to end with blocks."""
+
+    sides: np.ndarray  # float64 [3], the sides of a cell in blocks, stretched
+    middle: np.ndarray  # float64 [2], the middle of the bulk off that of the box, in cells
+    phase: tuple[int | None, int | None]  # where that middle must lie; None where it is free
+    flush: bool
+
+
+def _body_of(mask: np.ndarray, side: float, bottom: int, shift: bool, flush: bool) -> Body:
+    """Return the bulk of cells: what is left of them without a fringe of noise.
+
+    A side that nearly ends a block is stretched until it does: a rim of slabs and stairs around a
+    bed shows nothing of the bed.
+    """
+    sides, middle, phase = np.full(3, side), np.zeros(2), [None, None]
+    if not shift:
+        return Body(sides, middle, (None, None), False)
+    for axis in (0, 1):
+        first, last = _bulk(mask, axis)
+        middle[axis] = (first + last - mask.shape[axis]) / 2
+        blocks, factor = _whole(side * (last - first))
+        if blocks:
+            sides[axis], phase[axis] = side * factor, int(blocks * SUB / 2) % SUB
+    first, last = _bulk(mask, 2)
+    tall = side * last + bottom / SUB
+    ends = flush and _ends_flush(tall)
+    goal = np.ceil(tall - TIE) if ends else max(np.floor(2 * tall + 0.5) / 2, 0.5)
+    factor = (goal - bottom / SUB) / (side * last)
+    if LEAST <= factor <= MOST:
+        sides[2] = side * factor
+    return Body(sides, middle, (phase[0], phase[1]), ends)
+
+
+def _bulk(mask: np.ndarray, axis: int) -> tuple[int, int]:
+    """Return the first layer along an axis that is no fringe, and the one past the last."""
+    areas = mask.sum(tuple({0, 1, 2} - {axis}))
+    layers = np.flatnonzero(areas >= FRINGE * areas.max())
+    return int(layers[0]), int(layers[-1]) + 1
+
+
+def _whole(size: float) -> tuple[float, float]:
+    """Return the blocks that a size is stretched to and the factor; 0 where none is near."""
+    for blocks in (np.floor(size + 0.5), np.floor(2 * size + 0.5) / 2):
+        if blocks and LEAST <= blocks / size <= MOST:
+            return float(blocks), float(blocks / size)
+    return 0.0, 1.0
+
+
+def _turned_way(way: np.ndarray, turns: int) -> np.ndarray:
+    """Return a way in plan, float64 [2], after quarter turns counter-clockwise."""
+    x, y = way.tolist()
+    for _ in range(turns % 4):
+        x, y = -y, x
+    return np.array([x, y])
+
+
+def _even(target: Target, body: Body) -> tuple[bool, bool]:
+    """Return along which axes a fit may be its own mirror image: the phase must allow it."""
+    along = [fixed is None or fixed % (SUB // 2) == 0 for fixed in body.phase]
+    even = even_of(target)
+    return even[0] and along[0], even[1] and along[1]
+
+
+def _ends_flush(tall: float) -> bool:
+    """Whether a height in blocks ends so little below a block's top that it is raised to it."""
+    rest = tall % 1
     return rest > 1 - FLUSH or rest < TIE
 
 
-def _target(mask: np.ndarray, side: float, voxel_m: float, bottom: int) -> Target:
-    """Return cells of a side in blocks as a target about their own middle."""
-    half = [int(np.ceil(n * side * SUB / 2 - TIE)) for n in mask.shape[:2]]
-    tall = max(1, int(np.ceil(mask.shape[2] * side * SUB - TIE)))
-    edges = [
-        half[a] / SUB + (np.arange(mask.shape[a] + 1) - mask.shape[a] / 2) * side for a in (0, 1)
-    ]
-    edges.append(np.arange(mask.shape[2] + 1) * side)
-    counts = [-(-n // SUB) for n in (2 * half[0], 2 * half[1], tall)]
+def _target(mask: np.ndarray, body: Body, voxel_m: float, bottom: int) -> Target:
+    """Return cells as a target about the middle of their bulk."""
+    shape = np.array(mask.shape)
+    low = -(shape[:2] / 2 + body.middle) * body.sides[:2]
+    high = low + shape[:2] * body.sides[:2]
+    half = np.ceil(np.maximum(-low, high) * SUB - TIE).astype(int)
+    tall = max(1, int(np.ceil(shape[2] * body.sides[2] * SUB - TIE)))
+    starts = (*(half / SUB + low), 0.0)
+    edges = [starts[a] + np.arange(shape[a] + 1) * body.sides[a] for a in range(3)]
+    counts = [-(-int(n) // SUB) for n in (2 * half[0], 2 * half[1], tall)]
     inside = (slice(0, 2 * half[0]), slice(0, 2 * half[1]), slice(0, tall))
     thin = thin_cells(mask, voxel_m)
     wanted, slight = (covered(values, edges, counts)[inside] for values in (mask, thin))

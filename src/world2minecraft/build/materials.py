@@ -21,6 +21,7 @@ ENOUGH = 0.5  # The share of an object's colours that a kind must have for the o
 GIVEN_UP = {"slab": 0.03, "stairs": 0.03, "trapdoor": 0.04, "post": 0.1, "carpet": 0.03}
 MARGIN = 0.06  # How far a shape may look off the full block that it stands for.
 WEIGHTS = np.array([1.0, 1.6, 1.6])  # Red made brown is worse than red made dark.
+FAINT, FADED = 0.015, 1.6  # Chroma that is noise, and what fading weighs above twice that.
 OWN = 0.1  # How far a shape of a block's own material may look off it.
 SAME = 0.04  # A shape of a block's own material, or of one that looks the same.
 # Trapdoors with holes, and of loud grain, are taken only where they are clearly nearer.
@@ -65,16 +66,13 @@ class Materials:
         offered = [kind for kind in self.blocks if kind not in LEFT_OUT.get(class_id, ())]
         if not len(colours):
             return frozenset(("full", *offered))
-        offered_colours = oklab_of_srgb(colours_of(full))
-        weights = np.array([np.sqrt(lightness_weight), *WEIGHTS[1:]])
-        apart = np.linalg.norm((colours[:, None] - offered_colours) * weights, axis=2) + handicaps
+        light = lightness_weight
+        best = _nearest(colours, oklab_of_srgb(colours_of(full)), light, handicaps)
         kinds = {"full"}
         for kind in offered:
-            able = np.isin(full, self.existing(kind, full))
-            if able.any():
-                given_up = apart[:, able].min(1) - apart.min(1)
-                if (given_up <= GIVEN_UP[kind]).mean() >= ENOUGH:
-                    kinds.add(kind)
+            apart = _nearest(colours, self.colours[kind], light, self.handicaps[kind])
+            if (apart - best <= GIVEN_UP[kind]).mean() >= ENOUGH:
+                kinds.add(kind)
         return frozenset(kinds)
 
     def _apart(self, kind: str, wanted: np.ndarray) -> np.ndarray:
@@ -108,6 +106,19 @@ class Materials:
         if shape.kind != "post" and apart[best] > MARGIN:
             return None
         return shape.of(self.blocks[shape.kind][best])
+
+
+def _nearest(colours, offered, light, handicaps) -> np.ndarray:
+    """Return how far Oklab colours [N, 3] are from the nearest of others [M, 3], float64 [N].
+
+    Where a clear colour would turn grey, that counts most: a teal curtain of stone is grey.
+    """
+    own, other = (np.hypot(one[:, 1], one[:, 2]) for one in (colours, offered))
+    clear = np.clip((own - FAINT) / FAINT, 0, 1)[:, None]
+    faded = (1 + (FADED - 1) * clear) * (other < own[:, None]) + (other >= own[:, None])
+    square = (colours[:, None] - offered) ** 2
+    apart = light * square[..., 0] + (WEIGHTS[1] * faded) ** 2 * (square[..., 1] + square[..., 2])
+    return (np.sqrt(apart) + handicaps).min(1)
 
 
 def materials_of(palette: Palette) -> Materials:

@@ -6,6 +6,7 @@ from world2minecraft.errors import UsageError
 
 EDGES = ("barrier", "none")
 STYLES = ("blocks", "display", "voxels")
+SHAPES = ("calm", "cubes")
 CEILINGS = ("on", "off", "glass")
 LIGHTS = ("hidden", "off", "lamps")
 _YES, _NO = (True, "true", "yes", "1"), (False, "false", "no", "0")
@@ -32,6 +33,8 @@ class BuildParameters:
     style: what furniture is made of: ``blocks``, designs in vanilla blocks; ``display``, fine
         geometry in block_display entities over invisible colliders; ``voxels``, each object's own
         cells by the best fitting block states.
+    shapes: of which shapes objects are fitted: ``calm``, full blocks, slabs, stairs, trapdoors,
+        posts and carpets; or ``cubes``, full blocks alone.
     ceiling: ``on`` where it was seen, ``glass``, or ``off``, so that one looks in from above.
     lights: ``hidden``, invisible light blocks, so that the room is lit and safe at night;
         ``lamps``, that and lamps that hang from the ceiling; or ``off``.
@@ -76,6 +79,7 @@ class BuildParameters:
 
     palette: str = "vanilla"
     style: str = "blocks"
+    shapes: str = "calm"
     ceiling: str | bool = "on"
     lights: str | bool = "hidden"
     plaque: str = "auto"
@@ -111,6 +115,8 @@ class BuildParameters:
             raise UsageError(f"build.edge must be {' or '.join(EDGES)}, not {self.edge!r}")
         if self.style not in STYLES:
             raise UsageError(f"build.style must be {', '.join(STYLES)}, not {self.style!r}")
+        if self.shapes not in SHAPES:
+            raise UsageError(f"build.shapes must be {' or '.join(SHAPES)}, not {self.shapes!r}")
         for name in ("structure_colours", "object_colours"):
             if getattr(self, name) < 1:
                 raise UsageError(f"build.{name} must be 1 or more, not {getattr(self, name)}")

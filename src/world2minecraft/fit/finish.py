@@ -7,6 +7,7 @@ from world2minecraft.fit.masks import SUB
 from world2minecraft.fit.problem import UP, Problem, Rules
 from world2minecraft.fit.settle import settled, with_corners
 from world2minecraft.fit.shapes import ShapeSet
+from world2minecraft.fit.stilts import grounded, on_stilts
 
 LEG_SHARE = 0.5  # Of what a column of blocks holds, so much is thin: then it is a leg.
 POLE_FILL, POLE_CELLS = 0.2, 16  # Seen from above a pole takes a quarter of its block at most.
@@ -34,11 +35,13 @@ def finished(
     scores[barred] = -np.inf
     apart = np.isin(shapes.kinds, ("carpet", "post"))
     scores[:, apart] = -np.inf
-    if rules.stands:
+    if rules.stands and rules.legs:
         _add_legs(grid, problem, shapes)
     movable = np.flatnonzero(~apart[grid[problem.at]])
     grid = joined(grid, movable, scores, problem, shapes)
     grid = with_corners(evened(grid, shapes, rules.even), shapes)
+    if rules.stands:
+        grid = on_stilts(grid, problem, scores, shapes, held)
     grid = without_crumbs(grid, shapes, rules.stands, held, problem.floor)
     return with_corners(_without_bare_carpets(grid, shapes, ground), shapes), lam
 
@@ -53,7 +56,7 @@ def _barred(problem: Problem, shapes: ShapeSet, rules: Rules) -> np.ndarray:
     poles = _poles(problem)
     if (shapes.kinds == "post").any():
         barred |= ~poles[:, None] & (shapes.kinds == "post")
-        barred |= poles[:, None] & shapes.is_upright
+        barred |= (poles & rules.legs)[:, None] & shapes.is_upright
     if rules.flush:
         barred |= shapes.is_low
     return barred
@@ -106,57 +109,21 @@ def without_crumbs(
 ) -> np.ndarray:
     """Return shapes, int [X, Y, Z], without the parts that touch neither floor, wall nor rest.
 
-    Of what does not stand the larger parts stay; of what stands the largest stays in any case,
-    on posts where it has them. ``floor`` is the sub-cell of the lowest layer on which it stands.
+    Of what does not stand the larger parts stay, and something always does. ``floor`` is the
+    sub-cell of the lowest layer on which it stands.
     """
     parts = parts_of_shapes(grid, shapes)
     volumes = np.bincount(parts.ravel(), shapes.volumes[grid].ravel())
     volumes[0] = 0
     if not volumes.any():
         return grid
-    keep = np.zeros(len(volumes), bool)
-    if held is not None:
-        keep[parts[held]] = True
-    if stands:
-        lowest = grid[:, :, 0]
-        stood = shapes.faces[lowest, 2, 0].any((2, 3)) if floor == 0 else lowest > 0
-        keep[parts[:, :, 0][stood]] = True
-        largest = int(volumes.argmax())
-        if not keep[largest] and volumes[largest] > CRUMB_SHARE * volumes.sum():
-            keep[largest] = _on_stilts(grid, parts == largest, shapes)
-    else:
+    keep = grounded(grid, parts, shapes, stands, held, floor)
+    if not stands:
         keep |= volumes >= CRUMB_SHARE * volumes.sum()
     keep[0] = False
     if not keep.any():
         keep[int(volumes.argmax())] = True
-    return np.where(keep[parts] | _stilts_of(grid, parts, shapes), grid, 0)
-
-
-def _stilts_of(grid: np.ndarray, parts: np.ndarray, shapes: ShapeSet) -> np.ndarray:
-    """Return where posts were set after the parts were numbered, bool [X, Y, Z]."""
-    return (parts == 0) & (grid > 0) & (shapes.kinds[grid] == "post")
-
-
-def _on_stilts(grid: np.ndarray, part: np.ndarray, shapes: ShapeSet) -> bool:
-    """Set a part on posts, in place, from the floor to blocks that touch the face below them."""
-    posts = np.flatnonzero(shapes.kinds == "post")
-    if not len(posts):
-        return False
-    middle = shapes.faces[grid, 2, 0][..., SUB // 2, SUB // 2]
-    first = np.where(part.any(2), part.argmax(2), -1)
-    ways = [
-        (int(x), int(y), int(first[x, y]))
-        for x, y in np.argwhere(first > 0)
-        if middle[x, y, first[x, y]] and not grid[x, y, : first[x, y]].any()
-    ]
-    if not ways:
-        return False
-    spots = np.array(ways)
-    corners = {int((spots[:, 0] * a + spots[:, 1] * b).argmax()) for a in (1, -1) for b in (1, -1)}
-    for index in sorted(corners):
-        x, y, top = ways[index]
-        grid[x, y, :top] = posts[0]
-    return True
+    return np.where(keep[parts], grid, 0)
 
 
 def _without_bare_carpets(grid: np.ndarray, shapes: ShapeSet, ground: int | None) -> np.ndarray:

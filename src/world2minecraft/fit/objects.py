@@ -50,14 +50,17 @@ def attempts(
     target: Target, shapes: ShapeSet, rules: Rules
 ) -> Iterator[tuple[tuple[int, int], float]]:
     """Yield each phase, in sub-cells along x and y, and the IoU that free choice reaches there."""
-    for phase in _phases(rules.even):
+    for phase in _phases(rules):
         gains = problem_at(target, phase, shapes, rules.calm).gains
         yield phase, gains.iou(choose(gains, shapes, rules.lam)[0])
 
 
-def _phases(even: tuple[bool, bool]) -> Iterator[tuple[int, int]]:
+def _phases(rules: Rules) -> Iterator[tuple[int, int]]:
     """Yield where the middle may lie in its block, in sub-cells along x and y."""
-    along = [range(0, SUB, SUB // 2 if mirror else PHASE_STEP) for mirror in even]
+    along = [
+        range(0, SUB, SUB // 2 if mirror else PHASE_STEP) if fixed is None else (fixed,)
+        for mirror, fixed in zip(rules.even, rules.phase, strict=True)
+    ]
     yield from ((x, y) for x in along[0] for y in along[1])
 
 

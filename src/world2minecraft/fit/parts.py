@@ -57,7 +57,7 @@ def fit_parts(
         [*((boxes[:, :2].min(0) + boxes[:, 3:5].max(0)) / 2), boxes[:, 2].min()], 2
     )
     thin = (boxes[:, 3:] - boxes[:, :3]).min(1) < THIN_M * blocks_per_metre
-    rules = Rules(even=(_is_even(boxes, 0), _is_even(boxes, 1)), flush=flush)
+    rules = Rules(even=(_is_even(boxes, 0), _is_even(boxes, 1)), flush=flush, legs=True)
     best: tuple[float, Fit, np.ndarray] | None = None
     for factors, phase in _finalists(boxes, thin, shapes, rules, counts, bottom):
         target = _target(boxes * np.tile(factors, 2), thin, bottom)

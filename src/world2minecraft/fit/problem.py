@@ -26,6 +26,9 @@ class Rules:
     even: whether the fit must be its own mirror image along x, and along y.
     stands: whether the lowest layer rests on something.
     flush: whether flat tops end with their block, so that things can lie on them.
+    legs: whether every leg and pole becomes posts. It reads better and costs some IoU: a panel in
+        the right place meets more of a leg than a post in the middle of its block.
+    phase: where the middle must lie in its block, in sub-cells along x and y; None is free.
     """
 
     lam: float | None = None
@@ -33,6 +36,8 @@ class Rules:
     even: tuple[bool, bool] = (False, False)
     stands: bool = True
     flush: bool = False
+    legs: bool = False
+    phase: tuple[int | None, int | None] = (None, None)
 
 
 class Target(NamedTuple):
