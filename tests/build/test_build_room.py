@@ -177,10 +177,10 @@ def test_a_plaque_can_be_left_out_or_say_something_else():
     assert "Number 7" in entity.nbt["front_text"]["messages"][0]
 
 
-def test_a_click_on_the_plaque_makes_the_player_as_large_as_the_room():
+def test_a_click_on_the_plaque_changes_the_player_s_size():
     (large,) = build(furnished(), 4.0, name="Room").block_entities
     first = json.loads(large.nbt["front_text"]["messages"][0])
-    assert first["clickEvent"] == {"action": "run_command", "value": "/function w2m:human_size"}
+    assert first["clickEvent"] == {"action": "run_command", "value": "/function w2m:toggle_size"}
     (small,) = build(furnished(), 1.0, name="Room").block_entities
     assert "clickEvent" not in small.nbt["front_text"]["messages"][0]
 

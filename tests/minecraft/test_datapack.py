@@ -244,6 +244,22 @@ def test_the_size_of_the_game_comes_back():
     assert re.findall(r"set (\S+)", text) == ["1", "0.6"]
 
 
+def test_the_size_is_changed_in_turn():
+    """The toggle, run as the game runs it: each call makes large, then small again."""
+    lines = size_functions(4)["data/w2m/function/toggle_size.mcfunction"].splitlines()
+    tags: set[str] = set()
+    sizes = []
+    for line in lines * 3:
+        words = line.replace("@s[tag=", "@s ").replace("]", "").split()
+        if words[0] == "execute":
+            if (words[4] in tags) == (words[1] == "if"):
+                sizes.append(words[-1])
+        elif words[2] in ("add", "remove") or words[2] in tags:
+            change = tags.add if "add" in words else tags.discard
+            change(words[-1])
+    assert sizes == ["w2m:human_size", "w2m:game_size", "w2m:human_size"]
+
+
 def test_the_zip_holds_the_files_and_no_time(tmp_path):
     volume = furnished_volume()
     write_datapack(volume, tmp_path / "pack.zip", name="my_room")

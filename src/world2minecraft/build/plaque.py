@@ -1,7 +1,7 @@
 """A plaque near the spawn: a sign with the scene's name, on a wall where one can stand.
 
-Where the room is larger than life, a click on it makes the player as large as the room; see
-docs/building.md for the commands.
+Where the room is larger than life, a click on it makes the player as large as the room, and the
+next one brings the game's size back; see docs/building.md for the commands.
 """
 
 from dataclasses import replace
@@ -21,7 +21,7 @@ SIGN = "minecraft:oak_sign[rotation={},waterlogged=false]"
 NEAR, FAR = 1.0, 12.0  # Blocks from the spawn; nearer it would be in one's face.
 ASIDE = 5.0  # Blocks of way that looking straight at it is worth. A guess.
 LARGER = 1.5  # Blocks a metre from which on the player's own size matters.
-HUMAN = "/function w2m:human_size"
+TOGGLE = "/function w2m:toggle_size"
 _FACINGS = ("north", "east", "south", "west")
 
 
@@ -58,7 +58,7 @@ def _text(volume: BlockVolume, name: str) -> tuple[list[str], str]:
     if volume.blocks_per_metre < LARGER:
         return wrapped(name, 4), ""
     lines = wrapped(name, 2)
-    return [*lines, *[""] * (2 - len(lines)), "Click: be as", "big as the room"], HUMAN
+    return [*lines, *[""] * (2 - len(lines)), "Click: your size", "and back"], TOGGLE
 
 
 def _on_a_wall(volume: BlockVolume, spawn: Spawn) -> tuple[tuple[int, int, int], str] | None:

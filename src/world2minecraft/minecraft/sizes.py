@@ -1,4 +1,4 @@
-"""The data pack that makes the player as large as the room: two functions, in overlays by game.
+"""The data pack that makes the player as large as the room: functions, in overlays by game.
 
 The game has had attributes for a body's scale and step height since 1.20.5, and since 1.21.2
 under other names. A function that names an attribute which the game does not know fails to load,
@@ -22,10 +22,19 @@ SCALE_LIMITS = (0.0625, 16.0)
 STEP_LIMITS = (0.0, 10.0)
 FIRST_SCALE_FORMAT = 41  # 1.20.5
 PLAIN_NAMES_FORMAT = 57  # 1.21.2
+# A click on a plaque makes large and small in turn; a tag remembers which it was.
+_TOGGLE = """\
+tag @s[tag=w2m.human_size] add w2m.back
+execute if entity @s[tag=w2m.back] run function w2m:game_size
+execute unless entity @s[tag=w2m.back] run function w2m:human_size
+tag @s add w2m.human_size
+tag @s[tag=w2m.back] remove w2m.human_size
+tag @s[tag=w2m.back] remove w2m.back
+"""
 
 
 def size_pack(blocks_per_metre: float, version: GameVersion | None = None) -> bytes:
-    """Return the zip of a data pack with ``w2m:human_size`` and ``w2m:game_size``.
+    """Return the zip of a data pack with ``w2m:human_size``, ``game_size`` and ``toggle_size``.
 
     Args:
         blocks_per_metre: the scale of the room; a player becomes as many times larger.
@@ -52,7 +61,7 @@ def size_functions(blocks_per_metre: float) -> dict[str, str]:
             )
             for path, held in function_files(NAMESPACE, name, commands).items():
                 files[f"{overlay}/{path}"] = held
-    return files
+    return files | function_files(NAMESPACE, "toggle_size", _TOGGLE)
 
 
 def function_files(namespace: str, name: str, commands: str) -> dict[str, str]:
