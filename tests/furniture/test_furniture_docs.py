@@ -18,7 +18,7 @@ def test_each_template_has_its_row():
 def test_the_example_of_the_page_is_a_sound_template():
     from world2minecraft.furniture import check_template
 
-    text = PAGE.read_text().split("```python\n")[2].split("   ```")[0]
+    pieces = PAGE.read_text("utf-8").split("```python\n")[2:]
     scope: dict = {}
-    exec("\n".join(line.removeprefix("   ") for line in text.splitlines()), scope)
+    exec("\n".join(piece.partition("```")[0] for piece in pieces), scope)
     assert check_template(scope["TEMPLATE"]) == ()

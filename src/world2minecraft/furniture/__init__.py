@@ -11,13 +11,15 @@ from world2minecraft.furniture.library import TEMPLATES, template, templates_of,
 from world2minecraft.furniture.look import Look
 from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.raster import cells_of, raster, size_in_cells, surface
-from world2minecraft.furniture.template import Part, Span, Template
+from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span, Template
 
 __all__ = [
     "TEMPLATES",
+    "BlockSize",
     "Facing",
     "Idiom",
     "IdiomBlock",
+    "LocalBlock",
     "Look",
     "Material",
     "Part",

@@ -47,7 +47,9 @@ def _straight(size: BlockSize, armed: bool) -> _Run:
     last = size.width - 1
     back: list[tuple[int, int, Side]] = [(0, j, "back") for j in range(size.width)]
     ends: list[tuple[int, Side]] = [(0, "right"), (last, "left")] if armed and last else []
-    sides = [(i, j, side) for j, side in ends for i in range(size.depth)]
+    sides: list[tuple[int, int, Side]] = [
+        (i, j, side) for j, side in ends for i in range(size.depth)
+    ]
     return _Run([(i, j) for i in range(size.depth) for j in range(size.width)], back, sides)
 
 
@@ -67,7 +69,7 @@ def _stair_seat(plan: Plan, run: _Run) -> None:
     for i, j in run.seat:
         plan.slab("seat", i, j, 0)
     deep = plan.size.depth > 1
-    turned = {(i, j): side for i, j, side in run.arms} if plan.size.width >= 2 else {}
+    turned: dict[tuple[int, int], Side] = {(i, j): side for i, j, side in run.arms}
     for i, j, side in run.back:
         plan.stairs("seat", i, j, 0, side)
     for (i, j), side in turned.items():
@@ -103,7 +105,9 @@ def _as_stairs(plan: Plan, run: _Run) -> None:
     slab = plan.look.state("arm", "slab", type="bottom")
     for i, j in run.seat:
         plan.put_state("seat", slab, i, j, 0)
-    ends = {(i, j): side for i, j, side in run.arms} if plan.size.width >= WIDE else {}
+    ends: dict[tuple[int, int], Side] = {(i, j): side for i, j, side in run.arms}
+    if plan.size.width < WIDE:
+        ends = {}
     for i, j, side in run.back:
         facing = FACING[ends.get((i, j), side)]
         stairs = plan.look.state("arm", "stairs", facing=facing, half="bottom")
@@ -197,16 +201,17 @@ def _corner_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     run, wing = min(wide, size.depth), min(wide, size.width)
     left = look["side"] > 0
     last = size.width - 1
-    corner, rim = (last, "left") if left else (0, "right")
+    corner = last if left else 0
+    rim: Side = "left" if left else "right"
     seat = [
         (i, j)
         for i in range(size.depth)
         for j in range(size.width)
         if i < run or (last - j if left else j) < wing
     ]
-    back: list[tuple[int, int, Side]] = [(0, j, "back") for j in range(size.width) if j != corner]
+    wall: Side = "back"
+    back: list[tuple[int, int, Side]] = [(0, j, wall) for j in range(size.width)]
     back += [(i, corner, rim) for i in range(1, size.depth)]
-    back.append((0, corner, "back"))
     return _lay(plan, _Run(seat, back, []))
 
 
