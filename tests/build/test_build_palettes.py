@@ -283,6 +283,12 @@ def test_what_stands_for_a_block_is_named_or_nothing(state):
     assert nearest_allowed(found, palette) == found
 
 
+def test_a_palette_that_extends_a_mods_has_its_furniture_and_words():
+    palette = palette_of({"name": "x", "extends": "refurbished_furniture"})
+    assert palette.furniture == MOD.furniture
+    assert palette.meanings.words == MOD.meanings.words
+
+
 def test_shapes_keep_their_way():
     palette = palette_of({"name": "x", "blocks": ["birch_stairs", "birch_planks", "glass"]})
     found = parse_state(nearest_allowed("minecraft:oak_stairs[facing=west,half=top]", palette))

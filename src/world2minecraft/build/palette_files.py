@@ -97,8 +97,8 @@ def palette_of(raw: Any) -> Palette:
         glass=_glass("glass", whole.get("glass"), only),
         pane=_glass("pane", whole.get("pane"), only),
         only=only,
-        furniture=tuple(piece_of(one) for one in _list("furniture", keys.get("furniture", []))),
-        meanings=meanings_of(keys["reads"]) if "reads" in keys else None,
+        furniture=tuple(piece_of(one) for one in _list("furniture", whole.get("furniture", []))),
+        meanings=meanings_of(whole["reads"]) if "reads" in whole else None,
     )
 
 

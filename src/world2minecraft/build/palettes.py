@@ -8,7 +8,6 @@ and checked by ``palette_files``; docs/palettes.md says how they are written.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -53,7 +52,6 @@ class Palette:
         return self.only is None or state.partition("[")[0] in self.only
 
 
-@cache
 def load_palette(name: str) -> Palette:
     """Return a palette by its name, or by the path of a file of one's own.
 

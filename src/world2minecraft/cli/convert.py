@@ -11,6 +11,7 @@ import typer
 from world2minecraft.errors import InputError, OutputError, UsageError
 
 if TYPE_CHECKING:
+    from world2minecraft.minecraft.formats import WriteOptions
     from world2minecraft.minecraft.losses import Losses
     from world2minecraft.types import BlockVolume
 
@@ -40,6 +41,9 @@ def run(
         float | None,
         typer.Option(help="How many blocks are a metre, where A does not say; 1."),
     ] = None,
+    labels: Annotated[
+        str, typer.Option(metavar="PALETTE", help="Whose names of blocks say what they are.")
+    ] = "",
 ) -> None:
     """Read blocks from A, write them to B, and say what B cannot hold.
 
@@ -56,15 +60,15 @@ def run(
         schem_version: 1, 2 or 3, for a schematic.
         name: what a world or datapack is called; empty for the target's name.
         blocks_per_metre: the scale, for meshes and for the player's size.
+        labels: a palette by whose words blocks get classes and objects, such as ``tmeo``.
 
     Raises:
         UsageError: ``target`` is there and ``force`` is not given, or no format ends so.
         InputError: ``source`` cannot be read, or ``target`` cannot be written.
     """
     check_target(source, target, force)
-    from world2minecraft.exchange.forms import read_form, templates_of_run, write_form
+    from world2minecraft.exchange.forms import templates_of_run
     from world2minecraft.minecraft.formats import WriteOptions
-    from world2minecraft.minecraft.losses import Losses
 
     options = WriteOptions(
         mc_version=mc_version,
@@ -72,6 +76,20 @@ def run(
         name=name or target.stem,
         other={"templates": templates_of_run(source)},
     )
+    convert(source, target, options, blocks_per_metre, force)
+
+
+def convert(
+    source: Path,
+    target: Path,
+    options: "WriteOptions",
+    blocks_per_metre: float | None,
+    force: bool,
+) -> None:
+    """Read ``source``, write ``target`` and print what came of it. Raises what ``run`` raises."""
+    from world2minecraft.exchange.forms import read_form, write_form
+    from world2minecraft.minecraft.losses import Losses
+
     unread, unwritten = Losses(), Losses()
     volume = scaled(read_form(source, unread), blocks_per_metre)
     with_parent(target)
@@ -103,6 +121,23 @@ def scaled(volume: "BlockVolume", blocks_per_metre: float | None) -> "BlockVolum
     to_room = volume.block_to_room.copy()
     to_room[:3] *= own / blocks_per_metre
     return replace(volume, block_to_room=to_room)
+
+
+def with_labels(volume: "BlockVolume", palette: str) -> "BlockVolume":
+    """Return the volume with the classes that a palette reads from its blocks' names.
+
+    Raises:
+        UnknownNameError: there is no such palette. UsageError: it reads no blocks.
+    """
+    if not palette:
+        return volume
+    from world2minecraft.build.meanings import labelled
+    from world2minecraft.build.palettes import load_palette
+
+    meanings = load_palette(palette).meanings
+    if meanings is None:
+        raise UsageError(f"palette {palette} reads no blocks; add reads to it, or try vanilla")
+    return labelled(volume, meanings)
 
 
 def tell_losses(losses: "Losses", head: str) -> None:
