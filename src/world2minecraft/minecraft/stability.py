@@ -14,7 +14,7 @@ from world2minecraft.minecraft.board import Board
 from world2minecraft.minecraft.connections import connected
 from world2minecraft.minecraft.light import block_light
 from world2minecraft.minecraft.needs import Demand, holds_water, is_floodable, needs_of, offers
-from world2minecraft.minecraft.states import complete, parse_state
+from world2minecraft.minecraft.states import BlockState, complete, parse_state
 from world2minecraft.minecraft.supports import DOWN, UP, faces_of
 from world2minecraft.types import BlockVolume
 
@@ -67,7 +67,7 @@ def _all_cells(
 ) -> list[tuple[tuple[int, int, int], str, str]]:
     board = Board(states, palette)
     found = [*_unmet(board), *_flowing(board)]
-    cells = [(_place(board, cell), palette[board.flat[cell]], why) for cell, why in found]
+    cells = [(_place(board, cell), palette[int(board.flat[cell])], why) for cell, why in found]
     return cells + _changing(states, palette)
 
 
@@ -114,10 +114,13 @@ def _changing(
 ) -> list[tuple[tuple[int, int, int], str, str]]:
     """Return the cells whose connections or shape an update would change."""
     renewed, names = connected(states, palette)
-    whole = np.array([hash(complete(parse_state(text))) for text in names])
+    numbers: dict[BlockState, int] = {}  # The same for texts that leave defaults out.
+    whole = np.array(
+        [numbers.setdefault(complete(parse_state(text)), len(numbers)) for text in names]
+    )
     changed = np.argwhere(whole[renewed] != whole[states])
     return [
-        ((x, y, z), palette[states[x, y, z]], f"changes to {names[renewed[x, y, z]]}")
+        ((x, y, z), palette[int(states[x, y, z])], f"changes to {names[renewed[x, y, z]]}")
         for x, y, z in changed.tolist()
     ]
 

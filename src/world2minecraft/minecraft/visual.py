@@ -83,11 +83,21 @@ def visual_families() -> tuple[VisualFamily, ...]:
 
 
 def _family(entry: Mapping[str, Any]) -> VisualFamily:
-    turns = [entry.get(key, "") for key in ("turn", "rotation", "point", "axis")]
-    turning = [key for key in turns if key]
-    sides = "sides" if any("sides" in part for part in entry["parts"]) else ""
-    needs = (*entry.get("needs", ()), *turning, *(QUARTERS if sides else ()))
-    return VisualFamily(entry["name"], tuple(entry["blocks"]), needs, *turns, tuple(entry["parts"]))
+    turn, rotation, point, axis = (
+        entry.get(key, "") for key in ("turn", "rotation", "point", "axis")
+    )
+    turning = [key for key in (turn, rotation, point, axis) if key]
+    sides = QUARTERS if any("sides" in part for part in entry["parts"]) else ()
+    return VisualFamily(
+        name=entry["name"],
+        patterns=tuple(entry["blocks"]),
+        needs=(*entry.get("needs", ()), *turning, *sides),
+        turn=turn,
+        rotation=rotation,
+        point=point,
+        axis=axis,
+        parts=tuple(entry["parts"]),
+    )
 
 
 def _table_boxes(state: BlockState) -> np.ndarray:
