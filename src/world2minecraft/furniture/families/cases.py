@@ -4,6 +4,8 @@ Where the depth leaves room before the body, doors are plates or carry buttons a
 the foremost blocks are the ``face``, such as barrels.
 """
 
+from collections.abc import Sequence
+
 from world2minecraft.furniture.families.fronts import (
     Body,
     body_of,
@@ -106,13 +108,22 @@ def _case_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
 
 
 def _doors(plan: Plan, body: Body, rows: range) -> None:
+    low = len(rows) < 5
+    layer = rows[-2] if low and len(rows) > 2 else _middle(rows)
+    _closed(plan, body, rows, door_columns(plan.size.width, plan.size.per_metre), layer)
+
+
+def _lockers(plan: Plan, body: Body, rows: range) -> None:
+    """Give each column its own door."""
+    _closed(plan, body, rows, plan.width, _middle(rows))
+
+
+def _closed(plan: Plan, body: Body, rows: range, columns: Sequence[int], layer: int) -> None:
     if body.front is None:
         faces(plan, "face", body.face, plan.width, rows)
         return
     plan.put("door", body.face, plan.width, rows)
-    columns = door_columns(plan.size.width, plan.size.per_metre)
-    low = len(rows) < 5
-    handles(plan, body, "handle", columns, rows[-2] if low and len(rows) > 2 else _middle(rows))
+    handles(plan, body, "handle", columns, layer)
 
 
 def _middle(rows: range) -> int:
@@ -125,7 +136,11 @@ def _drawers(plan: Plan, body: Body, rows: range) -> None:
         return
     plan.put("door", body.face, plan.width, rows)
     width = plan.size.width
-    columns = [width // 2] if width < 4 else [width // 4, width - 1 - width // 4]
+    columns = (
+        [width // 4, width - 1 - width // 4]
+        if width > 3
+        else range((width - 1) // 2, width // 2 + 1)
+    )
     handles(plan, body, "handle", columns if plan.size.per_metre >= 3 else plan.width, rows)
 
 
@@ -179,6 +194,7 @@ _FRONTS = {
     "plain": _doors,  # Doors as one plate, which is all that a scan at 8 cm can tell.
     "doors": _doors,
     "drawers": _drawers,
+    "lockers": _lockers,
     "panels": _panels,
     "glass": _glass,
     "sliding": _sliding,

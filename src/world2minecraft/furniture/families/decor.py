@@ -227,17 +227,17 @@ def _bicycle(depth: float, width: float, height: float, look: Look) -> list[Part
 
 
 def _bicycle_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
-    """Stand wheels of plates on edge, a frame of fences between them."""
+    """Stand it up of plates in one plane, as a cut-out, with a bar across to steer by."""
     plan, last = Plan(size, look), max(size.depth - 1, 1)
     if size.per_metre < FINE:
+        plan.panel("frame", range(1, last), 0, 0, "right")
         plan.panel("wheel", [0, last], 0, 0, "right")
-        plan.put("frame", range(1, last), 0, 0, "fence")
         if size.height > 1:
-            plan.put("frame", [min(1, last - 1), last], 0, 1, "fence")
+            plan.panel("frame", [1, last], 0, 1, "right")
         return plan.blocks
     plan.panel("wheel", [0, 1, last - 1, last], 1, [0, 1], "right")
-    plan.put("frame", range(2, last - 1), 1, 1, "fence")
-    plan.put("frame", [2, last - 1], 1, 2, "fence")
+    plan.panel("frame", range(2, last - 1), 1, 1, "right")
+    plan.panel("frame", [2, last - 2, last - 1], 1, 2, "right")
     plan.put("saddle", [1, 2], 1, 3, "slab", type="bottom")
     plan.put("frame", last - 1, [0, 1, 2], 3, "fence")
     return plan.blocks
@@ -260,8 +260,7 @@ def _coat_stand_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan, top = Plan(size, look), size.height - 1
     if size.per_metre < FINE:
         plan.put("pole", 0, 0, plan.height, "fence")
-        if top:
-            plan.put("arm", 0, 0, top, "gate", facing="east", open="false")
+        plan.panel("coat", 1, 0, range(1, top), "back")
         return plan.blocks
     plan.plate("foot", [0, 2], 1, 0, "bottom")
     plan.plate("foot", 1, [0, 2], 0, "bottom")

@@ -154,8 +154,8 @@ def _fridge_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     plan, body = Plan(size, look), body_of(size)
     plan.put("body", range(body.depth), plan.width, plan.height)
     split = max(1, round(size.height * look["split"]))
-    if body.front is None:
-        plan.put("door", range(body.depth), plan.width, range(split, size.height))
+    if body.front is None and size.height == 2:
+        plan.put("door", range(body.depth), plan.width, 1)
         return plan.blocks
     plan.put("door", body.face, plan.width, plan.height)
     if look.option("doors") == "side":
