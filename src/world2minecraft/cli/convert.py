@@ -76,7 +76,7 @@ def run(
         name=name or target.stem,
         other={"templates": templates_of_run(source)},
     )
-    convert(source, target, options, blocks_per_metre, force)
+    convert(source, target, options, blocks_per_metre, labels, force)
 
 
 def convert(
@@ -84,6 +84,7 @@ def convert(
     target: Path,
     options: "WriteOptions",
     blocks_per_metre: float | None,
+    labels: str,
     force: bool,
 ) -> None:
     """Read ``source``, write ``target`` and print what came of it. Raises what ``run`` raises."""
@@ -91,7 +92,7 @@ def convert(
     from world2minecraft.minecraft.losses import Losses
 
     unread, unwritten = Losses(), Losses()
-    volume = scaled(read_form(source, unread), blocks_per_metre)
+    volume = with_labels(scaled(read_form(source, unread), blocks_per_metre), labels)
     with_parent(target)
     with tempfile.TemporaryDirectory(dir=target.parent, prefix=".w2m-") as folder:
         # The new one is whole before the old one goes; both lie on one disk.
