@@ -224,3 +224,38 @@ def test_what_would_fall_is_taken_away_with_what_it_carries():
         "minecraft:air", "minecraft:oak_planks", "minecraft:torch",
     }  # fmt: skip
     assert is_full_cube("oak_planks") and canvas.semantic[4, 4, 4] == 0
+
+
+def test_a_ceiling_that_was_half_seen_is_closed_over_its_room():
+    """And one of which only a corner was seen is not made up."""
+    for seen, wanted in ((0.5, 1.0), (0.15, 0.3)):
+        sketch = Sketch((50, 40, 30))
+        hidden = int(50 * (1 - seen))
+        sketch.labels[2 : 2 + hidden, :, 25:] = 255  # The scan did not look up there.
+        volume = build(sketch)
+        floor = (volume.semantic[:, 63 - volume.corner[1]] == FLOOR).sum()
+        share = (volume.semantic == CEILING).sum() / floor
+        assert (share >= wanted) if wanted == 1.0 else (share < wanted)
+
+
+def test_a_ceiling_is_not_closed_where_one_saw_through():
+    sketch = Sketch((50, 40, 30))
+    sky = ((0, 0), (0, 0), (0, 8))
+    sketch.labels = np.pad(sketch.labels, sky, constant_values=255)
+    sketch.instance = np.pad(sketch.instance, sky)
+    sketch.colour = np.pad(sketch.colour, (*sky, (0, 0)))
+    sketch.labels[10:30, 10:30, 31:] = 0  # A skylight: seen free, far up.
+    volume = build(sketch)
+    level = int(np.flatnonzero((volume.semantic == CEILING).any((0, 2)))[0])
+    hole = (volume.semantic[:, level] != CEILING) & (
+        volume.semantic[:, 63 - volume.corner[1]] == FLOOR
+    )
+    assert hole.sum() >= 0.8 * (20 * VOXEL_M * 4) ** 2
+
+
+def test_a_palette_without_lamps_and_signs_gets_none(tmp_path):
+    own = tmp_path / "plain.yaml"
+    own.write_text("name: plain\nblocks: [white_concrete, oak_planks, glass, glass_pane]\n")
+    volume = build(furnished(), palette=str(own), lights="lamps", name="Room")
+    assert volume.block_entities == ()
+    assert not [s for s in volume.palette if "lantern" in s or "froglight" in s]
