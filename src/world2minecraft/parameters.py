@@ -23,7 +23,8 @@ class Parameters:
 
     voxel_m: the paper's cell. blocks_per_metre: at 4 a room is recognised at once, at 2 it is
     not. labeller: ``auto`` takes ``votes`` where the capture has 2D labels, else
-    ``geometric``.
+    ``geometric``. mend: clean up what is built as a person would; ``w2m clean OUT --list`` tells
+    what that was.
     """
 
     voxel_m: float = 0.08
@@ -32,6 +33,7 @@ class Parameters:
     labeller: str = "auto"
     mc_version: str = "1.20.1"
     seed: int = 0
+    mend: bool = True
     capture: dict[str, str] = field(default_factory=dict)
     register: RegisterParameters = field(default_factory=RegisterParameters)
     fuse: FuseParameters = field(default_factory=FuseParameters)
@@ -72,7 +74,8 @@ def with_method(parameters: Parameters, method: str) -> Parameters:
     """Return the parameters with one of ``METHODS`` chosen: where the two differ, as docs say.
 
     ``best`` leaves them as they are. ``paper`` stops where the paper stops: no refinement of poses
-    and depth, each cluster of DBSCAN an object, templates by IoU over all cells and turns. What
+    and depth, each cluster of DBSCAN an object, templates by IoU over all cells and turns, nothing
+    mended. What
     the paper leaves open (k, tau, eta, fusion, labels) is the same in both.
 
     Raises:
@@ -86,6 +89,7 @@ def with_method(parameters: Parameters, method: str) -> Parameters:
         register=replace(parameters.register, passes=0),
         find=replace(parameters.find, paper_compat=True),
         furnish=replace(parameters.furnish, paper_compat=True),
+        mend=False,
     )
 
 

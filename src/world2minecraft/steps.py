@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.build import build_volume, write_build
+from world2minecraft.edit.cleanup import mended
+from world2minecraft.edit.journal import write_edits
 from world2minecraft.exchange.centers import write_centers
 from world2minecraft.exchange.evidence import read_evidence
 from world2minecraft.exchange.layout import write_layouts
@@ -34,7 +36,7 @@ from world2minecraft.fuse import (
 )
 from world2minecraft.label import find_structure, labeller
 from world2minecraft.parameters import Parameters
-from world2minecraft.types import BlockVolume, FusedEvidence, OccupancyGrid
+from world2minecraft.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
 
 
 def label_stage(folder: Path, chosen: Parameters) -> None:
@@ -75,13 +77,20 @@ def furnish_stage(folder: Path, chosen: Parameters) -> None:
 
 def build_stage(folder: Path, chosen: Parameters) -> None:
     """``room.npz`` and ``placements.json`` -> the world and its other forms in ``build``."""
-    write_build(folder / "build", built_volume(folder, chosen), mc_version=chosen.mc_version)
+    volume, edits = _mended(folder, chosen)
+    write_build(folder / "build", volume, mc_version=chosen.mc_version)
+    write_edits(folder / "build", edits)
 
 
 def built_volume(folder: Path, chosen: Parameters) -> BlockVolume:
     """``room.npz``, ``objects.json`` and ``placements.json`` -> the blocks; nothing is written."""
+    return _mended(folder, chosen)[0]
+
+
+def _mended(folder: Path, chosen: Parameters) -> tuple[BlockVolume, tuple[BlockEdit, ...]]:
+    """The blocks, and what was mended in them after they were built."""
     grid, _ = read_room(folder / "room.npz")
-    return build_volume(
+    volume = build_volume(
         grid,
         read_placements(folder / "placements.json"),
         read_objects(folder / "objects.json", grid),
@@ -90,6 +99,7 @@ def built_volume(folder: Path, chosen: Parameters) -> BlockVolume:
         parameters=chosen.build,
         name=scene_name(folder),
     )
+    return mended(volume) if chosen.mend else (volume, ())
 
 
 def scene_name(folder: Path) -> str:

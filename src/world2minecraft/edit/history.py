@@ -51,18 +51,24 @@ class History:
         self._undone.append(chosen)
         return chosen
 
-    def redo(self) -> int:
-        """Do again what was last undone here; return its number.
+    def redo(self, number: int | None = None) -> int:
+        """Do again the edit of a number, or what was last undone here; return its number.
 
         Raises:
-            UsageError: nothing was undone since the last edit.
+            UsageError: nothing was undone since the last edit, or not that one.
+            ConflictError: a later edit changed the same blocks.
         """
-        if not self._undone:
+        if number is None and not self._undone:
             raise UsageError("there is nothing to redo")
-        volume = applied(self.volume, self.journal.edits[self._undone[-1]])
-        self.journal.redo(self._undone[-1])
+        chosen = self._undone[-1] if number is None else number
+        if chosen >= len(self.journal.edits) or self.journal.is_done[chosen]:
+            raise UsageError(f"edit {chosen + 1} was not taken back")
+        volume = applied(self.volume, self.journal.edits[chosen])
+        self.journal.redo(chosen)
         self.volume = volume
-        return self._undone.pop()
+        if chosen in self._undone:
+            self._undone.remove(chosen)
+        return chosen
 
 
 def _caught_up(volume: BlockVolume, journal: Journal) -> BlockVolume:

@@ -26,8 +26,9 @@ from world2minecraft.edit.world_box import WorldBox, is_void, read_world_box
 from world2minecraft.edit.world_entities import WorldEntities, marked
 from world2minecraft.errors import ConflictError, DamagedFileError, InputError, UsageError
 from world2minecraft.minecraft.session_lock import session_lock
+from world2minecraft.minecraft.signs import signs_for
 from world2minecraft.minecraft.states import BlockState, parse_state
-from world2minecraft.minecraft.versions import name_in_version
+from world2minecraft.minecraft.versions import GameVersion, game_versions, name_in_version
 from world2minecraft.minecraft.world_reading import read_level
 from world2minecraft.types import BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
 
@@ -78,6 +79,7 @@ def build_into(
         mask = built_mask(volume, air)
         box = read_world_box(world, volume.corner, volume.states.shape)
         _check_chunks(box, new_chunks or is_void(read_level(world)))
+        volume = signs_for(volume, _game_of(box.data_version))
         _check_entities(volume.entities, box)
         wanted = _numbers_of(volume, box)
         after = np.where(mask, wanted, box.states)
@@ -170,6 +172,13 @@ def _check_chunks(box: WorldBox, may_make: bool) -> None:
         count = f"{len(box.missing)} of its chunks there, such as the one at x {x}, z {z}"
         advice = "go there once in the game, or add --new-chunks to make them of air"
         raise ConflictError(box.world, f"the game has not generated {count}; {advice}")
+
+
+def _game_of(data_version: int) -> GameVersion:
+    """The newest known game that is not newer than a world; the oldest one for older worlds."""
+    known = game_versions()
+    older = [version for version in known if version.data_version <= data_version]
+    return older[-1] if older else known[0]
 
 
 def _check_entities(entities: Sequence[Entity], box: WorldBox) -> None:

@@ -17,6 +17,7 @@ from world2minecraft.errors import DamagedFileError, LimitError, OutputError
 from world2minecraft.files import read_bytes, write_bytes
 from world2minecraft.types import BlockEdit
 
+EDITS_FILE = "edits.journal"  # Beside a build: what was mended in it.
 MARK = b"w2m edits 1\n"
 DO, UNDO, REDO = b"+", b"-", b"*"
 MAX_JOURNAL_BYTES = 256 << 20
@@ -128,3 +129,19 @@ def write_journal(path: str | Path, edits: Sequence[BlockEdit]) -> None:
     """Write a whole journal of edits that are all done, atomically. Raises OutputError."""
     records = [packed_record(DO, number, pack_edit(edit)) for number, edit in enumerate(edits)]
     write_bytes(path, MARK + b"".join(records))
+
+
+def write_edits(build: Path, edits: Sequence[BlockEdit]) -> None:
+    """Write what was mended in a build beside it, in place of what a build before it left.
+
+    Raises:
+        OutputError: the folder cannot be written.
+    """
+    path = build / EDITS_FILE
+    if edits:
+        write_journal(path, edits)
+        return
+    try:
+        path.unlink(missing_ok=True)
+    except OSError as error:
+        raise OutputError(path, f"cannot be removed: {error.strerror or error}") from error

@@ -1,0 +1,153 @@
+"""``w2m clean``: mend a built room as a person would, and take any mend back."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from world2minecraft.errors import ConflictError, InputError, UsageError
+
+if TYPE_CHECKING:
+    from world2minecraft.edit.history import History
+    from world2minecraft.types import BlockEdit
+
+EXAMPLES = """\
+w2m clean OUT                  mend what is left to mend
+w2m clean OUT --list           what was mended, when it was built and since
+w2m clean OUT --undo 3         take the third mend back
+w2m clean OUT --undo-all       the room as it was built
+w2m clean OUT --dry-run        what would be mended
+"""
+
+
+def run(
+    source: Annotated[
+        Path, typer.Argument(metavar="OUT", help="A run's folder, or the build folder in it.")
+    ],
+    list_: Annotated[bool, typer.Option("--list", help="List the mends; change nothing.")] = False,
+    undo: Annotated[
+        int, typer.Option("--undo", metavar="N", help="Take back the mend of this number.")
+    ] = 0,
+    undo_all: Annotated[bool, typer.Option("--undo-all", help="Take back all mends.")] = False,
+    redo: Annotated[
+        int, typer.Option("--redo", metavar="N", help="Do a mend that was taken back again.")
+    ] = 0,
+    only: Annotated[
+        list[str] | None,
+        typer.Option("--only", metavar="RULE", help="trim, see_through, holes, floating, steady."),
+    ] = None,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Say what would be done.")] = False,
+) -> None:
+    """Mend a built room: what floats, holes in shells, furniture in walls or in other furniture.
+
+    Every build is mended so already (unless --set mend=no); each mend is an edit in
+    build/edits.journal, which can be listed and taken back. The world and its other forms are
+    written anew; a world that was played in is left alone.
+
+    Args:
+        source: the run.
+        list_: whether to list, and change nothing.
+        undo: the number of a mend to take back, from 1.
+        undo_all: whether to take all back.
+        redo: the number of a mend to do again.
+        only: the rules to go by; all where left out.
+        dry_run: whether to say what would be mended, and change nothing.
+
+    Raises:
+        UsageError: there is no such mend or rule. InputError: there is no build.
+    """
+    if sum((list_, undo > 0, undo_all, redo > 0)) > 1:
+        raise UsageError("--list, --undo, --undo-all and --redo go one at a time")
+    from world2minecraft.edit.cleanup import RULES, mended
+
+    build = build_folder(source)
+    history = opened(build)
+    if list_:
+        edits, is_done = history.journal.edits, history.journal.is_done
+        print(listed(edits, is_done) or "Nothing was mended.")
+        return
+    if undo or undo_all or redo:
+        print(taken_back(history, undo, undo_all, redo))
+    else:
+        edits = mended(history.volume, tuple(only or RULES))[1]
+        first = 0 if dry_run else len(history.journal.edits)
+        print(listed(edits, [True] * len(edits), first) or "Nothing is left to mend.")
+        if dry_run or not edits:
+            return
+        for edit in edits:
+            history.do(edit)
+    write_again(build, history)
+
+
+def build_folder(source: Path) -> Path:
+    """Return the build folder of a run.
+
+    Raises:
+        InputError: there is none.
+    """
+    for folder in (source / "build", source):
+        if (folder / "scene.json").is_file():
+            return folder
+    raise InputError(source, "holds no build (build/scene.json); build one with w2m build")
+
+
+def opened(build: Path) -> "History":
+    """Return the blocks of a build with the edits made to them.
+
+    Raises:
+        ConflictError: the edits are those of another build. InputError: a file cannot be read.
+    """
+    from world2minecraft.edit.history import History
+    from world2minecraft.edit.journal import EDITS_FILE, Journal
+    from world2minecraft.report.scene import read_built
+
+    volume = read_built(build)
+    try:
+        return History(volume, Journal(build / EDITS_FILE))
+    except ConflictError as error:
+        reason = f"is of another build than the one beside it ({error.reason})"
+        raise ConflictError(build / EDITS_FILE, f"{reason}; remove it, or build again") from error
+
+
+def listed(edits: "list[BlockEdit] | tuple[BlockEdit, ...]", is_done: list[bool], first=0) -> str:
+    """Return edits as lines: number, verb, blocks, object, place, reason."""
+    from world2minecraft.classes import CLASS_NAMES
+
+    lines = []
+    for number, (edit, done) in enumerate(zip(edits, is_done, strict=True), first + 1):
+        what = "" if edit.class_id is None else CLASS_NAMES[edit.class_id]
+        name = f"{what} {edit.instance}" if edit.instance else what
+        x, y, z = edit.cells.min(axis=0).tolist()
+        state = "" if done else "  (taken back)"
+        size = f"{len(edit.cells)} block{'s' * (len(edit.cells) > 1)}"
+        place = f"{size} at {x} {y} {z}"
+        lines.append(f"{number:3}  {edit.kind:8} {name:10} {place}: {edit.reason}{state}")
+    return "\n".join(lines)
+
+
+def taken_back(history: "History", undo: int, undo_all: bool, redo: int) -> str:
+    """Take mends back, or do one again; return a line that tells.
+
+    Raises:
+        UsageError: there is no such mend. ConflictError: a later one changed the same blocks.
+    """
+    if redo:
+        history.redo(redo - 1)
+        return f"Mend {redo} is done again."
+    if not undo_all:
+        return f"Mend {history.undo(undo - 1) + 1} is taken back."
+    count = sum(history.journal.is_done)
+    for _ in range(count):
+        history.undo()
+    return f"{count} mend{'s' * (count != 1)} taken back."
+
+
+def write_again(build: Path, history: "History") -> None:
+    """Write a build with other blocks in it, under the name that its world has."""
+    from world2minecraft.build import write_build
+    from world2minecraft.exchange.scene import read_scene
+    from world2minecraft.minecraft.world_reading import read_level
+
+    name = str(read_level(build / "world").get("LevelName", "World2Minecraft room"))
+    write_build(build, history.volume, mc_version=read_scene(build).mc_version, name=name)
+    print(f"{build / 'world'} is written anew, with its other forms.")
