@@ -1,7 +1,6 @@
 """What each design is in blocks: it stays, the game knows it, and it is what its name says."""
 
 from functools import cache
-from math import floor
 
 import numpy as np
 import pytest
@@ -9,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.furniture import TEMPLATES, check_template, template
-from world2minecraft.furniture.families.fronts import body_of, door_columns
+from world2minecraft.furniture.families.fronts import MOST_REST, body_of, door_columns
 from world2minecraft.furniture.family import FAMILIES
 from world2minecraft.furniture.idiom import block_size
 from world2minecraft.furniture.showing import volume_of
@@ -84,15 +83,13 @@ def test_there_are_many_designs_of_every_kind():
     assert {_module(name) for name in NAMES} == set(MINE)
 
 
-@given(st.floats(0.05, 40.0))
-def test_a_front_never_needs_the_wall(depth):
-    """A box of the design's own depth begins at its wall, as the build sets it there."""
-    size = block_size(np.array([depth, 1.0, 1.0]), 1.0)
+@given(st.floats(0.05, 40.0), st.sampled_from(SCALES))
+def test_a_front_stands_before_its_body_and_not_far_beyond_the_size(depth, scale):
+    size = block_size(np.array([depth, 1.0, 1.0]) / scale, scale)
     body = body_of(size)
-    deep = size.depth if body.front is None else body.front + 1
-    assert floor(depth / 2 - deep / 2 + 0.5 + 1e-9) >= 0
-    assert deep - 1 <= depth + 1 and 1 <= body.depth <= size.depth
-    assert body.front in (None, body.depth)
+    assert 1 <= body.depth <= size.depth and body.front in (None, body.depth)
+    assert abs(body.depth - depth) <= max(MOST_REST, 1 - depth) + 1e-6
+    assert body.front is not None or scale == 1.0
 
 
 @given(st.integers(1, 40), st.sampled_from([1.0, 2.0, 4.0]))

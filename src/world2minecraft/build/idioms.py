@@ -16,6 +16,7 @@ from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.tinting import Hue, tinted
 from world2minecraft.coordinates import cells_to_block_axes
 from world2minecraft.furniture import Idiom
+from world2minecraft.furniture.idiom import block_size
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colour_of, colours_of, nearest_oklab
 from world2minecraft.minecraft.shapes import is_full_cube
@@ -54,15 +55,30 @@ class Thing(NamedTuple):
 def idiom_box(
     design: Idiom, placement: Placement, lattice: Lattice
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first block and the size, int [3] each in room axes, of a design in its place."""
+    """Return the first block and the size, int [3] each in room axes, of a design in its place.
+
+    Handles and the like that stand out to the front do not push the rest into the wall behind.
+    """
     along, up, across = design.size
     size = np.array([along, across, up])
     middle = lattice.coordinates_of(placement.center_m)
     bottom = middle[2] - placement.size_m[2] * lattice.blocks_per_metre / 2
-    low = np.floor(np.array([*(middle[:2] - size[:2] / 2), bottom]) + 0.5).astype(int)
+    axis, out = placement.quarter_turns % 2, _standing_out(design, placement, lattice)
+    solid = size - np.where(np.arange(3) == axis, out, 0)
+    low = np.floor(np.array([*(middle[:2] - solid[:2] / 2), bottom]) + 0.5).astype(int)
+    if placement.quarter_turns >= 2:  # The front looks to where coordinates fall.
+        low[axis] -= out
     most = np.maximum(np.array(lattice.shape) - size, 0)
     least = [0, 0, lattice.ground_under(float(bottom))]
     return np.clip(low, least, np.maximum(most, least)), size
+
+
+def _standing_out(design: Idiom, placement: Placement, lattice: Lattice) -> int:
+    """Return by how many blocks a design stands out to its front alone."""
+    own = block_size(placement.size_m, lattice.blocks_per_metre)
+    along, _, across = design.size
+    depth, width = (across, along) if placement.quarter_turns % 2 else (along, across)
+    return max(depth - own.depth, 0) if width <= own.width else 0
 
 
 def filled_by(design: Idiom) -> np.ndarray:

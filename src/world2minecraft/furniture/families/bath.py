@@ -1,5 +1,7 @@
 """The bathroom: toilets, tubs, basins, showers."""
 
+from typing import Literal
+
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.look import Look
 from world2minecraft.furniture.plan import Cell, Plan, Side
@@ -93,7 +95,7 @@ def _tub_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     return plan.blocks
 
 
-def _ring(plan: Plan, layer: int, half: str, inward: bool) -> None:
+def _ring(plan: Plan, layer: int, half: Literal["bottom", "top"], inward: bool) -> None:
     """Lay stairs around, their high sides outward or inward; the game turns the corners in."""
     last_i, last_j = plan.size.depth - 1, plan.size.width - 1
     sides: dict[Side, list[Cell]] = {

@@ -11,6 +11,7 @@ from world2minecraft.furniture.template import BlockSize
 from world2minecraft.minecraft.blocks import block_table
 
 LEAST_REST, MOST_REST = 0.04, 0.7  # Of a block: what a front stands in; more is body.
+COARSE = 1.5  # Up to so many blocks a metre a front beyond the body would be in people's way.
 
 
 class Body(NamedTuple):
@@ -26,12 +27,16 @@ class Body(NamedTuple):
 
 
 def body_of(size: BlockSize) -> Body:
-    """Return how deep the solid body of a size is, and where its front stands."""
+    """Return how deep the solid body of a size is, and where its front stands.
+
+    Where the depth is whole blocks, or rounds up to them, the front stands out by its own
+    thickness; the build sets the body at its place all the same.
+    """
     whole = int(size.exact[0])
     rest = size.exact[0] - whole
     if whole and LEAST_REST <= rest <= MOST_REST:
         return Body(whole, whole)
-    return Body(size.depth, None)
+    return Body(size.depth, size.depth if size.per_metre > COARSE else None)
 
 
 def handles(plan: Plan, body: Body, role: str, j: Numbers, k: Numbers) -> None:
