@@ -90,7 +90,18 @@ def _for_game(entity: BlockEntity, version: GameVersion) -> BlockEntity:
 
 
 def _as_nbt(side: Mapping[str, Any]) -> dict[str, Any]:
-    return {**side, "messages": [_text_as_nbt(json.loads(line)) for line in side["messages"]]}
+    return {**side, "messages": [_line_as_nbt(line) for line in side["messages"]]}
+
+
+def _line_as_nbt(line: Any) -> Any:
+    """A line as NBT; one that was read from a file of a newer game is so already."""
+    if not isinstance(line, str):
+        return line
+    try:
+        text = json.loads(line)
+    except ValueError:
+        return {"text": line}
+    return _text_as_nbt(text) if isinstance(text, dict) else {"text": str(text)}
 
 
 def _text_as_nbt(text: dict[str, Any]) -> dict[str, Any]:
