@@ -29,6 +29,7 @@ CLOSED = (SemanticClass.FURN, SemanticClass.SOFA, SemanticClass.BED)
 NOISY = 4.0  # The factor on prices for cells of a scan: stairs where noise is, look like rubble.
 SIZE_CELLS = 2  # Copies differ by at most so many cells along each axis,
 COPY_IOU = 0.5  # and meet in so much of what either fills.
+SHEET = 0.75  # Blocks: curtains, radiators, pictures, screens.
 FRINGE = 0.25  # A layer with less than this share of the fullest one's cells is noise.
 LEAST, MOST = 0.8, 1.25  # By so much a side may be stretched to end with a block.
 FLUSH = 0.35  # Blocks by which a table may be made higher, so that its top ends a block.
@@ -173,6 +174,17 @@ def design_of_cells(
     blocks = np.floor(ends[0] + (cells - low + 0.5) * side + moved).astype(int)
     last = design.low + numbers.shape - 1
     return CellsDesign(design, np.where(shift, np.clip(blocks, design.low, last), blocks), fit)
+
+
+def kinds_of_sheet(kinds: frozenset[str], solid: Solid, side: float) -> frozenset[str]:
+    """Return the kinds that suit an object: an upright sheet takes no stairs, which fray it.
+
+    Where no panel exists in its colour it is of full blocks. ``side`` is a cell's, in blocks.
+    """
+    thick = min(np.ptp(_bulk(solid.mask, axis)) for axis in (0, 1)) * side
+    if thick > SHEET:
+        return kinds
+    return kinds - {"stairs"} if "trapdoor" in kinds else kinds - {"stairs", "slab"}
 
 
 class Body(NamedTuple):

@@ -21,7 +21,7 @@ ENOUGH = 0.5  # The share of an object's colours that a kind must have for the o
 GIVEN_UP = {"slab": 0.03, "stairs": 0.03, "trapdoor": 0.04, "post": 0.1, "carpet": 0.03}
 MARGIN = 0.06  # How far a shape may look off the full block that it stands for.
 WEIGHTS = np.array([1.0, 1.6, 1.6])  # Red made brown is worse than red made dark.
-FAINT, FADED = 0.015, 1.6  # Chroma that is noise, and what fading weighs above twice that.
+FAINT, FADED = 0.015, 2.2  # Chroma that is noise, and what fading weighs above twice that.
 OWN = 0.1  # How far a shape of a block's own material may look off it.
 SAME = 0.04  # A shape of a block's own material, or of one that looks the same.
 # Trapdoors with holes, and of loud grain, are taken only where they are clearly nearer.

@@ -68,7 +68,17 @@ def solve(target: Target, phase: tuple[int, int], shapes: ShapeSet, rules: Rules
     """Return the fit of a target whose middle lies at a phase: sub-cells along x and y."""
     problem = problem_at(_averaged(target, rules.even), phase, shapes, rules.calm)
     grid, lam = finished(problem, shapes, rules)
+    if not grid.any():
+        _put_best(grid, problem, shapes)
     return fit_of(grid, problem, shapes, lam)
+
+
+def _put_best(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> None:
+    """Set, in place, the one block that shows most of what no shape is worth: nothing vanishes."""
+    able = np.flatnonzero(~np.isin(shapes.kinds[: shapes.free], ("empty", "carpet", "post")))
+    met, spilt = problem.gains.met[:, able], problem.gains.spilt[:, able]
+    row, column = np.unravel_index(int(np.argmax(met / (problem.gains.whole + spilt))), met.shape)
+    grid[tuple(problem.cells[row])] = able[column]
 
 
 def even_of(target: Target) -> tuple[bool, bool]:

@@ -68,7 +68,8 @@ def fit_parts(
         score -= JOINT_COST * broken_share(grid, problem, shapes)
         if best is None or score > best[0] + SAME:
             best = score, fit, factors
-    assert best is not None  # There always is the factor 1.
+    if best is None:  # There always is the factor 1.
+        raise ValueError("furniture needs boxes")
     _, fit, factors = best
     return PartsFit(fit, _owners(boxes * np.tile(factors, 2), fit, shapes, bottom))
 
