@@ -4,6 +4,8 @@ A row of things and the board over it take one and a half blocks, so boards are 
 stand on a board, and air is between them and the next.
 """
 
+from collections.abc import Sequence
+
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.look import Look
 from world2minecraft.furniture.plan import Plan
@@ -37,25 +39,34 @@ def _bookcase(depth: float, width: float, height: float, look: Look) -> list[Par
 
 
 def _bookcase_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
-    plan = Plan(size, look)
+    plan, top = Plan(size, look), size.height - 1
     if size.per_metre < FINE or size.height < 3:
         plan.put("books", plan.depth, plan.width, plan.height)
         if size.height > 2 and look.has("shelf", "slab"):
-            plan.put("shelf", plan.depth, plan.width, size.height - 1, "slab", type="bottom")
+            plan.put("shelf", plan.depth, plan.width, top, "slab", type="bottom")
         return plan.blocks
     framed = size.width > 4
     inner = range(1, size.width - 1) if framed else plan.width
     for k in plan.height:
-        if k % 2 == 0 and k + 1 < size.height:
+        if k % 2 == 0 and k < top:
             plan.put("books", plan.depth, inner, k)
         else:
-            plan.put("shelf", plan.depth, inner, k, "slab", type="bottom" if k % 2 == 0 else "top")
+            _board(plan, inner, k)
     if framed:
-        rows = range(size.height - size.height % 2)
-        plan.put("side", plan.depth, [0, size.width - 1], rows)
-        plan.put("shelf", plan.depth, [0, size.width - 1], range(rows.stop, size.height), "slab",
-                 type="bottom")  # fmt: skip
+        sides = [0, size.width - 1]
+        plan.put("side", plan.depth, sides, range(size.height - size.height % 2))
+        if size.height % 2:
+            _board(plan, sides, top)
     return plan.blocks
+
+
+def _board(plan: Plan, columns: Sequence[int], layer: int) -> None:
+    """Lay a board: the lid of the case, or one with a back under it and a gap over the books."""
+    if layer % 2 == 0:
+        plan.put("shelf", plan.depth, columns, layer, "slab", type="bottom")
+        return
+    plan.put("shelf", range(plan.size.depth - 1), columns, layer)
+    plan.stairs("shelf", plan.size.depth - 1, columns, layer, "back", "top")
 
 
 BOOKCASE = Family(
