@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.minecraft.unlabelled import MISSHAPEN
+
 TILE = ("TileX", "TileY", "TileZ")
 _REACH = 2.0  # Blocks from the middle of the largest painting, 4 x 4, to the block it names.
 
@@ -56,6 +58,6 @@ def _stated(nbt: Mapping[str, Any]) -> tuple[int, int, int] | None:
     try:
         held = nbt["block_pos"] if "block_pos" in nbt else [nbt[key] for key in TILE]
         x, y, z = (int(value) for value in held)
-    except (KeyError, TypeError, ValueError):
+    except MISSHAPEN:
         return None
     return x, y, z

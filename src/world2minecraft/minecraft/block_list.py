@@ -10,6 +10,7 @@ import numpy as np
 from world2minecraft.errors import DamagedFileError
 from world2minecraft.jit import njit
 from world2minecraft.minecraft.nbt import COMPOUND, INT, LIST, NbtReader, write_nbt
+from world2minecraft.minecraft.unlabelled import MISSHAPEN
 
 _RECORD = np.dtype(
     [("pos_head", "V11"), ("pos", ">i4", 3), ("state_head", "V8"), ("state", ">i4"), ("end", "u1")]
@@ -46,7 +47,7 @@ class BlockList:
             return cls(
                 np.array(places, np.int32).reshape(len(states), 3), np.array(states, np.int32), nbt
             )
-        except (KeyError, TypeError, ValueError, OverflowError) as error:
+        except MISSHAPEN as error:
             raise DamagedFileError(path, "has a block without place and number") from error
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.minecraft.entries import state_text
 from world2minecraft.minecraft.nbt import (
     BYTE,
@@ -31,6 +31,7 @@ from world2minecraft.minecraft.sections import Section, SectionPacker, section_o
 from world2minecraft.minecraft.versions import GameVersion
 
 PALETTES = ("palette", "Palette")  # Since 1.18, and before.
+MAX_KNOWN = 100_000  # Texts of states of one world, some of them the same in other orders.
 VOID_BIOME = "minecraft:the_void"
 CHUNK_LIMITS = NbtLimits(depth=64, values=500_000, bytes=16 << 20)
 
@@ -126,6 +127,8 @@ class _ChunkReader(NbtReader):
         for end in ends.tolist():
             raw = self.data[self.at : end]
             if raw not in self._known:
+                if len(self._known) >= MAX_KNOWN:
+                    raise LimitError(self.path, f"holds over {MAX_KNOWN:,} block states")
                 self._known[raw] = state_text(self.compound(depth + 1))
             found.append(self._known[raw])
             self.at = end

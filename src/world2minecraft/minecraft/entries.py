@@ -6,7 +6,7 @@ from typing import Any
 
 from world2minecraft.errors import DamagedFileError, UsageError
 from world2minecraft.minecraft.game_names import read_state, written_state
-from world2minecraft.minecraft.states import BlockState, parse_state
+from world2minecraft.minecraft.states import MAX_TEXT, BlockState, parse_state
 
 
 def state_entry(state: str, data_version: int) -> dict[str, Any]:
@@ -33,7 +33,10 @@ def state_text(entry: Mapping[str, Any]) -> str:
     texts = isinstance(properties, dict) and all(isinstance(v, str) for v in properties.values())
     if not isinstance(name, str) or not texts:
         raise UsageError("a block state without a name, or with properties that are no text")
-    return str(BlockState(name, properties))
+    text = str(BlockState(name, properties))
+    if len(text) > MAX_TEXT:
+        raise UsageError(f"block state {text[:60] + '...'!r} of more than {MAX_TEXT:,} letters")
+    return text
 
 
 def palette_texts(entries: Any, data_version: Any, path: str | Path) -> list[str]:
@@ -49,5 +52,5 @@ def palette_texts(entries: Any, data_version: Any, path: str | Path) -> list[str
     """
     try:
         return [read_state(state_text(entry), int(data_version)) for entry in entries]
-    except (UsageError, AttributeError, TypeError, ValueError) as error:
+    except (UsageError, AttributeError, TypeError, ValueError, IndexError) as error:
         raise DamagedFileError(path, f"has a palette with {error}") from error

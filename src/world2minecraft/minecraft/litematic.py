@@ -34,6 +34,8 @@ from world2minecraft.minecraft.straddled import (
     words_for,
 )
 from world2minecraft.minecraft.unlabelled import (
+    MAX_FILE_BYTES,
+    MISSHAPEN,
     check_size,
     own_tag,
     palette_of,
@@ -43,7 +45,7 @@ from world2minecraft.minecraft.unlabelled import (
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
-LIMITS = NbtLimits(bytes=128 << 20)
+LIMITS = NbtLimits()
 MAX_REGIONS = 4096
 VERSIONS = range(4, 8)  # 1.13 to today; before them blocks had the names of 1.12.
 LEAST_BITS = 2
@@ -196,7 +198,7 @@ def read_litematic(path: str | Path, losses: Losses | None = None) -> BlockVolum
 def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, BlockVolume]:
     """Read the regions of a Litematica file by name. Args and errors as ``read_litematic``."""
     source = Path(path)
-    raw = unpack(read_bytes(source, LIMITS.bytes), source, LIMITS.bytes)
+    raw = unpack(read_bytes(source, MAX_FILE_BYTES), source, LIMITS.bytes)
     _, root = read_nbt(raw, source, LIMITS)
     del raw  # So that the blocks do not come on top of it.
     try:
@@ -211,7 +213,7 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
             name: _region_volume(region, boxes[name], shift, game, source)
             for name, region in named.items()
         }
-    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+    except MISSHAPEN as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
         raise DamagedFileError(source, f"is no Litematica file{missing}") from error
     if losses is not None:
@@ -248,7 +250,7 @@ def _shift(root: Mapping[str, Any], boxes: Mapping[str, Any], source: Path) -> n
 
 
 def _region_volume(
-    region: Mapping[str, Any],
+    region: dict[str, Any],
     box: tuple[np.ndarray, np.ndarray],
     shift: np.ndarray,
     data_version: Any,
@@ -259,13 +261,14 @@ def _region_volume(
     palette, number_of = palette_of(texts, source)
     lookup = np.array([number_of[text] for text in texts], np.uint16)
     states = np.empty(tuple(size.tolist()), np.uint16)
-    words = region["BlockStates"]
+    words = region.pop("BlockStates")  # Its memory is free when the blocks are made.
     bits = bits_for(max(len(texts), 1), LEAST_BITS)
     if words.dtype != np.int64 or len(words) < words_for(states.size, bits):
         raise DamagedFileError(source, f"says {states.size:,} blocks and holds fewer")
     wrong = int(unpack_straddled(words.view(np.uint64), bits, lookup, states.transpose(1, 2, 0)))
     if wrong >= 0:
         raise DamagedFileError(source, f"has a block of number {wrong}, which its palette lacks")
+    del words
     corner = low + shift
     x, y, z = corner.tolist()
     held = [_block_entity(nbt, corner) for nbt in region.get("TileEntities", [])]

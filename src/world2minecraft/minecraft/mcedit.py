@@ -20,10 +20,16 @@ from world2minecraft.minecraft.legacy_entities import block_entity_of, entity_of
 from world2minecraft.minecraft.legacy_halves import join_halves
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, unpack
-from world2minecraft.minecraft.unlabelled import check_size, palette_of, unlabelled
+from world2minecraft.minecraft.unlabelled import (
+    MAX_FILE_BYTES,
+    MISSHAPEN,
+    check_size,
+    palette_of,
+    unlabelled,
+)
 from world2minecraft.types import AIR, BlockEntity, BlockVolume
 
-LIMITS = NbtLimits(bytes=160 << 20)
+LIMITS = NbtLimits()
 MAX_JOINED_CELLS = 8 << 20  # Looking at all neighbours takes several times a volume's memory.
 Corner = tuple[int, int, int]
 
@@ -43,17 +49,17 @@ def read_schematic(path: str | Path, losses: Losses | None = None) -> BlockVolum
             schematic. LimitError: it is larger than the program reads.
     """
     source = Path(path)
-    raw = unpack(read_bytes(source, LIMITS.bytes), source, LIMITS.bytes)
+    raw = unpack(read_bytes(source, MAX_FILE_BYTES), source, LIMITS.bytes)
     _, root = read_nbt(raw, source, LIMITS)
     del raw
     try:
         return _volume_of(root, source, Losses() if losses is None else losses)
-    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+    except MISSHAPEN as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
         raise DamagedFileError(source, f"is no schematic of numbered blocks{missing}") from error
 
 
-def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses) -> BlockVolume:
+def _volume_of(root: dict[str, Any], source: Path, losses: Losses) -> BlockVolume:
     kind = root.get("Materials", "Alpha")
     if kind != "Alpha":
         raise InputError(source, f"is a schematic for {str(kind)[:40]!r}; 'Alpha' is read (Java)")
@@ -74,13 +80,14 @@ def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses) -> BlockVo
 
 
 def _blocks(
-    root: Mapping[str, Any], size: Corner, source: Path, losses: Losses
+    root: dict[str, Any], size: Corner, source: Path, losses: Losses
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return the states by number and data value alone, and their palette."""
     width, height, length = size
     layer, count = width * length, math.prod(size)
-    numbers, values = root["Blocks"].view(np.uint8), root["Data"].view(np.uint8)
-    more = root.get("AddBlocks", np.zeros(0, np.int8)).view(np.uint8)
+    # Taken out of the tree, so that their memory is free when the blocks are made.
+    numbers, values = root.pop("Blocks").view(np.uint8), root.pop("Data").view(np.uint8)
+    more = root.pop("AddBlocks", np.zeros(0, np.int8)).view(np.uint8)
     if len(numbers) < count or len(values) < count or 0 < 2 * len(more) < count - 1:
         raise DamagedFileError(source, f"says {count:,} blocks and holds fewer")
 

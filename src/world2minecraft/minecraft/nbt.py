@@ -45,7 +45,8 @@ class NbtLimits:
 
     depth: int = 100  # The game allows 512; real files stay below 20.
     values: int = 500_000  # About 100 MB of Python objects, read in a second.
-    bytes: int = 256 << 20  # Unpacked.
+    bytes: int = 136 << 20  # Unpacked: 67 million blocks in two bytes each.
+    text_bytes: int = 32 << 20  # All texts; each byte may take four in memory.
 
 
 DEFAULT_LIMITS = NbtLimits()
@@ -61,6 +62,7 @@ _NUMBERS: dict[int, tuple[struct.Struct, Any]] = {
 }
 _ARRAYS = {BYTES: np.dtype(">i1"), INTS: np.dtype(">i4"), LONGS: np.dtype(">i8")}
 _ARRAY_TAGS = {np.dtype(np.int8): BYTES, np.dtype(np.int32): INTS, np.dtype(np.int64): LONGS}
+_AT_ONCE = 1 << 20
 _UINT16 = struct.Struct(">H")
 _INT32 = struct.Struct(">i")
 
@@ -110,15 +112,32 @@ def unpack(data: bytes, path: str | Path, limit: int = DEFAULT_LIMITS.bytes) -> 
         return data
     stream = zlib.decompressobj(window)
     try:
-        result = stream.decompress(data, limit + 1)
+        size, rest = 0, b""
+        for start in range(0, len(data), _AT_ONCE):
+            rest = data[start : start + _AT_ONCE]
+            while rest and not stream.eof and size <= limit:
+                size += len(stream.decompress(rest, _AT_ONCE))
+                rest = stream.unconsumed_tail
+        if size > limit:
+            raise LimitError(path, f"unpacks to more than {limit:,} bytes; at most that is read")
+        if not stream.eof or stream.unused_data or rest:
+            where = "has bytes after its end" if stream.eof else "ends too early"
+            raise DamagedFileError(path, f"its {kind} stream {where}")
+        # Into one buffer of the right size: one that grows takes twice its memory.
+        return zlib.decompress(data, window, size)
     except zlib.error as error:
         raise DamagedFileError(path, f"is no whole {kind} stream ({error})") from error
-    if len(result) > limit:
-        raise LimitError(path, f"unpacks to more than {limit:,} bytes; at most that is read")
-    if not stream.eof or stream.unused_data:
-        where = "has bytes after its end" if stream.eof else "ends too early"
-        raise DamagedFileError(path, f"its {kind} stream {where}")
-    return result
+
+
+def tree_bytes(value: Any) -> int:
+    """Return about how much memory a value of NBT takes, to bound what is kept of many files."""
+    if isinstance(value, dict):
+        return 200 + sum(100 + len(key) + tree_bytes(held) for key, held in value.items())
+    if isinstance(value, list):
+        return 60 + sum(8 + tree_bytes(held) for held in value)
+    if isinstance(value, np.ndarray):
+        return 120 + value.nbytes
+    return 60 + 4 * len(value) if isinstance(value, str) else 40
 
 
 def pack_gzip(data: bytes, level: int = 6) -> bytes:
@@ -138,7 +157,7 @@ class NbtReader:
         self.data, self.path, self.limits = data, path, limits
         self.at = 0
         self.key = ""  # The name of the value that is read now.
-        self.values_left = limits.values
+        self.values_left, self.text_left = limits.values, limits.text_bytes
 
     def root(self) -> tuple[str, dict[str, Any]]:
         """Read the whole tree; see ``read_nbt``."""
@@ -167,6 +186,10 @@ class NbtReader:
         if end > len(self.data):
             raise self.damaged("ends too early")
         self.at = end
+        self.text_left -= end - start
+        if self.text_left < 0:
+            reason = f"holds more than {self.limits.text_bytes:,} bytes of text"
+            raise LimitError(self.path, f"{reason}; at most that is read")
         raw = self.data[start:end]
         try:
             return raw.decode("ascii") if raw.isascii() else _decode(raw)

@@ -22,11 +22,17 @@ from world2minecraft.minecraft.nbt import (
 from world2minecraft.minecraft.packing import read_varints, write_varints
 from world2minecraft.minecraft.sign_texts import signs_for, signs_of_today
 from world2minecraft.minecraft.states import parse_state
-from world2minecraft.minecraft.unlabelled import check_size, palette_of, unlabelled
+from world2minecraft.minecraft.unlabelled import (
+    MAX_FILE_BYTES,
+    MISSHAPEN,
+    check_size,
+    palette_of,
+    unlabelled,
+)
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
-LIMITS = NbtLimits(bytes=192 << 20)  # 67 million blocks in three bytes each.
+LIMITS = NbtLimits()
 DEFAULT_GAME = 1952  # 1.14: version 1 does not say its game, and is that old.
 
 
@@ -90,12 +96,12 @@ def read_schem(path: str | Path) -> BlockVolume:
         LimitError: it is larger than the program reads.
     """
     source = Path(path)
-    raw = unpack(read_bytes(source, LIMITS.bytes), source, LIMITS.bytes)
+    raw = unpack(read_bytes(source, MAX_FILE_BYTES), source, LIMITS.bytes)
     _, root = read_nbt(raw, source, LIMITS)
     tree = root["Schematic"] if isinstance(root.get("Schematic"), dict) else root
     try:
         return _volume_of(tree, source)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except MISSHAPEN as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
         raise DamagedFileError(source, f"is no Sponge schematic{missing}") from error
 
@@ -174,7 +180,8 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
     size = check_size(sides, source)
     cell_count = math.prod(size)
     blocks = tree["Blocks"] if version == 3 else tree
-    data = blocks["Data" if version == 3 else "BlockData"].view(np.uint8)
+    # Taken out of the tree, so that its memory is free when the blocks are made.
+    data = blocks.pop("Data" if version == 3 else "BlockData").view(np.uint8)
     if len(data) < cell_count:
         raise DamagedFileError(source, f"says {cell_count:,} blocks and holds fewer")
     game = int(tree.get("DataVersion", DEFAULT_GAME))
@@ -182,6 +189,7 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
     width, height, length = size
     states = np.empty((width, height, length), np.uint16)
     _fill(states.transpose(1, 2, 0), data, number_of, source)
+    del data
     corner = _corner(tree)
     nbts = blocks.get("BlockEntities", tree.get("TileEntities", []))
     held = [_block_entity(nbt, corner, version) for nbt in nbts]

@@ -12,6 +12,7 @@ from world2minecraft.minecraft.entries import state_entry, state_text
 from world2minecraft.minecraft.game_names import read_state
 from world2minecraft.minecraft.packing import SECTION, pack_section
 from world2minecraft.minecraft.section_words import words_of_today
+from world2minecraft.minecraft.unlabelled import MISSHAPEN
 from world2minecraft.types import AIR
 
 
@@ -90,7 +91,7 @@ def section_of(
             raise ValueError
         words = words.view(np.uint64)
         height = int(blocks["Y"] if y is None else y)
-    except (KeyError, TypeError, AttributeError, ValueError, UsageError) as error:
+    except (*MISSHAPEN, UsageError) as error:
         raise DamagedFileError(path, f"chunk {place} has a broken section") from error
     is_sized = 1 <= len(palette) <= SECTION
     packed = words_of_today(words, len(palette), straddles=straddles) if is_sized else None

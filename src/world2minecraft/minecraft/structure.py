@@ -21,6 +21,8 @@ from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import NbtLimits, pack_gzip, unpack, write_nbt
 from world2minecraft.minecraft.sign_texts import signs_for, signs_of_today
 from world2minecraft.minecraft.unlabelled import (
+    MAX_FILE_BYTES,
+    MISSHAPEN,
     check_size,
     own_tag,
     palette_of,
@@ -30,9 +32,11 @@ from world2minecraft.minecraft.unlabelled import (
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
-LIMITS = NbtLimits(bytes=128 << 20)
+LIMITS = NbtLimits()
 DEFAULT_GAME = 3465  # 1.20.1, for a file that does not say its game.
 MAX_PALETTES = 1000
+_UNLISTED = 0xFFFF  # A palette has fewer states.
+_AT_ONCE = 1 << 18
 MAX_BLOCKS = 3_000_000  # Listed one by one: 108 MB.
 Corner = tuple[int, int, int]
 
@@ -131,7 +135,7 @@ def read_structure(
         LimitError: it is larger than the program reads. UsageError: it has no such variant.
     """
     source = Path(path)
-    return structure_of(read_bytes(source, LIMITS.bytes), source, losses, variant=variant)
+    return structure_of(read_bytes(source, MAX_FILE_BYTES), source, losses, variant=variant)
 
 
 def structure_of(
@@ -143,7 +147,7 @@ def structure_of(
     del raw
     try:
         return _volume_of(root, source, Losses() if losses is None else losses, variant)
-    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+    except MISSHAPEN as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
         raise DamagedFileError(source, f"is no structure file{missing}") from error
 
@@ -157,18 +161,28 @@ def _volume_of(root: Mapping[str, Any], source: Path, losses: Losses, variant: i
     places, numbers = blocks.places, blocks.states
     if len(numbers) and not 0 <= numbers.min() <= numbers.max() < len(texts):
         raise DamagedFileError(source, f"has a block that its palette of {len(texts)} lacks")
-    if ((places < 0) | (places >= np.array(size))).any():
+    if len(places) and (places.min() < 0 or (places.max(axis=0) >= size).any()):
         raise DamagedFileError(source, f"has a block outside of its size, {size}")
-    states = np.zeros(size, np.uint16)
-    is_listed = np.zeros(size, bool)
-    x, y, z = places.T
-    states[x, y, z] = np.array([number_of[text] for text in texts] or [0], np.uint16)[numbers]
-    is_listed[x, y, z] = True
-    losses.add("places that the structure leaves as they are", int((~is_listed).sum()))
+    ours = np.array([number_of[text] for text in texts] or [0], np.uint16)
+    states = np.full(size, _UNLISTED, np.uint16)
+    for start in range(0, len(numbers), _AT_ONCE):  # As indices, all would take much memory.
+        x, y, z = places[start : start + _AT_ONCE].T
+        states[x, y, z] = ours[numbers[start : start + _AT_ONCE]]
+    losses.add("places that the structure leaves as they are", _put_air(states))
     corner = stated_corner(root, source) or (0, 0, 0)
     held = [_block_entity(places[n].tolist(), nbt, corner) for n, nbt in blocks.nbt.items()]
     entities = [_entity(nbt, corner) for nbt in root.get("entities", [])]
     return unlabelled(states, palette, corner, signs_of_today(held, game), entities)
+
+
+def _put_air(states: np.ndarray) -> int:
+    """Put air where nothing is listed, and return in how many places."""
+    count = 0
+    for layer in states:
+        is_unlisted = layer == _UNLISTED
+        count += int(is_unlisted.sum())
+        layer[is_unlisted] = 0
+    return count
 
 
 def _palette(

@@ -16,8 +16,11 @@ from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
 MAX_CELLS = 64 << 20  # 400 blocks a side; a volume of this size takes 340 MB.
 MAX_STATES = 0xFFFF
+MAX_FILE_BYTES = 96 << 20  # As it lies on disk: packed and unpacked are held together.
 # Where a file says to stand in its world; the formats have no place for it, and ignore the tag.
 OWN_TAG = "World2Minecraft"
+# What a tree raises that has the right keys and other things under them.
+MISSHAPEN = (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError)
 Corner = tuple[int, int, int]
 
 
@@ -83,7 +86,7 @@ def stated_corner(tree: Mapping[str, Any], path: str | Path) -> Corner | None:
         return None
     try:
         x, y, z = (int(value) for value in tree[OWN_TAG]["Corner"])
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except MISSHAPEN as error:
         raise DamagedFileError(path, f"has a tag {OWN_TAG} without a Corner of three") from error
     return x, y, z
 

@@ -1,8 +1,8 @@
 """World folders of Minecraft Java, read back as volumes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -10,18 +10,27 @@ from world2minecraft.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.files import read_bytes
 from world2minecraft.minecraft.anvil import read_region
 from world2minecraft.minecraft.chunks import read_chunk
-from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, unpack
+from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, tree_bytes, unpack
 from world2minecraft.minecraft.packing import SECTION, unpack_section
 from world2minecraft.minecraft.sections import Section
 from world2minecraft.minecraft.sign_texts import signs_of_today
-from world2minecraft.minecraft.unlabelled import MAX_CELLS, palette_of, unlabelled
+from world2minecraft.minecraft.unlabelled import (
+    MAX_CELLS,
+    MAX_STATES,
+    MISSHAPEN,
+    palette_of,
+    unlabelled,
+)
 from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
 MAX_SECTIONS = MAX_CELLS // SECTION  # Held before the volume's size is known.
-MAX_UNPACKED_BYTES = 2 << 30  # All chunks of one world together.
-MAX_ENTITY_BYTES = 64 << 20
+MAX_UNPACKED_BYTES = 512 << 20  # All chunks that are read together.
+MAX_HELD_BYTES = 96 << 20  # Of entities and block entities.
 LEVEL_LIMITS = NbtLimits(values=200_000, bytes=32 << 20)
 Place = tuple[int, int]
+# A section's place, its palette as numbers (uint16) and its words (uint64).
+Numbered = tuple[tuple[int, int, int], np.ndarray, np.ndarray]
+Kept = TypeVar("Kept", BlockEntity, Entity)
 Box = tuple[int, int, int, int, int, int]
 
 
@@ -45,9 +54,10 @@ def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
     regions = _region_files(root)
     if not regions:
         raise InputError(root, "holds no region files of an overworld; nothing to read")
-    sections, block_entities, entities = _gather(regions, box)
-    palette, _ = palette_of((state for part in sections for state in part.palette), root)
-    states, corner = _fill(root, sections, palette, box)
+    found = _gather(regions, box)
+    palette, number_of = palette_of(found.numbers, root)
+    numbers = np.array([number_of[state] for state in found.numbers], np.uint16)
+    states, corner = _fill(root, found.sections, numbers, box)
     if box is None:
         states, corner = _trimmed(states, corner)
     high = np.array(corner) + states.shape
@@ -55,13 +65,13 @@ def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
     def inside(position: Any) -> bool:
         return bool((np.array(corner) <= position).all() and (position < high).all())
 
-    entities += _entity_files(regions)
+    found.add_entity_files(regions)
     return unlabelled(
         states,
         palette,
         corner,
-        (e for e in block_entities if inside(e.block_pos)),
-        (e for e in entities if box is None or inside(e.position)),
+        (e for e in found.block_entities if inside(e.block_pos)),
+        (e for e in found.entities if box is None or inside(e.position)),
     )
 
 
@@ -90,12 +100,8 @@ def _region_files(root: Path) -> list[Path]:
     return []
 
 
-def _gather(
-    regions: list[Path], box: Box | None
-) -> tuple[list[Section], list[BlockEntity], list[Entity]]:
-    sections: list[Section] = []
-    block_entities: list[BlockEntity] = []
-    entities: list[Entity] = []
+def _gather(regions: list[Path], box: Box | None) -> "_Found":
+    found = _Found()
     known: dict[bytes, str] = {}
     unpacked = 0
     for path in regions:
@@ -103,15 +109,51 @@ def _gather(
             if box is not None and not _meets(place, box):
                 continue
             unpacked += len(data)
-            root, found = read_chunk(data, place, path, known)
-            sections.extend(found if box is None else (s for s in found if _is_level(s, box)))
-            if unpacked > MAX_UNPACKED_BYTES or len(sections) > MAX_SECTIONS:
+            root, sections = read_chunk(data, place, path, known)
+            for section in sections:
+                if box is None or _is_level(section, box):
+                    found.add_section(section, path)
+            if unpacked > MAX_UNPACKED_BYTES or len(found.sections) > MAX_SECTIONS:
                 reason = f"the world has more than {MAX_CELLS:,} blocks"
                 raise LimitError(path, f"{reason}, or takes too much memory; give a box of it")
             held = _block_entities(root, path)
-            block_entities.extend(signs_of_today(held, root["DataVersion"]))
-            entities.extend(_entities(root.get("Entities", []), path))
-    return sections, block_entities, entities
+            found.block_entities += found.within(signs_of_today(held, root["DataVersion"]), path)
+            found.entities += found.within(_entities(root.get("Entities", []), path), path)
+    return found
+
+
+class _Found:
+    """What is kept of the chunks that were read, and how much memory it takes."""
+
+    def __init__(self) -> None:
+        self.numbers: dict[str, int] = {}  # Of each state, in the order in which they were met.
+        self.sections: list[Numbered] = []
+        self.block_entities: list[BlockEntity] = []
+        self.entities: list[Entity] = []
+        self._held_bytes = 0
+
+    def add_section(self, section: Section, path: Path) -> None:
+        """Keep a section, its palette as numbers."""
+        numbers = self.numbers
+        own = [numbers.setdefault(state, len(numbers)) for state in section.palette]
+        if len(numbers) > MAX_STATES:
+            raise LimitError(path, f"has over {MAX_STATES:,} block states; give a box of the world")
+        self.sections.append((section.place, np.array(own, np.uint16), section.words))
+
+    def add_entity_files(self, regions: list[Path]) -> None:
+        """Read the entities beside the regions; since 1.17 they lie in files of their own."""
+        for path in sorted((regions[0].parent.parent / "entities").glob("r.*.mca")):
+            for _, data in read_region(path):
+                _, root = read_nbt(data, path)
+                self.entities += self.within(_entities(root.get("Entities"), path), path)
+
+    def within(self, held: Sequence[Kept], path: Path) -> Sequence[Kept]:
+        """Return entities where they do not take too much memory together."""
+        self._held_bytes += sum(tree_bytes(dict(entity.nbt)) for entity in held)
+        if self._held_bytes > MAX_HELD_BYTES:
+            reason = f"the world's entities take more than {MAX_HELD_BYTES:,} bytes"
+            raise LimitError(path, f"{reason}; give a box of it")
+        return held
 
 
 def _is_level(section: Section, box: Box) -> bool:
@@ -129,15 +171,15 @@ def _block_entities(root: dict[str, Any], path: Path) -> Iterator[BlockEntity]:
             rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
             position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
             yield BlockEntity(position, str(nbt["id"]), rest)
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except MISSHAPEN as error:
             raise DamagedFileError(path, "has a block entity without id and place") from error
 
 
 def _fill(
-    root: Path, sections: list[Section], palette: tuple[str, ...], box: Box | None
+    root: Path, sections: list[Numbered], numbers: np.ndarray, box: Box | None
 ) -> tuple[np.ndarray, tuple[int, int, int]]:
     if box is None:
-        places = np.array([section.place for section in sections] or [(0, 4, 0)])
+        places = np.array([place for place, _, _ in sections] or [(0, 4, 0)])
         low, high = places.min(axis=0) * 16, (places.max(axis=0) + 1) * 16
     else:
         low, high = np.array(box[:3]), np.array(box[3:])
@@ -146,12 +188,10 @@ def _fill(
         shown = " x ".join(str(side) for side in size.tolist())
         raise LimitError(root, f"{shown} blocks; at most {MAX_CELLS:,} are read: give a box")
     states = np.zeros(tuple(size.tolist()), np.uint16)
-    number_of = {state: number for number, state in enumerate(palette)}
-    for section in sections:
-        numbers = np.array([number_of[state] for state in section.palette], np.uint16)
-        origin = np.array(section.place, np.int64) * 16 - low
-        if not unpack_section(section.words, numbers, states, origin):
-            raise DamagedFileError(root, f"section {section.place} points outside its palette")
+    for place, own, words in sections:
+        origin = np.array(place, np.int64) * 16 - low
+        if not unpack_section(words, numbers[own], states, origin):
+            raise DamagedFileError(root, f"section {place} points outside its palette")
     x, y, z = low.tolist()
     return states, (x, y, z)
 
@@ -168,26 +208,11 @@ def _trimmed(
     return np.ascontiguousarray(states[tuple(cuts)]), (x, y, z)
 
 
-def _entity_files(regions: list[Path]) -> list[Entity]:
-    """Return the entities beside the regions; since 1.17 they lie in files of their own."""
-    found: list[Entity] = []
-    unpacked = 0
-    for path in sorted((regions[0].parent.parent / "entities").glob("r.*.mca")):
-        for _, data in read_region(path):
-            unpacked += len(data)
-            if unpacked > MAX_ENTITY_BYTES:
-                reason = f"the world's entities unpack to more than {MAX_ENTITY_BYTES:,} bytes"
-                raise LimitError(path, f"{reason}; at most that is read")
-            _, root = read_nbt(data, path)
-            found.extend(_entities(root.get("Entities"), path))
-    return found
-
-
 def _entities(held: Any, path: Path) -> list[Entity]:
     """Return the entities of a list of NBT."""
     try:
         return [_entity(nbt) for nbt in held]
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except MISSHAPEN as error:
         raise DamagedFileError(path, "has an entity without id and place") from error
 
 

@@ -75,7 +75,8 @@ def identifier(name: str, value: str) -> str:
 def labels(name: str, value: Any, shape: Shape) -> np.ndarray:
     """Return a uint8 array whose values are 0 to 11 or 255."""
     result = array(name, value, np.uint8, shape)
-    if result.size and np.any((result > 11) & (result != 255)):
+    # Most volumes have no label at all: then one look is enough, and takes no memory.
+    if result.size and result.max() > 11 and np.any((result > 11) & (result != 255)):
         bad = int(result[(result > 11) & (result != 255)][0])
         raise ValueError(f"{name} must hold class ids 0 to 11 or 255, not {bad}")
     return result
