@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.errors import ConflictError, InputError, UsageError
+from world2minecraft.errors import ConflictError, InputError, OutputError, UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.edit.history import History
@@ -66,6 +66,8 @@ def run(
         edits, is_done = history.journal.edits, history.journal.is_done
         print(listed(edits, is_done) or "Nothing was mended.")
         return
+    if not dry_run:
+        check_unplayed(build / "world")  # Before any edit is recorded.
     if undo or undo_all or redo:
         print(taken_back(history, undo, undo_all, redo))
     else:
@@ -89,6 +91,20 @@ def build_folder(source: Path) -> Path:
         if (folder / "scene.json").is_file():
             return folder
     raise InputError(source, "holds no build (build/scene.json); build one with w2m build")
+
+
+def check_unplayed(world: Path) -> None:
+    """Check that no game has saved a world since it was built.
+
+    Raises:
+        OutputError: one has, or it is of another maker.
+    """
+    from world2minecraft.minecraft.level import MAKER, MAKER_TAG
+    from world2minecraft.minecraft.world_reading import read_level
+
+    if read_level(world).get(MAKER_TAG) != MAKER:
+        reason = "holds a world that has been played in or made elsewhere"
+        raise OutputError(world, f"{reason}; build it again to another --out, and clean that")
 
 
 def opened(build: Path) -> "History":

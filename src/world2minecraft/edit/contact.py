@@ -14,7 +14,8 @@ from world2minecraft.minecraft.visual import visual_boxes_of
 
 GAP = 1 / 8  # Blocks: shapes nearer than this touch for the eye. A fence's bar is 1/8 thick.
 # Half of the 26 neighbours: the others are these, seen from the other side.
-STEPS = tuple(step for step in product((-1, 0, 1), repeat=3) if step > (0, 0, 0))
+SIDES = (-1, 0, 1)
+STEPS = tuple(step for step in product(SIDES, SIDES, SIDES) if step > (0, 0, 0))
 
 
 def touching_parts(states: np.ndarray, palette: tuple[str, ...], mask: np.ndarray) -> np.ndarray:

@@ -62,14 +62,19 @@ def move(draft: Draft, cells: np.ndarray, step: np.ndarray, reason: str) -> Bloc
     every = np.unique(np.concatenate([cells, there]), axis=0)
     place_of = {tuple(cell): number for number, cell in enumerate(every.tolist())}
     target = np.array([place_of[tuple(cell)] for cell in there.tolist()])
-    values = [np.zeros(len(every), kept.dtype) for kept in (old.states, old.semantic, old.instance)]
-    for new, kept in zip(values, (old.states, old.semantic, old.instance), strict=True):
-        new[target] = kept
+
+    def carried(values: np.ndarray) -> np.ndarray:
+        new = np.zeros(len(every), values.dtype)
+        new[target] = values
+        return new
+
+    after = (carried(values) for values in (old.states, old.semantic, old.instance))
+    states, semantic, instance = after
     data = tuple(_moved(entity, step) for entity in old.block_entities)
     return draft.change(
         "move",
         every,
-        Blocks(*values, data),
+        Blocks(states, semantic, instance, data),
         reason=reason,
         class_id=int(np.bincount(old.semantic).argmax()),
         instance=int(np.bincount(old.instance).argmax()),

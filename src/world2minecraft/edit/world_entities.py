@@ -51,7 +51,7 @@ class WorldEntities:
         An entity is known by its UUID. Those that come replace those of the same UUID.
         """
         wanted = {place: list(held) for place, held in self._held.items()}
-        arriving = [entity.nbt | {} for entity in map(with_uuid, come)]
+        arriving = [dict(entity.nbt) for entity in map(with_uuid, come)]
         leaving = {_uuid(entity.nbt) for entity in gone} | {_uuid(nbt) for nbt in arriving}
         for place, held in wanted.items():
             wanted[place] = [nbt for nbt in held if _uuid(nbt) not in leaving]
