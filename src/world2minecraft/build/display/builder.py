@@ -39,6 +39,13 @@ FULL_LIGHT = 15
 APART_BLOCKS, APART_STEPS = 0.0006, 12  # What a screen tells apart across a room; 2 mm at most.
 
 
+def most_pieces(found: Template) -> int:
+    """Return over how many pieces a template is made coarser."""
+    if "round" in f"{found.name} {found.family}":
+        return MOST_PIECES_ROUND
+    return MOST_PIECES.get(found.class_id, MOST_PIECES_ELSE)
+
+
 class DisplayBuilder:
     """Sets the objects of one room, whose shell stands on a canvas, as entities and colliders."""
 
@@ -121,9 +128,8 @@ class DisplayBuilder:
             first, last = np.maximum(np.floor(low + 0.5), 0).astype(int), np.floor(high + 0.5)
             self.plated[first[0] : int(last[0]), first[1] : int(last[1])] = True
         states = states_of_parts(found, parts, colours, self.palette, self.parameters)
-        most = MOST_PIECES.get(found.class_id, MOST_PIECES_ELSE)
-        most = MOST_PIECES_ROUND if "round" in f"{found.name} {found.family}" else most
-        pieces = pieces_of(parts, states, most, self.canvas.lattice.blocks_per_metre)
+        scale = self.canvas.lattice.blocks_per_metre
+        pieces = pieces_of(parts, states, most_pieces(found), scale)
         self._put(pieces, frame, placement.class_id, placement.object_id, found.mount)
 
     def put_cells(self, cells: np.ndarray, class_id: int, number: int) -> None:

@@ -1,0 +1,171 @@
+"""How many display entities does furniture take, and is it exact?
+
+``python -m benchmarks.check_display [--picture display.png]``
+
+Each design of the library is made at its smallest, usual and largest size, turned by 20 degrees,
+and written as entities. ``wrong`` is, at the usual size, the share of 2 cm cells of its own frame
+whose middle lies in a part and in no entity, or the other way round, both by more than a
+millimetre; the entities are read back from their NBT. It is 0 but where ``limit`` asks for coarser
+boxes. Below stand shapes of 2 cm cells, cut into boxes that share no cell and that may.
+"""
+
+import argparse
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from world2minecraft.build.display.builder import most_pieces
+from world2minecraft.build.display.frame import Frame, entities_of
+from world2minecraft.build.display.pieces import pieces_of
+from world2minecraft.coordinates import apply, block_to_room, invert, look_at
+from world2minecraft.files import write_bytes
+from world2minecraft.furniture import TEMPLATES, Template, cells_of, template
+from world2minecraft.geometry.boxes import partition
+from world2minecraft.geometry.covers import few_boxes
+from world2minecraft.minecraft.displays import display_cubes
+from world2minecraft.render import render_volume
+from world2minecraft.report.pictures import as_png
+from world2minecraft.types import BlockVolume, Camera, Entity
+
+CELL_M, SCALE, YAW_DEG = 0.02, 4.0, 20.0
+SLACK_M = 0.001
+CORNER_M = np.zeros(2)
+SHAPES = ("chair", "dining_table", "round_table", "sofa", "double_bed", "bookcase", "lamp", "plant")
+
+
+class Row(NamedTuple):
+    """What one design takes."""
+
+    name: str
+    family: str
+    counts: tuple[int, int, int]  # at the smallest, the usual and the largest size
+    limit: int
+    wrong: float
+
+
+def sizes_of(one: Template) -> list[np.ndarray]:
+    """Return its smallest, usual and largest size, float64 [3] in metres."""
+    return [
+        np.array([getattr(span, end) for span in one.size_m])
+        for end in ("minimum", "typical", "maximum")
+    ]
+
+
+def entities_at(one: Template, size: np.ndarray) -> tuple[list[Entity], Frame]:
+    """Return the entities of a design that stands turned, and its frame."""
+    parts = one.parts(size)
+    states = [_block_of(one, part.role) for part in parts]
+    pieces = pieces_of(parts, states, most_pieces(one), SCALE)
+    frame = Frame(np.array([1.0, -1.0, 0.0]), size, YAW_DEG)
+    return entities_of(pieces, frame, CORNER_M, SCALE, one.class_id, 1), frame
+
+
+def _block_of(one: Template, role: str) -> str:
+    material = one.materials.get(role)
+    block = None if material is None else material.block("full")
+    return block or "minecraft:white_concrete"
+
+
+def wrong_of(one: Template, size: np.ndarray) -> float:
+    """Return the share of a design's 2 cm cells that its entities show wrongly."""
+    entities, frame = entities_at(one, size)
+    boxes = np.array([part.box_m for part in one.parts(size)]).reshape(-1, 2, 3)
+    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
+    axes = [np.arange(a + CELL_M / 2, b, CELL_M) for a, b in zip(low, high, strict=True)]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    inside, nearly = np.zeros((2, len(points)), bool)
+    for start, end in boxes:
+        inside |= ((points > start + SLACK_M) & (points < end - SLACK_M)).all(axis=1)
+        nearly |= ((points > start - SLACK_M) & (points < end + SLACK_M)).all(axis=1)
+    world = apply(invert(block_to_room(CORNER_M, SCALE)), apply(frame.object_to_room, points))
+    drawn = np.zeros(len(points), bool)
+    for cube in display_cubes(entities):
+        local = apply(invert(cube.cube_to_world), world)
+        drawn |= ((local > -1e-5) & (local < 1 + 1e-5)).all(axis=1)
+    wrong = (inside & ~drawn) | (drawn & ~nearly)
+    return float(wrong.sum() / max(nearly.sum(), 1))
+
+
+def row_of(name: str) -> Row:
+    """Return what a design takes."""
+    one = template(name)
+    counts = [len(entities_at(one, size)[0]) for size in sizes_of(one)]
+    wrong = wrong_of(one, sizes_of(one)[1])
+    return Row(name, one.family, (counts[0], counts[1], counts[2]), most_pieces(one), wrong)
+
+
+def design_table(rows: list[Row]) -> Table:
+    """Return the designs in a table."""
+    head = ("design", "family", "smallest", "usual", "largest", "limit", "wrong")
+    table = Table(*head, title="Display entities by design")
+    for row in rows:
+        over = " !" if max(row.counts) > row.limit else ""
+        counts = [str(count) for count in row.counts]
+        table.add_row(row.name, row.family, *counts, f"{row.limit}{over}", f"{row.wrong:.3f}")
+    return table
+
+
+def shape_table() -> Table:
+    """Return shapes of cells in a table."""
+    head = ("shape of 2 cm cells", "partition", "with overlaps")
+    table = Table(*head, title="Boxes for cells")
+    solids = {name: _solid(template(name)) for name in SHAPES}
+    across = np.indices((50, 50)) - 24.5
+    solids["disc of 1 m"] = ((across**2).sum(axis=0) <= 625)[:, :, None]
+    for name, solid in solids.items():
+        whole = (len(partition(solid.astype(np.int32))), len(few_boxes(solid.astype(np.int32))))
+        table.add_row(name, *(str(count) for count in whole))
+    return table
+
+
+def _solid(one: Template) -> np.ndarray:
+    cells = cells_of(one, one.typical_m, voxel_m=CELL_M)
+    solid = np.zeros(cells.max(axis=0) + 1, bool)
+    solid[tuple(cells.T)] = True
+    return solid
+
+
+def picture(names: list[str]) -> np.ndarray:
+    """Return a picture, uint8 [H, W, 3], of designs in rows, each turned by 20 degrees."""
+    across, apart, entities = 10, 10, []
+    for number, name in enumerate(names):
+        one = template(name)
+        found, _ = entities_at(one, np.array(one.typical_m))
+        east, south = apart * (number % across), apart * (number // across)
+        for each in found:
+            x, y, z = each.position
+            entities.append(Entity((x + east, y, z + south), each.id, each.nbt))
+    rows = -(-len(names) // across)
+    shape = (apart * across, 12, apart * rows)
+    states = np.zeros(shape, np.uint16)
+    states[:, 0] = 1
+    volume = BlockVolume(
+        states, ("minecraft:air", "minecraft:light_gray_concrete"), np.zeros(shape, np.uint8),
+        np.zeros(shape, np.uint16), (0, 63, 0), block_to_room(CORNER_M, SCALE),
+        entities=tuple(entities),
+    )  # fmt: skip
+    middle = apply(volume.block_to_room, np.array([shape[0] / 2, 64.0, shape[2] / 2]))
+    eye = middle + np.array([0.0, -0.62 * shape[2] / SCALE, 0.75 * shape[0] / SCALE])
+    camera = Camera(1920, 1400, 1500.0, 1500.0, 960.0, 700.0)
+    colour = render_volume(volume, camera, look_at(eye, middle), outputs=("colour",)).colour
+    return np.zeros((1, 1, 3), np.uint8) if colour is None else colour
+
+
+def main() -> None:
+    """Print the tables, and draw the picture."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--picture", type=Path)
+    chosen = parser.parse_args()
+    names = list(TEMPLATES.names())
+    console = Console(width=110)
+    console.print(design_table([row_of(name) for name in names]))
+    console.print(shape_table())
+    if chosen.picture is not None:
+        write_bytes(chosen.picture, as_png(picture(names)))
+
+
+if __name__ == "__main__":
+    main()
