@@ -31,7 +31,8 @@ from world2minecraft.scan import open_scan, realigned, settled
 from world2minecraft.steps import LATER_STEPS
 from world2minecraft.types import Scan
 
-NAMELESS = ("capture", "scan", "data", "input")  # Folders of every scene, and names of none.
+# Names of folders that say nothing of their scene.
+NAMELESS = ("capture", "frames", "scan", "data", "input")
 STAGES = ("scan", "register", "fuse", *LATER_STEPS)
 
 
