@@ -172,7 +172,8 @@ def test_red_stays_red_under_its_dark_top_and_wood_is_wood():
         names[number, height] = {volume.palette[i].partition("[")[0] for i in held}
     assert all("red" in name for name in names[2, 0.3])
     assert any("black" in name or "deepslate" in name or "gray" in name for name in names[2, 0.87])
-    assert all(name.split("_")[-1] in ("planks", "slab", "wood", "trapdoor", "stairs") for name in names[1, 0.7])
+    shapes = ("planks", "slab", "wood", "trapdoor", "stairs")
+    assert all(name.split("_")[-1] in shapes for name in names[1, 0.7])
 
 
 def test_a_noisy_wall_is_calm():
@@ -222,9 +223,10 @@ def test_a_placement_is_built_once_and_in_its_place(scale):
 
 
 def test_an_object_seen_elsewhere_is_not_replaced_by_a_poor_box():
-    """A template whose blocks stand in free space gives way to the object's own cells."""
+    """A guessed template whose blocks stand in free space gives way to the object's own cells."""
     sketch = Sketch().put((10, 12), (4, 20), (0, 20), FURN, RED, 1)
     wrong = placement("wardrobe", 10, (1.6, 0.96, 0.8), (1.6, 1.3, 1.6))
+    wrong = replace(wrong, iou=0.2)
     volume = build(sketch, 4.0, [wrong], BARE)
     blocks = int((volume.instance == 1).sum())
     assert blocks <= 2 * 6 * 7

@@ -73,6 +73,19 @@ def idiom_box(
     return np.clip(low, least, np.maximum(most, least)), size
 
 
+def body_box(
+    design: Idiom, placement: Placement, lattice: Lattice, low: np.ndarray, size: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first block and the size, int [3] each, of a design without what stands out.
+
+    An object's front colours the front of its body, not the handles before it.
+    """
+    axis, out = placement.quarter_turns % 2, _standing_out(design, placement, lattice)
+    along = np.arange(3) == axis
+    start = low + np.where(along & (placement.quarter_turns >= 2), out, 0)
+    return start, size - np.where(along, out, 0)
+
+
 def _standing_out(design: Idiom, placement: Placement, lattice: Lattice) -> int:
     """Return by how many blocks a design stands out to its front alone."""
     own = block_size(placement.size_m, lattice.blocks_per_metre)

@@ -20,7 +20,7 @@ from world2minecraft.build.dressing import Dresser
 from world2minecraft.build.fitted import LAID_ON, Design, design_of_parts, of_halves, one_block
 from world2minecraft.build.fitting import best_place, best_step
 from world2minecraft.build.hues import default_colour, spread
-from world2minecraft.build.idioms import Thing, filled_by, idiom_box, put_idiom
+from world2minecraft.build.idioms import Thing, body_box, filled_by, idiom_box, put_idiom
 from world2minecraft.build.lattice import volume_shares
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
@@ -95,9 +95,10 @@ class ObjectBuilder:
         rest &= ~self._shown() & ~self._told(placements)
         keys = (self.grid.labels.astype(np.int32) << 16) + self.grid.instance
         for key in np.unique(keys[rest]).tolist():
-            cells = np.argwhere(rest & (keys == key))
-            if self._is_large(cells):
-                self.put_cells(cells, key >> 16, key & 0xFFFF)
+            cells, number = np.argwhere(rest & (keys == key)), key & 0xFFFF
+            missing = number and not (self.canvas.instance == number).any()
+            if missing or self._is_large(cells):
+                self.put_cells(cells, key >> 16, number)
         classes = {one.object_id: one.class_id for one in placements}
         for number in sorted(set(classes) - set(np.unique(self.canvas.instance).tolist())):
             if self._is_large(np.argwhere(self.grid.instance == number)):
@@ -260,7 +261,8 @@ class ObjectBuilder:
             if guessed and self._open_in(filled, low) > self._limit(placement):
                 return False
             low = low + self._step(filled, low)
-        hues = self.coats.stretched(cells, placement, low, size.tolist())
+        start, solid = body_box(found, placement, self.lattice, low, size)
+        hues = self.coats.stretched(cells, placement, start, solid.tolist())
         seen = block_colours(tuple(size.tolist()), hues.blocks - low, *self.coats.colours_of(hues))
         hue = Hue(*seen, self.paints.get(thing.instance))
         put_idiom(self.canvas, found, low, thing, hue, self.palette, self.within, self.parameters)

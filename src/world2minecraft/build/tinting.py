@@ -65,23 +65,17 @@ def tinted(
         if material is not None and material.takes_colour:
             groups.setdefault(material, []).append(index)
     for material, indices in groups.items():
-        colour = _colour(cells[indices], hue)
-        if material.kind == PLAIN and hue.paint is None:
-            renewed = _painted(cells[indices], hue, class_id, palette, parameters)
-            if all(shape_of(states[index], PLAIN) in (None, "full") for index in indices):
-                for index, state in zip(indices, renewed, strict=True):
-                    states[index] = state
-                continue
-        if material.kind == FIXED:
-            if _is_far(material, colour, parameters.lightness_weight) and hue.paint is None:
-                renewed = _painted(cells[indices], hue, class_id, palette, parameters)
-                for index, state in zip(indices, renewed, strict=True):
-                    states[index] = state if is_full_cube(states[index]) else states[index]
-            continue
-        own = [states[index] for index in indices]
-        for index, state in zip(
-            indices, _restated(own, material.kind, colour, parameters), strict=True
-        ):
+        own, at = [states[index] for index in indices], cells[indices]
+        colour = _colour(at, hue)
+        if material.kind not in (PLAIN, FIXED):
+            renewed = _restated(own, material.kind, colour, parameters)
+        elif material.kind == FIXED and not _is_far(material, colour, parameters.lightness_weight):
+            renewed = own
+        elif hue.paint is None and all(map(is_full_cube, own)):
+            renewed = _painted(at, hue, class_id, palette, parameters)
+        else:
+            renewed = own if material.kind == FIXED else _restated(own, PLAIN, colour, parameters)
+        for index, state in zip(indices, renewed, strict=True):
             states[index] = state
     return states
 

@@ -318,9 +318,25 @@ def _box(depth: float, width: float, height: float, look: Look) -> list[Part]:
 
 
 def _box_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
+    """Lay a box: a pot for what is tiny, a slab for what is flat, panes for what is thin.
+
+    Whole blocks would be half a metre thick and hide what such things lie on or hang at.
+    """
     plan = Plan(size, look)
-    plan.put("body", plan.depth, plan.width, plan.height)
+    thin, wide, tall = *sorted(size.exact[:2]), size.exact[2]
+    if max(wide, tall) < TINY:
+        plan.put_state("body", "minecraft:flower_pot", 0, 0, 0)
+    elif tall < FLAT:
+        plan.put_state("body", "minecraft:birch_slab[type=bottom]", plan.depth, plan.width, 0)
+    elif thin < THIN and wide > 1.5:
+        pane = "minecraft:white_stained_glass_pane"
+        plan.put_state("body", pane, plan.depth, plan.width, plan.height)
+    else:
+        plan.put("body", plan.depth, plan.width, plan.height)
     return plan.blocks
+
+
+TINY, FLAT, THIN = 0.45, 0.6, 0.25  # Blocks.
 
 
 BOX = Family(build=_box, design=_box_blocks, roles=("body",))
