@@ -41,6 +41,7 @@ def run(
         style: what furniture is made of.
         palette: which blocks may be used.
     """
+    from world2minecraft.build import BuildParameters
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
     from world2minecraft.cli.reconstruct import make
@@ -55,7 +56,8 @@ def run(
         room = generate_room(seed, kind=kind)
         progress("room", 1, 1, f"a {kind} room, seed {seed}")
         scan_room(room, out / "capture", frames=frames, seed=seed, progress=progress)
-        chosen = Parameters(blocks_per_metre=blocks_per_metre)
+        plaque = BuildParameters(plaque=f"A {kind} room")
+        chosen = Parameters(blocks_per_metre=blocks_per_metre, build=plaque)
         chosen = with_build_options(chosen, style, palette)
         facts = make(out / "capture", out, chosen, None, None, progress)
     say_where(out, facts)
