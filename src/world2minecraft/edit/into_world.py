@@ -112,15 +112,15 @@ def take_blocks_out(world: Path) -> Outcome:
         corner = (int(low[0]), int(low[1]), int(low[2]))
         box = read_world_box(world, corner, (high - low).tolist())
         at = tuple((edit.cells - low).T)
-        names = [_block_name(state) for state in box.numbers.texts]
-        wanted = np.array([_block_name(edit.palette[n]) for n in edit.after.states.tolist()])
-        same = np.array(names)[box.states[at]] == wanted
+        now, wanted = _block_kinds(box.numbers.texts, edit.palette)
+        same = now[box.states[at]] == wanted[edit.after.states]
         after = box.states.copy()
         numbers = np.array([box.numbers.number(s) for s in edit.palette], np.uint16)
         after[tuple(axis[same] for axis in at)] = numbers[edit.before.states[same]]
-        places = {tuple(cell) for cell in edit.cells[same].tolist()}
-        data = [entity for entity in box.data if entity.block_pos not in places]
-        data += [e for e in edit.before.block_entities if e.block_pos in places]
+        back = np.zeros(after.shape, bool)
+        back[tuple(axis[same] for axis in at)] = True
+        data = [entity for entity in box.data if not back[_cell_of(entity, box)]]
+        data += [e for e in edit.before.block_entities if back[_cell_of(e, box)]]
         found = WorldEntities(world, box.low, box.states.shape, box.data_version)
         gone, come = edit.after.entities, edit.before.entities
         files = box.changed_files(after, data) | found.changed_files(gone, come)
@@ -234,9 +234,8 @@ def _edit_of(
         return Blocks(*found, tuple(held), tuple(entities))
 
     palette = tuple(box.numbers.texts[number] for number in used.tolist())
-    kept = {tuple(cell) for cell in world_cells.tolist()}
-    before = [entity for entity in box.data if entity.block_pos in kept]
-    held = [entity for entity in data if entity.block_pos in kept]
+    before = [entity for entity in box.data if moved[_cell_of(entity, box)]]
+    held = [entity for entity in data if moved[_cell_of(entity, box)]]
     return BlockEdit(
         "build",
         world_cells,
@@ -250,5 +249,10 @@ def _cell_of(entity: BlockEntity, box: WorldBox) -> tuple[int, ...]:
     return tuple((np.array(entity.block_pos) - box.low).tolist())
 
 
-def _block_name(state: str) -> str:
-    return state.partition("[")[0]
+def _block_kinds(*palettes: Sequence[str]) -> list[np.ndarray]:
+    """For each palette a number a state, the same for states of the same block."""
+    numbers: dict[str, int] = {}
+    return [
+        np.array([numbers.setdefault(s.partition("[")[0], len(numbers)) for s in palette])
+        for palette in palettes
+    ]

@@ -20,6 +20,7 @@ from world2minecraft.types import BlockEdit
 EDITS_FILE = "edits.journal"  # Beside a build: what was mended in it.
 MARK = b"w2m edits 1\n"
 DO, UNDO, REDO = b"+", b"-", b"*"
+LEVEL = 1  # Of zlib: a build of a million blocks is recorded in half a second.
 MAX_JOURNAL_BYTES = 256 << 20
 _HEAD = struct.Struct(">II")
 _NUMBER = struct.Struct(">cI")
@@ -121,7 +122,7 @@ class Journal:
 
 def packed_record(verb: bytes, number: int, edit: bytes = b"") -> bytes:
     """Return the bytes of one record."""
-    record = zlib.compress(_NUMBER.pack(verb, number) + edit, 6)
+    record = zlib.compress(_NUMBER.pack(verb, number) + edit, LEVEL)
     return _HEAD.pack(len(record), zlib.crc32(record)) + record
 
 
