@@ -8,11 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from world2minecraft.errors import UsageError
 from world2minecraft.minecraft.connections import connected
 from world2minecraft.minecraft.formats import read_blocks
+from world2minecraft.minecraft.light import light_of
 from world2minecraft.minecraft.stability import unstable, unstable_cells
 from world2minecraft.minecraft.states import complete, known_blocks, parse_state, states_of
 from world2minecraft.minecraft.turn import turn_volume
+from world2minecraft.minecraft.visual import visual_boxes_of
 from world2minecraft.types import BlockVolume
 
 CASES = json.loads((Path(__file__).parent / "stability_cases.json").read_text())["cases"]
@@ -105,3 +108,22 @@ def test_builds_that_the_game_itself_saved_keep_their_connections(shared_data):
         volume = read_blocks(path)
         changes = [one for one in unstable(volume) if one.reason.startswith("changes to")]
         assert not changes, (path.name, changes[:3])
+
+
+WORDS = st.sampled_from(["x", "north", "up", "top", "99999999999", "true", "1e9", "left", "0", "7"])
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.sampled_from(known_blocks()), st.lists(WORDS, min_size=8, max_size=8))
+def test_strange_values_of_properties_are_asked_as_well(name, words):
+    """Files of others may say anything: an answer or a typed error, and nothing else."""
+    keys = [key for key, _ in states_of(name)[0].properties]
+    try:
+        state = f"{name}[{','.join(f'{k}={w}' for k, w in zip(keys, words, strict=False))}]"
+        palette = ("minecraft:air", state, "minecraft:stone")
+        states = np.array([[[1, 2], [1, 0]], [[2, 1], [0, 1]]], np.uint16)
+        unstable_cells(*connected(states, palette))
+        visual_boxes_of(state)
+        light_of(state)
+    except UsageError:
+        pass

@@ -23,6 +23,7 @@ OPPOSITE = (SOUTH, WEST, NORTH, EAST, DOWN, UP)
 STEPS_A_SIDE = 32  # Sixteenths would do but for a few thin shapes.
 _AXES = (2, 0, 2, 0, 1, 1)
 _MIDDLE = slice(14, 18)
+_LAYERS = tuple("12345678")  # Of snow.
 _MEAN_SIDE = 35 / 48  # Of a shape's box: from here on it counts as solid.
 
 
@@ -76,7 +77,9 @@ def support_boxes_of(state: str) -> np.ndarray:
     if is_among(parsed.name, "whole_support"):
         return FULL_CUBE
     if parsed.name == "minecraft:snow":
-        return np.array([[0, 0, 0, 1, int(parsed.get("layers", "1")) / 8, 1]], np.float32)
+        layers = parsed.get("layers")
+        height = int(layers) / 8 if layers in _LAYERS else 1 / 8
+        return np.array([[0, 0, 0, 1, height, 1]], np.float32)
     return boxes_of(state)
 
 

@@ -113,8 +113,7 @@ def _family_boxes(family: VisualFamily, state: BlockState) -> np.ndarray:
     if family.turn:
         boxes = _turned(boxes, _quarter(values[family.turn]))
     if family.rotation:
-        # 0 looks south, and the value grows clockwise in sixteenths of a turn.
-        boxes = _turned(boxes, ((int(values[family.rotation]) + 2) // 4 + 2) % 4)
+        boxes = _turned(boxes, _quarter_of_rotation(values[family.rotation]))
     if family.point:
         boxes = _pointed(boxes, values[family.point])
     if family.axis and values[family.axis] != "y":
@@ -150,6 +149,12 @@ def _holds(values: Mapping[str, str], key: str, wanted: str) -> bool:
 def _quarter(facing: str) -> int:
     """Return the quarter turns, clockwise from above, from north to a side."""
     return QUARTERS.index(facing) if facing in QUARTERS else 0
+
+
+def _quarter_of_rotation(rotation: str) -> int:
+    """Return the nearest quarter turn from north: 0 looks south, and it grows clockwise."""
+    sixteenths = int(rotation) % 16 if rotation.isdecimal() and len(rotation) < 4 else 0
+    return ((sixteenths + 2) // 4 + 2) % 4
 
 
 def _turned(boxes: np.ndarray, quarters: int) -> np.ndarray:
