@@ -8,6 +8,7 @@ from typing import Any
 
 from world2minecraft.build import BuildParameters
 from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.exchange.forms import form_named
 from world2minecraft.find import FindParameters
 from world2minecraft.furnish import FurnishParameters
 from world2minecraft.fuse import CleanParameters, FuseParameters
@@ -24,7 +25,7 @@ class Parameters:
     voxel_m: the paper's cell. blocks_per_metre: at 4 a room is recognised at once, at 2 it is
     not. labeller: ``auto`` takes ``votes`` where the capture has 2D labels, else
     ``geometric``. mend: clean up what is built as a person would; ``w2m clean OUT --list`` tells
-    what that was.
+    what that was. formats: further forms of the build, such as ``litematic,nbt,glb``.
     """
 
     voxel_m: float = 0.08
@@ -34,6 +35,7 @@ class Parameters:
     mc_version: str = "1.20.1"
     seed: int = 0
     mend: bool = True
+    formats: str = ""
     capture: dict[str, str] = field(default_factory=dict)
     register: RegisterParameters = field(default_factory=RegisterParameters)
     fuse: FuseParameters = field(default_factory=FuseParameters)
@@ -53,8 +55,15 @@ class Parameters:
         check_name("predictor", self.predictor, PREDICTORS.names())
         check_name("labeller", self.labeller, ("auto", *LABELLERS.names()))
         game_version(self.mc_version)
+        for name in self.format_names:
+            form_named(name)
         if self.fuse.voxel_m != self.voxel_m:
             object.__setattr__(self, "fuse", replace(self.fuse, voxel_m=self.voxel_m))
+
+    @property
+    def format_names(self) -> tuple[str, ...]:
+        """The forms that are written beside the world."""
+        return tuple(name.strip() for name in self.formats.split(",") if name.strip())
 
     def as_json(self) -> dict[str, Any]:
         """Return the parameters as plain values."""

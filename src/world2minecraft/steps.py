@@ -13,6 +13,7 @@ from world2minecraft.edit.cleanup import mended
 from world2minecraft.edit.journal import write_edits
 from world2minecraft.exchange.centers import write_centers
 from world2minecraft.exchange.evidence import read_evidence
+from world2minecraft.exchange.forms import form_named, templates_of_run, write_forms
 from world2minecraft.exchange.layout import write_layouts
 from world2minecraft.exchange.objects import (
     read_objects,
@@ -25,6 +26,7 @@ from world2minecraft.exchange.paper import write_centers_json, write_occ_json
 from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.exchange.rooms import read_rooms
 from world2minecraft.exchange.scan import read_room_size, read_scene_name
+from world2minecraft.files import write_json
 from world2minecraft.find import find_objects
 from world2minecraft.furnish import furnish
 from world2minecraft.fuse import (
@@ -35,6 +37,7 @@ from world2minecraft.fuse import (
     remove_floaters,
 )
 from world2minecraft.label import find_structure, labeller
+from world2minecraft.minecraft.formats import WriteOptions
 from world2minecraft.parameters import Parameters
 from world2minecraft.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
 
@@ -80,6 +83,22 @@ def build_stage(folder: Path, chosen: Parameters) -> None:
     volume, edits = _mended(folder, chosen)
     write_build(folder / "build", volume, mc_version=chosen.mc_version)
     write_edits(folder / "build", edits)
+    write_further_forms(folder, volume, chosen)
+
+
+def write_further_forms(folder: Path, volume: BlockVolume, chosen: Parameters) -> None:
+    """Write the forms that were asked for, and ``forms.json``: what each could not carry."""
+    if not chosen.format_names:
+        return
+    options = WriteOptions(
+        mc_version=chosen.mc_version, other={"templates": templates_of_run(folder)}
+    )
+    lost = write_forms(folder / "build", volume, chosen.format_names, options)
+    rows = {
+        name: {"file": f"room{form_named(name).suffix}", "lost": dict(losses)}
+        for name, losses in lost.items()
+    }
+    write_json(folder / "build" / "forms.json", rows)
 
 
 def built_volume(folder: Path, chosen: Parameters) -> BlockVolume:

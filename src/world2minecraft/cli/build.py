@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from world2minecraft.cli.build_options import (
+    Formats,
     PaletteName,
     Scale,
     Settings,
@@ -72,6 +73,7 @@ def run(
     blocks_per_metre: Scale = 4.0,
     style: Style = None,
     palette: PaletteName = None,
+    formats: Formats = None,
     mc_version: Version = "1.20.1",
     settings: Settings = None,
 ) -> None:
@@ -95,6 +97,7 @@ def run(
         blocks_per_metre: the scale.
         style: what furniture is made of.
         palette: which blocks may be used.
+        formats: further forms of the build.
         mc_version: the game version.
         settings: further parameters.
 
@@ -105,7 +108,7 @@ def run(
     from world2minecraft.parameters import Parameters, with_settings
 
     chosen = Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version)
-    chosen = with_settings(with_build_options(chosen, style, palette), settings or [])
+    chosen = with_settings(with_build_options(chosen, style, palette, formats), settings or [])
     if out is not None:
         into_folder(source, out, chosen)
     if into is not None and at is not None:

@@ -22,6 +22,10 @@ PaletteName = Annotated[
     str | None,
     typer.Option("--palette", help="vanilla (usual), a mod's, or a YAML file of yours."),
 ]
+Formats = Annotated[
+    str | None,
+    typer.Option("--formats", metavar="A,B", help="Further forms: litematic,nbt,glb,mcstructure."),
+]
 Version = Annotated[str, typer.Option("--mc-version", help="The game version to write for.")]
 Settings = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any parameter.")
@@ -29,19 +33,18 @@ Settings = Annotated[
 
 
 def with_build_options(
-    parameters: "Parameters", style: str | None, palette: str | None
+    parameters: "Parameters", style: str | None, palette: str | None, formats: str | None = None
 ) -> "Parameters":
     """Return the parameters with what the options name; what is None stays as it is.
 
     Raises:
-        UsageError: there is no such style or palette.
+        UsageError: there is no such style, palette or form.
     """
     from world2minecraft.parameters import with_settings
 
     chosen = {"style": style, "palette": _whole(palette)}
-    return with_settings(
-        parameters, [f"build.{key}={value}" for key, value in chosen.items() if value is not None]
-    )
+    settings = [f"build.{key}={value}" for key, value in chosen.items() if value is not None]
+    return with_settings(parameters, settings + ([f"formats={formats}"] if formats else []))
 
 
 def _whole(palette: str | None) -> str | None:

@@ -5,7 +5,13 @@ from typing import Annotated
 
 import typer
 
-from world2minecraft.cli.build_options import PaletteName, Scale, Style, with_build_options
+from world2minecraft.cli.build_options import (
+    Formats,
+    PaletteName,
+    Scale,
+    Style,
+    with_build_options,
+)
 
 EXAMPLES = """\
 w2m demo                        a living room, to OUT/
@@ -26,6 +32,7 @@ def run(
     blocks_per_metre: Scale = 4.0,
     style: Style = None,
     palette: PaletteName = None,
+    formats: Formats = None,
 ) -> None:
     """Generate a room, scan it with a virtual depth camera and build it as a world.
 
@@ -40,6 +47,7 @@ def run(
         blocks_per_metre: the scale.
         style: what furniture is made of.
         palette: which blocks may be used.
+        formats: further forms of the build.
     """
     from world2minecraft.build import BuildParameters
     from world2minecraft.cli.outcome import compiling_note, say_where
@@ -58,6 +66,6 @@ def run(
         scan_room(room, out / "capture", frames=frames, seed=seed, progress=progress)
         plaque = BuildParameters(plaque=f"A {kind} room")
         chosen = Parameters(blocks_per_metre=blocks_per_metre, build=plaque)
-        chosen = with_build_options(chosen, style, palette)
+        chosen = with_build_options(chosen, style, palette, formats)
         facts = make(out / "capture", out, chosen, None, None, progress)
     say_where(out, facts)

@@ -28,9 +28,19 @@ def say_where(out: Path, facts: dict[str, Any]) -> None:
 
 
 def say_how_to_play(build: Path) -> None:
-    """Print how to open the world in the game."""
-    print(f"  play   copy {build / 'world'} into the game's saves folder:")
-    print("         Windows  %APPDATA%\\.minecraft\\saves")
-    print("         macOS    ~/Library/Application Support/minecraft/saves")
-    print("         Linux    ~/.minecraft/saves")
-    print(f"  or     {build / 'room.schem'} for WorldEdit, {build / 'datapack.zip'} for a server")
+    """Print how to open the world in the game, and what the further forms left out."""
+    print(f"  play   w2m install {build.parent}      puts the world into your game")
+    print(f"  or     copy {build / 'world'} into the game's saves folder")
+    print(f"         {build / 'room.schem'} for WorldEdit, {build / 'datapack.zip'} for a server")
+    say_forms(build)
+
+
+def say_forms(build: Path) -> None:
+    """Print the further forms that were asked for, each with what it could not carry."""
+    from world2minecraft.files import read_json
+
+    if not (build / "forms.json").is_file():
+        return
+    for row in read_json(build / "forms.json").values():
+        lost = ", ".join(f"{count:,} {what}" for what, count in row["lost"].items())
+        print(f"         {build / row['file']}" + (f" (left out: {lost})" if lost else ""))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from world2minecraft.cli.build_options import (
+    Formats,
     PaletteName,
     Scale,
     Settings,
@@ -50,6 +51,7 @@ def run(
     blocks_per_metre: Scale = 4.0,
     style: Style = None,
     palette: PaletteName = None,
+    formats: Formats = None,
     start: Start = None,
     labels: LabelImages = None,
     labeller: Annotated[str, typer.Option("--labeller", help="auto, votes or geometric.")] = "auto",
@@ -74,6 +76,7 @@ def run(
         blocks_per_metre: the scale.
         style: what furniture is made of.
         palette: which blocks may be used.
+        formats: further forms of the build.
         start: the stage to begin at.
         labels: 2D label images.
         labeller: how cells are labelled.
@@ -89,7 +92,7 @@ def run(
     from world2minecraft.parameters import Parameters, with_method, with_settings
 
     chosen = Parameters(voxel, blocks_per_metre, labeller=labeller, mc_version=mc_version)
-    chosen = with_build_options(with_method(chosen, method), style, palette)
+    chosen = with_build_options(with_method(chosen, method), style, palette, formats)
     chosen = with_settings(chosen, settings or [])
     if follow and start is not None:
         raise UsageError("--follow reads a whole capture; leave out --from")
