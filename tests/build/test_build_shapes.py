@@ -5,10 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.build import BuildParameters, build_volume
-from world2minecraft.build.cells import shape_of_cells, without_crumbs
-from world2minecraft.build.halves import FULL, LOWER, UPPER, slab_states
+from world2minecraft.build.cells import shape_of_cells
 from world2minecraft.build.lattice import face_shares, lattice_over, memberships, overlaps
-from world2minecraft.build.palettes import load_palette
 from world2minecraft.build.parts import design_of
 from world2minecraft.build.tops import top_cells
 from world2minecraft.furniture import TEMPLATES, template
@@ -88,28 +86,6 @@ def test_an_object_moves_to_fall_on_the_lattice():
         sketch = Sketch().put((x, x + 6), (8, 14), (0, 6), TABLE, WOOD, 1)
         counts.add(int((shape_of(sketch, 1, 4.0).halves[:, :, 0] > 0).sum()))
     assert counts == {4}
-
-
-def test_a_crumb_is_dropped_unless_it_hangs_on_something():
-    halves = np.zeros((5, 5, 5), np.uint8)
-    halves[1, 1, 1], halves[3, 3, 2:4] = FULL, FULL
-    nothing = np.zeros(halves.shape, bool)
-    assert np.argwhere(without_crumbs(halves, nothing)).tolist() == [[3, 3, 2], [3, 3, 3]]
-    held = nothing.copy()
-    held[1, 1, 1] = True
-    assert np.array_equal(without_crumbs(halves, held), halves)
-
-
-def test_halves_become_slabs_where_the_colour_allows():
-    slabs = load_palette("vanilla").slabs
-    states = np.array(["minecraft:oak_planks"] * 3 + ["minecraft:red_concrete"], object)
-    halves = np.array([LOWER, UPPER, FULL, LOWER], np.uint8)
-    assert slab_states(states, halves, slabs, 0.05).tolist() == [
-        "oak_slab[type=bottom]",
-        "oak_slab[type=top]",
-        "minecraft:oak_planks",
-        "minecraft:red_concrete",
-    ]
 
 
 def design(name, turns=0, center=(2.0, 1.0), scale=4.0):

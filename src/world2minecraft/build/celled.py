@@ -29,6 +29,7 @@ CLOSED = (SemanticClass.FURN, SemanticClass.SOFA, SemanticClass.BED)
 NOISY = 4.0  # The factor on prices for cells of a scan: stairs where noise is, look like rubble.
 SIZE_CELLS = 2  # Copies differ by at most so many cells along each axis,
 COPY_IOU = 0.5  # and meet in so much of what either fills.
+SLIM = 0.5  # What is a cell thick is thinner: a cell is on where an eighth of it is filled.
 SHEET = 0.75  # Blocks: curtains, radiators, pictures, screens.
 FRINGE = 0.25  # A layer with less than this share of the fullest one's cells is noise.
 LEAST, MOST = 0.8, 1.25  # By so much a side may be stretched to end with a block.
@@ -270,4 +271,4 @@ def _target(mask: np.ndarray, body: Body, voxel_m: float, bottom: int) -> Target
     inside = (slice(0, 2 * half[0]), slice(0, 2 * half[1]), slice(0, tall))
     thin = thin_cells(mask, voxel_m)
     wanted, slight = (covered(values, edges, counts)[inside] for values in (mask, thin))
-    return Target(wanted, slight, bottom)
+    return Target(wanted - SLIM * slight, (1 - SLIM) * slight, bottom)

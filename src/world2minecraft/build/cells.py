@@ -1,4 +1,7 @@
-"""An object built from its own cells: resampled at block scale so that thin things survive."""
+"""An object of full blocks from its own cells: resampled so that thin things survive.
+
+That is what becomes of an object in whose colours no finer shape exists.
+"""
 
 from typing import NamedTuple
 
@@ -6,7 +9,6 @@ import numpy as np
 
 from world2minecraft.build.halves import of_half_layers
 from world2minecraft.build.lattice import Lattice, face_shares
-from world2minecraft.build.morphology import parts_of
 from world2minecraft.types import OccupancyGrid
 
 PHASES = 4  # Shifts of a quarter block along x and y; finer ones changed nothing in reference/fit.
@@ -94,17 +96,3 @@ def _blur(profile: np.ndarray, edges: np.ndarray) -> float:
     filled = share @ profile
     # The sum of squares is greatest when the mass stands in few blocks.
     return -round(float((filled**2).sum()), 6)
-
-
-def without_crumbs(halves: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """Drop single blocks that touch nothing.
-
-    Args:
-        halves: uint8 [X, Y, Z] of one object.
-        held: bool [X, Y, Z], where a block has something beside it that it may hang on.
-    """
-    parts, sizes = parts_of(halves > 0)
-    touching = np.unique(parts[held & (parts > 0)])
-    keep = (sizes > 1) | np.isin(np.arange(len(sizes)), touching)
-    keep[0] = False
-    return np.where(keep[parts], halves, 0).astype(np.uint8)

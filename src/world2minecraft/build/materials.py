@@ -67,11 +67,14 @@ class Materials:
         if not len(colours):
             return frozenset(("full", *offered))
         light = lightness_weight
-        best = _nearest(colours, oklab_of_srgb(colours_of(full)), light, handicaps)
+        every = _distances(colours, oklab_of_srgb(colours_of(full)), light, handicaps)
+        nearest, best = np.array(full, object)[every.argmin(1)], every.min(1)
         kinds = {"full"}
         for kind in offered:
-            apart = _nearest(colours, self.colours[kind], light, self.handicaps[kind])
-            if (apart - best <= GIVEN_UP[kind]).mean() >= ENOUGH:
+            apart = _distances(colours, self.colours[kind], light, self.handicaps[kind]).min(1)
+            near = apart - best <= GIVEN_UP[kind]
+            near |= np.isin(nearest, list(self.own[kind]))
+            if near.mean() >= ENOUGH:
                 kinds.add(kind)
         return frozenset(kinds)
 
@@ -108,8 +111,8 @@ class Materials:
         return shape.of(self.blocks[shape.kind][best])
 
 
-def _nearest(colours, offered, light, handicaps) -> np.ndarray:
-    """Return how far Oklab colours [N, 3] are from the nearest of others [M, 3], float64 [N].
+def _distances(colours, offered, light, handicaps) -> np.ndarray:
+    """Return how far Oklab colours [N, 3] are from others [M, 3], float64 [N, M].
 
     Where a clear colour would turn grey, that counts most: a teal curtain of stone is grey.
     """
@@ -118,7 +121,7 @@ def _nearest(colours, offered, light, handicaps) -> np.ndarray:
     faded = (1 + (FADED - 1) * clear) * (other < own[:, None]) + (other >= own[:, None])
     square = (colours[:, None] - offered) ** 2
     apart = light * square[..., 0] + (WEIGHTS[1] * faded) ** 2 * (square[..., 1] + square[..., 2])
-    return (np.sqrt(apart) + handicaps).min(1)
+    return np.sqrt(apart) + handicaps
 
 
 def materials_of(palette: Palette) -> Materials:

@@ -70,6 +70,7 @@ class ObjectBuilder:
         self.lattice = canvas.lattice
         self.cell_blocks = grid.voxel_m * self.lattice.blocks_per_metre
         self.dresser = Dresser(palette, parameters)
+        self.fitted = np.zeros(grid.shape, bool)  # Cells that some fit has shown or left out.
         self.plates = Plates(canvas, palette)
         self.paints = chair_paints(
             grid, colours, coloured & self.coats.exposed, parameters.lightness_weight
@@ -92,7 +93,7 @@ class ObjectBuilder:
             if not known or not self.put_template(placement, cells, forced=not len(cells)):
                 self.put_cells(cells, placement.class_id, placement.object_id, solid)
         rest = np.isin(self.grid.labels, OBJECT_CLASSES)
-        rest &= ~self._shown() & ~self._told(placements)
+        rest &= ~self._shown() & ~self._told(placements) & ~self.fitted
         keys = (self.grid.labels.astype(np.int32) << 16) + self.grid.instance
         for key in np.unique(keys[rest]).tolist():
             cells, number = np.argwhere(rest & (keys == key)), key & 0xFFFF
@@ -181,6 +182,7 @@ class ObjectBuilder:
         )
         if made.fit.iou < LEAST_IOU or made.fit.thin_recall < LEAST_THIN:
             return False
+        self.fitted[tuple(cells.T)] = True
         self._put_design(made.design, Hues(hues, made.blocks), thing)
         return True
 
@@ -203,6 +205,7 @@ class ObjectBuilder:
             share = self.parameters.object_share
             shape = shape_of_cells(cells, self.grid, self.lattice, share, shift=number > 0)
             design, blocks = of_halves(shape.low, shape.halves), shape.blocks
+        self.fitted[tuple(cells.T)] = True
         self._put_design(design, Hues(hues, blocks), thing)
 
     def _put_design(self, design: Design, hues: Hues, thing: Thing) -> None:
