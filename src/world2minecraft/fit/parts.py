@@ -51,8 +51,13 @@ def fit_parts(
         counts: whole blocks that it must fill along x and y; None leaves that to the fit.
         bottom: the sub-cell, from 0 up to 7, at which it begins over a block's lower face.
         flush: whether flat tops end with their block, so that things can lie on them.
+
+    Raises:
+        ValueError: there are no boxes.
     """
     boxes = np.asarray(boxes_m, np.float64).reshape(-1, 6) * blocks_per_metre
+    if not len(boxes):
+        raise ValueError("furniture needs boxes, at least one")
     boxes = boxes - np.tile(
         [*((boxes[:, :2].min(0) + boxes[:, 3:5].max(0)) / 2), boxes[:, 2].min()], 2
     )
@@ -68,8 +73,8 @@ def fit_parts(
         score -= JOINT_COST * broken_share(grid, problem, shapes)
         if best is None or score > best[0] + SAME:
             best = score, fit, factors
-    if best is None:  # There always is the factor 1.
-        raise ValueError("furniture needs boxes")
+    if best is None:
+        raise ValueError("no height was tried")
     _, fit, factors = best
     return PartsFit(fit, _owners(boxes * np.tile(factors, 2), fit, shapes, bottom))
 
