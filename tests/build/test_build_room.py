@@ -253,6 +253,17 @@ def test_a_ceiling_is_not_closed_where_one_saw_through():
     assert hole.sum() >= 0.8 * (20 * VOXEL_M * 4) ** 2
 
 
+@pytest.mark.parametrize("scale", SCALES)
+def test_glass_shuts_a_room_whose_ceiling_nobody_saw(scale):
+    sketch = Sketch(ceiling=False)
+    sketch.labels[:, :, -2:] = 255
+    opened, shut = build(sketch, scale), build(sketch, scale, ceiling="glass")
+    rim = np.ones_like(opened.states, bool)
+    rim[1:-1, 1:-1, 1:-1] = False
+    assert (inside_of(opened) & rim).any() and not (inside_of(shut) & rim).any()
+    assert not (opened.semantic == CEILING).any()
+
+
 def test_a_palette_without_lamps_and_signs_gets_none(tmp_path):
     own = tmp_path / "plain.yaml"
     own.write_text("name: plain\nblocks: [white_concrete, oak_planks, glass, glass_pane]\n")

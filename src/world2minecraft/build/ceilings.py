@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.build.faces import blocks_behind, find_faces, straighten, vote
 from world2minecraft.build.lattice import Lattice
-from world2minecraft.build.morphology import closed
+from world2minecraft.build.morphology import closed, grown
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.classes import SemanticClass
 from world2minecraft.types import OccupancyGrid
@@ -66,3 +66,24 @@ def close_ceiling(
         return
     level = int(layers.argmax())
     own[:, :, level] |= footprint & shut[:, :, ground + 1 + level] & ~own.any(2)
+
+
+def cover_with_glass(
+    ceiling: np.ndarray, walls: np.ndarray, footprint: np.ndarray, storey: tuple[int, int]
+) -> None:
+    """Lay, in place, a ceiling upon the walls of a storey in which none was seen.
+
+    Of glass it shuts a room and hides nothing of it.
+
+    Args:
+        ceiling: bool [X, Y, Z], what there is of it.
+        walls: bool [X, Y, Z], where walls stand.
+        footprint: bool [X, Y], the columns within the storey's rooms.
+        storey: its first layer above the floor, and the one past its last.
+    """
+    ground, top = storey
+    layers = np.flatnonzero(walls[:, :, ground:top].any((0, 1)))
+    level = ground + int(layers.max()) + 1 if len(layers) else top
+    plan = grown(footprint, (1, 1))
+    if level < min(top, walls.shape[2]) and not (ceiling[:, :, ground:top] & plan[..., None]).any():
+        ceiling[:, :, level] |= plan

@@ -35,7 +35,8 @@ class BuildParameters:
         cells by the best fitting block states.
     shapes: of which shapes objects are fitted: ``calm``, full blocks, slabs, stairs, trapdoors,
         posts and carpets; or ``cubes``, full blocks alone.
-    ceiling: ``on`` where it was seen, ``glass``, or ``off``, so that one looks in from above.
+    ceiling: ``on`` where it was seen, ``glass`` there or upon the walls, or ``off``, so that one
+        looks in from above.
     lights: ``hidden``, invisible light blocks, so that the room is lit and safe at night;
         ``lamps``, that and lamps that hang from the ceiling; or ``off``.
     plaque: the text of a sign near the spawn; ``auto`` is the scene's name, ``off`` no sign.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.build.ceilings import close_ceiling, find_ceiling
+from world2minecraft.build.ceilings import close_ceiling, cover_with_glass, find_ceiling
 from world2minecraft.build.doorways import open_doorways
 from world2minecraft.build.faces import blocks_behind, find_faces, see_through, straighten, vote
 from world2minecraft.build.lattice import Lattice, face_shares, overlaps, volume_shares
@@ -80,6 +80,8 @@ def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParamete
         open_doorways(walls, grid, lattice, (ground, top))
         footprints.append(footprint)
         close_ceiling(ceiling, footprint, open_share < OPEN_SHARE, (ground, top))
+        if parameters.ceiling == "glass":
+            cover_with_glass(ceiling, walls, footprint, (ground, top))
         if ground > lattice.ground:
             _one_slab(ceiling, floor, ground - 1)
     windows = _windows(grid, walls, free, lattice, parameters)
