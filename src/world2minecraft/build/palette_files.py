@@ -34,7 +34,7 @@ PAINTED = (*STRUCTURE_CLASSES, *OBJECT_CLASSES)
 # What does not stand by itself for good, by parts of names: it falls, melts, grows, weathers.
 _PASSING = ("concrete_powder", "sand", "gravel", "ice", "coral", "leaves", "grass_block",
             "mycelium", "podzol", "nylium", "farmland", "dragon_egg", "anvil", "tnt", "sponge",
-            "spawner", "command_block", "structure_block", "jigsaw", "ore")  # fmt: skip
+            "spawner", "command_block", "structure_block", "jigsaw", "_ore")  # fmt: skip
 _LASTING = ("sandstone", "packed_ice", "blue_ice")
 _WEATHERING = ("copper",)
 

@@ -74,7 +74,7 @@ def put_colliders(
         return 0
     solid = _solid(cover, canvas)
     if not solid.any() and frame.size_m.max() * canvas.lattice.blocks_per_metre >= 1:
-        solid = cover.volume == cover.volume.max()
+        solid = (cover.volume == cover.volume.max()) & ~_is_flat(cover, canvas)
     window = tuple(slice(a, a + n) for a, n in zip(cover.low, touched.shape, strict=True))
     free = canvas.states[window] == 0
     glows = _glowing(pieces, frame, canvas, cover)
@@ -99,9 +99,13 @@ def _solid(cover: Cover, canvas: Canvas) -> np.ndarray:
     beside = np.maximum(padded[:, :, 2:], padded[:, :, :-2])
     # A plate on the border of two layers is in the one that has more of it.
     solid &= (cover.volume >= FILLED) | (cover.volume >= beside)
-    layers = cover.low[2] + np.arange(solid.shape[2])
-    ground = np.isin(layers, canvas.lattice.grounds)
-    return solid & ~(ground & (cover.height <= FLAT))
+    return solid & ~_is_flat(cover, canvas)
+
+
+def _is_flat(cover: Cover, canvas: Canvas) -> np.ndarray:
+    """Return the blocks, bool [X, Y, Z], whose part lies flat on a floor."""
+    layers = cover.low[2] + np.arange(cover.height.shape[2])
+    return np.isin(layers, canvas.lattice.grounds) & (cover.height <= FLAT)
 
 
 def _glowing(pieces: Sequence[Piece], frame: Frame, canvas: Canvas, cover: Cover) -> np.ndarray:

@@ -144,6 +144,6 @@ def heap_pieces(
         boxes = exact
     corners = np.tile(low_m, 2) + boxes[:, 1:] * cell_m
     return [
-        Piece(box, names[label - 1])
+        Piece(box, str(names[int(label) - 1]))
         for label, box in zip(boxes[:, 0].tolist(), corners, strict=True)
     ]
