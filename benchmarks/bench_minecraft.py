@@ -1,78 +1,149 @@
-"""Worlds and schematics, written and read, beside anvil-parser2 and mcschematic."""
+"""Every block format, written and read, beside the public packages in the same run.
+
+The region has 4.2 million cells, of which 1.75 million are not air. mcschematic and anvil-parser2
+do the whole of it. nbtlib holds an object for each block: it does a part, and rates are compared.
+"""
 
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import anvil
-import mcschematic
 import numpy as np
 
+from benchmarks import rivals_minecraft as rivals
 from benchmarks.rows import Row
 from world2minecraft.coordinates import block_to_room
 from world2minecraft.minecraft.datapack import write_datapack
+from world2minecraft.minecraft.legacy_blocks import legacy_state
+from world2minecraft.minecraft.litematic import read_litematic, write_litematic
+from world2minecraft.minecraft.mcedit import read_schematic
+from world2minecraft.minecraft.nbt import Short, pack_gzip, write_nbt
 from world2minecraft.minecraft.schem import read_schem, write_schem
-from world2minecraft.minecraft.states import parse_state, states_of
+from world2minecraft.minecraft.states import states_of
+from world2minecraft.minecraft.structure import read_structure, write_structure
+from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.world import read_world, write_world
 from world2minecraft.types import AIR, BlockVolume
 
 SHAPE = (256, 64, 256)  # 4.2 million cells in 256 chunks.
-RIVAL_SHAPE = (64, 64, 64)  # The rivals go block by block: a sixteenth of the region is enough.
+PART_SHAPE = (48, 48, 48)  # What nbtlib does.
+BLOCKS = 1_750_000  # Of the region, not air.
 REPEATS = 5
 WRITE_BUDGET, READ_BUDGET = 20.0, 25.0  # Million cells a second.
 
 
 def run() -> list[Row]:
     """Measure writing and reading, the best of a few runs after one to compile the kernels."""
-    region, part = furnished_region(SHAPE), furnished_region(RIVAL_SHAPE)
+    region, part = furnished_region(SHAPE), furnished_region(PART_SHAPE)
     with tempfile.TemporaryDirectory() as folder:
-        return list(_rows(region, part, Path(folder)))
+        place = Path(folder)
+        return [
+            *_worlds(region, place),
+            *_schematics(region, part, place),
+            *_litematics(region, part, place),
+            *_structures(part, place),
+            *_old_schematics(region, part, place),
+            _row("data pack write", region, lambda: write_datapack(region, place / "pack.zip")),
+        ]
 
 
-def _rows(region: BlockVolume, part: BlockVolume, folder: Path) -> Iterator[Row]:
-    cells, part_cells = region.states.size / 1e6, part.states.size / 1e6
+def _worlds(region: BlockVolume, folder: Path) -> Iterator[Row]:
     x, y, z = region.corner
     box = (x, y, z, x + SHAPE[0], y + SHAPE[1], z + SHAPE[2])
+    rival = ("anvil-parser2", _rate(region, lambda: rivals.anvil_write(region, folder / "a.mca")))
+    yield _row("Anvil write", region, lambda: write(region, folder / "w"), rival, WRITE_BUDGET)
+    old = game_version("1.15.2")
+    yield _row("Anvil write, 1.15", region, lambda: write(region, folder / "o", old), rival)
+    theirs = folder / "w" / "region" / "r.0.0.mca"
+    rival = ("anvil-parser2", _rate(region, lambda: rivals.anvil_read(theirs, SHAPE)))
+    ours = lambda: read_world(folder / "w", box=box)  # noqa: E731
+    yield _row("Anvil read", region, ours, rival, READ_BUDGET)
+    yield _row("Anvil read, 1.15", region, lambda: read_world(folder / "o", box=box), rival)
 
-    rate = cells / best(lambda: write(region, folder / "world"))
-    rival = part_cells / once(lambda: rival_write(part, folder / "rival.mca"))
-    yield _row("Anvil write", rate, WRITE_BUDGET, "anvil-parser2", rival)
 
-    rate = cells / best(lambda: read_world(folder / "world", box=box))
-    write(part, folder / "part")
-    rival = part_cells / once(lambda: rival_read(folder / "part" / "region" / "r.0.0.mca"))
-    yield _row("Anvil read", rate, READ_BUDGET, "anvil-parser2", rival)
+def _schematics(region: BlockVolume, part: BlockVolume, folder: Path) -> Iterator[Row]:
+    rival = ("mcschematic", _rate(region, lambda: rivals.mcschematic_write(region, folder)))
+    for number in (2, 3):
+        path = folder / f"{number}.schem"
+        work = lambda n=number, p=path: write_schem(region, p, schem_version=n)  # noqa: E731
+        yield _row(f"Sponge {number} write", region, work, rival)
+    path = folder / "rival.schem"
+    rival = ("mcschematic", _rate(region, lambda: rivals.mcschematic_read(path)))
+    for number in (2, 3):
+        work = lambda n=number: read_schem(folder / f"{n}.schem")  # noqa: E731
+        yield _row(f"Sponge {number} read", region, work, rival)
+    write_schem(part, folder / "part.schem")
+    path = folder / "part.schem"
+    rival = ("nbtlib", _rate(part, lambda: rivals.nbtlib_schem_read(path)))
+    yield _row("Sponge 2 read", region, lambda: read_schem(folder / "2.schem"), rival)
 
-    rate = part_cells / best(lambda: write_schem(part, folder / "a.schem"))
-    rival = part_cells / once(lambda: rival_schem(part, folder))
-    yield _row("schematic write", rate, None, "mcschematic", rival)
 
-    rate = part_cells / best(lambda: read_schem(folder / "a.schem"))
-    rival = part_cells / once(lambda: mcschematic.MCSchematic(str(folder / "a.schem")))
-    yield _row("schematic read", rate, None, "mcschematic", rival)
+def _litematics(region: BlockVolume, part: BlockVolume, folder: Path) -> Iterator[Row]:
+    path, small = folder / "a.litematic", folder / "b.litematic"
+    rival = ("nbtlib", _rate(part, lambda: rivals.nbtlib_litematic_write(part, small)))
+    yield _row("Litematica write", region, lambda: write_litematic(region, path), rival)
+    rival = ("nbtlib", _rate(part, lambda: rivals.nbtlib_litematic_read(small)))
+    yield _row("Litematica read", region, lambda: read_litematic(path), rival)
 
-    rate = cells / best(lambda: write_datapack(region, folder / "pack.zip"))
-    yield _row("data pack write", rate, None, None, None)
+
+def _structures(part: BlockVolume, folder: Path) -> Iterator[Row]:
+    path, theirs = folder / "a.nbt", folder / "b.nbt"
+    rival = ("nbtlib", _rate(part, lambda: rivals.nbtlib_structure_write(part, theirs)))
+    yield _row("structure write", part, lambda: write_structure(part, path), rival)
+    rival = ("nbtlib", _rate(part, lambda: rivals.nbtlib_structure_read(theirs)))
+    yield _row("structure read", part, lambda: read_structure(path), rival)
+
+
+def _old_schematics(region: BlockVolume, part: BlockVolume, folder: Path) -> Iterator[Row]:
+    path, small = folder / "a.schematic", folder / "b.schematic"
+    path.write_bytes(_old_schematic(region))
+    small.write_bytes(_old_schematic(part))
+    names = {(n, v): legacy_state(n, v, {})[0] for n in range(256) for v in range(16)}
+    rival = ("nbtlib", _rate(part, lambda: rivals.nbtlib_schematic_read(small, names)))
+    yield _row("old schematic read", region, lambda: read_schematic(path), rival)
+
+
+def _old_schematic(volume: BlockVolume) -> bytes:
+    """The same cells as wool and its colours, in numbers."""
+    cells = np.ascontiguousarray(volume.states.transpose(1, 2, 0)).ravel()
+    width, height, length = map(Short, volume.states.shape)
+    tree = {"Width": width, "Height": height, "Length": length, "Materials": "Alpha"}
+    tree["Blocks"] = np.where(cells > 0, 35, 0).astype(np.int8)
+    tree["Data"] = (cells & 15).astype(np.int8)
+    return pack_gzip(write_nbt(tree))
 
 
 def _row(
-    what: str, rate: float, budget: float | None, rival: str | None, rival_rate: float | None
+    what: str,
+    volume: BlockVolume,
+    work: Callable[[], object],
+    rival: tuple[str | None, float] = (None, 0.0),
+    budget: float | None = None,
 ) -> Row:
-    ratio = rate / rival_rate if rival_rate else None
-    return Row(what, round(rate, 2), "Mcell/s", budget, rival, ratio)
+    rate = volume.states.size / 1e6 / best(work)
+    name, theirs = rival
+    return Row(what, round(rate, 2), "Mcell/s", budget, name, rate / theirs if theirs else None)
+
+
+def _rate(volume: BlockVolume, work: Callable[[], object]) -> float:
+    """Million cells a second of one run."""
+    return volume.states.size / 1e6 / once(work)
 
 
 def furnished_region(shape: tuple[int, int, int]) -> BlockVolume:
-    """Boxes of one state each and 1 % noise: 36 % of it is not air, in 20 states."""
+    """Boxes of one state each and 1 % noise: 1.75 million of 4.2 are not air, in 20 states."""
     rng = np.random.default_rng(0)
     states = np.zeros(shape, np.uint16)
-    for _ in range(200 * states.size // (256 * 64 * 256)):
-        low = rng.integers(0, shape)
-        high = low + rng.integers(4, 40, 3)
-        states[tuple(map(slice, low, high))] = rng.integers(1, 20)
     noise = rng.random(shape) < 0.01
     states[noise] = rng.integers(1, 20, noise.sum())
+    wanted = BLOCKS * states.size // (256 * 64 * 256)
+    missing = wanted - np.count_nonzero(states)
+    while missing > 0:
+        low = rng.integers(0, shape)
+        size = np.minimum(rng.integers(4, 40, 3), (1 << 30) if missing > 64_000 else 4)
+        states[tuple(map(slice, low, low + size))] = rng.integers(1, 20)
+        missing = wanted - np.count_nonzero(states)
     empty = np.zeros(shape, np.uint8)
     return BlockVolume(
         states=states,
@@ -84,38 +155,9 @@ def furnished_region(shape: tuple[int, int, int]) -> BlockVolume:
     )
 
 
-def write(volume: BlockVolume, folder: Path) -> None:
-    write_world(volume, folder, name="bench", spawn=(0.5, 64.0, 0.5), spawn_yaw_deg=0.0)
-
-
-def rival_write(volume: BlockVolume, path: Path) -> None:
-    region = anvil.EmptyRegion(0, 0)
-    blocks = [_rival_block(state) for state in volume.palette]
-    for cell in np.argwhere(volume.states).tolist():
-        region.set_block(blocks[volume.states[tuple(cell)]], *cell)
-    region.save(str(path))
-
-
-def _rival_block(state: str) -> anvil.Block:
-    parsed = parse_state(state)
-    return anvil.Block(*parsed.name.split(":"), properties=dict(parsed.properties))
-
-
-def rival_read(path: Path) -> None:
-    region = anvil.Region.from_file(str(path))
-    for x in range(RIVAL_SHAPE[0] // 16):
-        for z in range(RIVAL_SHAPE[2] // 16):
-            chunk = region.get_chunk(x, z)
-            for section in range(RIVAL_SHAPE[1] // 16):
-                for _ in chunk.stream_blocks(section=section):
-                    pass
-
-
-def rival_schem(volume: BlockVolume, folder: Path) -> None:
-    schematic = mcschematic.MCSchematic()
-    for cell in np.argwhere(volume.states).tolist():
-        schematic.setBlock(tuple(cell), volume.palette[volume.states[tuple(cell)]])
-    schematic.save(str(folder), "rival", mcschematic.Version.JE_1_20_1)
+def write(volume: BlockVolume, folder: Path, version: GameVersion | None = None) -> None:
+    spawn = {"spawn": (0.5, 64.0, 0.5), "spawn_yaw_deg": 0.0}
+    write_world(volume, folder, name="bench", version=version, **spawn)
 
 
 def best(work: Callable[[], object]) -> float:

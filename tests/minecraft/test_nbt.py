@@ -1,5 +1,6 @@
 import io
 import struct
+import zlib
 
 import nbtlib
 import numpy as np
@@ -224,3 +225,19 @@ def test_java_writes_zeros_and_far_planes_in_its_own_way():
     data = write_nbt({"t": "\0😀"})
     assert b"\xc0\x80\xed\xa0\xbd\xed\xb8\x80" in data
     assert read_nbt(data, "x")[1] == {"t": "\0😀"}
+
+
+@pytest.mark.parametrize("size", [0, 1, 65_535, (1 << 20) - 1, 1 << 20, (1 << 20) + 1, 5 << 20])
+@pytest.mark.parametrize("kind", ["zeros", "noise", "both"])
+def test_unpacking_gives_every_byte_of_any_size(size, kind):
+    noise = np.random.default_rng(size).bytes(size)
+    data = {"zeros": bytes(size), "noise": noise, "both": (noise[: size // 2] + bytes(size))[:size]}
+    for packed in (pack_gzip(data[kind]), zlib.compress(data[kind], 9)):
+        assert unpack(packed, "file") == data[kind]
+        with pytest.raises(DamagedFileError, match="ends too early"):
+            unpack(packed[:-1], "file")
+        with pytest.raises(DamagedFileError, match="bytes after its end"):
+            unpack(packed + b"x", "file")
+        if size:
+            with pytest.raises(LimitError, match="unpacks to more than"):
+                unpack(packed, "file", size - 1)

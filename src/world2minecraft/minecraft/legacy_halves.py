@@ -66,6 +66,8 @@ def _join(
     join: Callable[[BlockState, BlockState], Pair],
 ) -> None:
     """Change every lower part with an upper one above it, and that one."""
+    if not (is_lower.any() and is_upper.any()):
+        return
     known = len(is_lower)  # States that were added since are finished.
     numbers = np.minimum(states, known - 1)
     is_pair = (is_lower[numbers] & (states < known))[:, :-1] & is_upper[numbers][:, 1:]

@@ -20,6 +20,7 @@ from world2minecraft.minecraft.legacy_entities import block_entity_of, entity_of
 from world2minecraft.minecraft.legacy_halves import join_halves
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, unpack
+from world2minecraft.minecraft.packing import read_keys
 from world2minecraft.minecraft.unlabelled import (
     MAX_FILE_BYTES,
     MISSHAPEN,
@@ -70,7 +71,7 @@ def _volume_of(root: dict[str, Any], source: Path, losses: Losses) -> BlockVolum
     held = [block_entity_of(nbt, corner) for nbt in root.get("TileEntities", [])]
     states, palette = _with_entities(states, palette, held, corner)
     if states.size <= MAX_JOINED_CELLS:
-        states, palette = _used(*connected(*join_halves(states, palette)))
+        states, palette = _used(*connected(*join_halves(states, palette)), palette)
     else:
         losses.add("connections of blocks, for the schematic is too large to compute them")
     losses.add("biomes", int("Biomes" in root))
@@ -83,25 +84,15 @@ def _blocks(
     root: dict[str, Any], size: Corner, source: Path, losses: Losses
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return the states by number and data value alone, and their palette."""
-    width, height, length = size
-    layer, count = width * length, math.prod(size)
+    count = math.prod(size)
     # Taken out of the tree, so that their memory is free when the blocks are made.
     numbers, values = root.pop("Blocks").view(np.uint8), root.pop("Data").view(np.uint8)
     more = root.pop("AddBlocks", np.zeros(0, np.int8)).view(np.uint8)
     if len(numbers) < count or len(values) < count or 0 < 2 * len(more) < count - 1:
         raise DamagedFileError(source, f"says {count:,} blocks and holds fewer")
-
-    def keys(y: int) -> np.ndarray:
-        """Return number * 16 + data value of the blocks of a layer."""
-        at = np.arange(y * layer, (y + 1) * layer)
-        own = numbers[at].astype(np.uint16)
-        if len(more):
-            own |= (more[at >> 1] >> (at % 2 * 4) & 15).astype(np.uint16) << np.uint16(8)
-        return own << np.uint16(4) | values[at] & np.uint16(15)
-
+    states = np.empty(size, np.uint16)
     counts = np.zeros(1 << 16, np.int64)
-    for y in range(height):
-        counts += np.bincount(keys(y), minlength=len(counts))
+    read_keys(numbers, values, more, states.transpose(1, 2, 0), counts)
     names = _names(root)
     text_of: dict[int, str] = {}
     for key in np.flatnonzero(counts).tolist():
@@ -112,9 +103,8 @@ def _blocks(
     lookup = np.zeros(1 << 16, np.uint16)
     for key, text in text_of.items():
         lookup[key] = number_of[text]
-    states = np.empty(size, np.uint16)
-    for y in range(height):
-        states[:, y, :] = lookup[keys(y)].reshape(length, width).T
+    for layer in states:
+        layer[:] = lookup[layer]
     return states, palette
 
 
@@ -148,8 +138,12 @@ def _with_entities(
     return states, tuple(texts)
 
 
-def _used(states: np.ndarray, palette: tuple[str, ...]) -> tuple[np.ndarray, tuple[str, ...]]:
+def _used(
+    states: np.ndarray, palette: tuple[str, ...], before: tuple[str, ...]
+) -> tuple[np.ndarray, tuple[str, ...]]:
     """Leave out the states that no block has any more, and sort the others."""
+    if palette == before == (AIR, *sorted(before[1:])):
+        return states, palette
     used = np.flatnonzero(np.bincount(states.ravel(), minlength=len(palette)))
     kept = (AIR, *sorted({palette[number] for number in used.tolist()} - {AIR}))
     number_of = {text: number for number, text in enumerate(kept)}

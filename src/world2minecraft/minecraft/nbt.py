@@ -10,7 +10,6 @@ before anything is allocated.
 """
 
 import struct
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +18,22 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.errors import DamagedFileError, LimitError, UsageError
+from world2minecraft.minecraft.compression import MAX_BYTES, pack_gzip, unpack
+
+__all__ = [
+    "DEFAULT_LIMITS",
+    "Byte",
+    "Float",
+    "Long",
+    "NbtLimits",
+    "NbtReader",
+    "Short",
+    "pack_gzip",
+    "read_nbt",
+    "tree_bytes",
+    "unpack",
+    "write_nbt",
+]
 
 (END, BYTE, SHORT, INT, LONG, FLOAT, DOUBLE, BYTES, STRING, LIST, COMPOUND, INTS, LONGS) = range(13)
 
@@ -45,7 +60,7 @@ class NbtLimits:
 
     depth: int = 100  # The game allows 512; real files stay below 20.
     values: int = 500_000  # About 100 MB of Python objects, read in a second.
-    bytes: int = 136 << 20  # Unpacked: 67 million blocks in two bytes each.
+    bytes: int = MAX_BYTES  # Unpacked.
     text_bytes: int = 32 << 20  # All texts; each byte may take four in memory.
 
 
@@ -62,7 +77,6 @@ _NUMBERS: dict[int, tuple[struct.Struct, Any]] = {
 }
 _ARRAYS = {BYTES: np.dtype(">i1"), INTS: np.dtype(">i4"), LONGS: np.dtype(">i8")}
 _ARRAY_TAGS = {np.dtype(np.int8): BYTES, np.dtype(np.int32): INTS, np.dtype(np.int64): LONGS}
-_AT_ONCE = 1 << 20
 _UINT16 = struct.Struct(">H")
 _INT32 = struct.Struct(">i")
 
@@ -98,37 +112,6 @@ def write_nbt(root: Mapping[str, Any], name: str = "") -> bytes:
     return bytes(out)
 
 
-def unpack(data: bytes, path: str | Path, limit: int = DEFAULT_LIMITS.bytes) -> bytes:
-    """Undo gzip or zlib where the bytes begin so; other bytes come back as they are.
-
-    Raises:
-        DamagedFileError: the stream is broken. LimitError: it holds more than ``limit`` bytes.
-    """
-    if data[:2] == b"\x1f\x8b":
-        kind, window = "gzip", 31
-    elif len(data) >= 2 and data[0] == 0x78 and (data[0] << 8 | data[1]) % 31 == 0:
-        kind, window = "zlib", 15
-    else:
-        return data
-    stream = zlib.decompressobj(window)
-    try:
-        size, rest = 0, b""
-        for start in range(0, len(data), _AT_ONCE):
-            rest = data[start : start + _AT_ONCE]
-            while rest and not stream.eof and size <= limit:
-                size += len(stream.decompress(rest, _AT_ONCE))
-                rest = stream.unconsumed_tail
-        if size > limit:
-            raise LimitError(path, f"unpacks to more than {limit:,} bytes; at most that is read")
-        if not stream.eof or stream.unused_data or rest:
-            where = "has bytes after its end" if stream.eof else "ends too early"
-            raise DamagedFileError(path, f"its {kind} stream {where}")
-        # Into one buffer of the right size: one that grows takes twice its memory.
-        return zlib.decompress(data, window, size)
-    except zlib.error as error:
-        raise DamagedFileError(path, f"is no whole {kind} stream ({error})") from error
-
-
 def tree_bytes(value: Any) -> int:
     """Return about how much memory a value of NBT takes, to bound what is kept of many files."""
     if isinstance(value, dict):
@@ -138,14 +121,6 @@ def tree_bytes(value: Any) -> int:
     if isinstance(value, np.ndarray):
         return 120 + value.nbytes
     return 60 + 4 * len(value) if isinstance(value, str) else 40
-
-
-def pack_gzip(data: bytes, level: int = 6) -> bytes:
-    """Return ``data`` as gzip without a time or a name, so that the bytes depend on it alone."""
-    packer = zlib.compressobj(level, zlib.DEFLATED, -15)
-    body = packer.compress(data) + packer.flush()
-    head = b"\x1f\x8b\x08\0\0\0\0\0\0\xff"
-    return head + body + struct.pack("<II", zlib.crc32(data), len(data) & 0xFFFFFFFF)
 
 
 class NbtReader:

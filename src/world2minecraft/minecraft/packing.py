@@ -147,6 +147,30 @@ def read_varints(data, lookup, out):  # pragma: no cover
 
 
 @njit
+def read_keys(numbers, values, more, out, counts):  # pragma: no cover
+    """Read the blocks of a schematic from before 1.13 as number * 16 + data value.
+
+    Args:
+        numbers: uint8 [N], the low bytes of the block numbers.
+        values: uint8 [N], the data values, of which four bits count.
+        more: uint8 [N / 2] with four more bits of each number, the first one's low; or [0].
+        out: uint16 [Y, Z, X] out, N cells, the last axis fastest.
+        counts: int64 [65536], to which 1 is added for each cell.
+    """
+    size_y, size_z, size_x = out.shape
+    for y in range(size_y):
+        for x in range(size_x):  # A volume's memory runs along z.
+            for z in range(size_z):
+                at = (y * size_z + z) * size_x + x
+                number = np.int64(numbers[at])
+                if len(more):
+                    number |= np.int64(more[at >> 1] >> (4 * (at & 1)) & 15) << 8
+                key = number << 4 | np.int64(values[at] & 15)
+                out[y, z, x] = key
+                counts[key] += 1
+
+
+@njit
 def skip_texts(data, at, ends):  # pragma: no cover
     """Find where each of ``len(ends)`` compounds of texts and of compounds of texts ends.
 

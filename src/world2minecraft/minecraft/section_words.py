@@ -36,10 +36,12 @@ def words_of_today(words: np.ndarray, states: int, *, straddles: bool) -> np.nda
     """
     if states == 1:
         return np.zeros(0, np.uint64)
+    if not straddles and len(words) == word_count(states):
+        return words
     bits = _bits_of(len(words), bits_for(states, LEAST_BITS), straddles)
     if bits is None:
         return None
-    if bits == bits_for(states, LEAST_BITS) and not (straddles and 64 % bits):
+    if straddles and bits == bits_for(states, LEAST_BITS) and not 64 % bits:
         return words
     cells = _straddled_cells(words, bits) if straddles else _padded_cells(words, bits)
     return None if cells.max() >= states else _padded(cells, bits_for(states, LEAST_BITS))
