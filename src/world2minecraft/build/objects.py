@@ -1,17 +1,17 @@
 """Objects as blocks: templates by their parts or idioms, all else from its own cells."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.celled import (
+    CellsDesign,
     Solid,
     design_of_cells,
     inner_cells,
     kinds_of_sheet,
-    shared_solids,
     solid_of,
 )
 from world2minecraft.build.cells import shape_of_cells
@@ -19,6 +19,7 @@ from world2minecraft.build.coats import Coats, Hues
 from world2minecraft.build.dressing import Dresser
 from world2minecraft.build.fitted import LAID_ON, Design, design_of_parts, of_halves, one_block
 from world2minecraft.build.fitting import best_place, best_step
+from world2minecraft.build.guarding import BULKY, solids_of, well_fitted
 from world2minecraft.build.hues import default_colour, spread
 from world2minecraft.build.idioms import Thing, body_box, filled_by, idiom_box, put_idiom
 from world2minecraft.build.lattice import volume_shares
@@ -39,8 +40,6 @@ from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
 
 CELLS = "cells"
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
-BULKY = {"slab", "stairs"}  # Without them a fit is of cubes, and those are better laid by parts.
-LEAST_IOU, LEAST_THIN = 0.3, 0.5  # Below these a fit is worse than the library's design.
 SURE_IOU = 0.5  # What matched as well as this is no guess; a block of a thin part is mostly free.
 FINE_SCALE = 3.0  # Blocks per metre from which a design is held against what was seen free.
 LEAST_ALONE = 0.25  # Blocks: a chair at one block a metre is less, and at two it is more.
@@ -83,14 +82,18 @@ class ObjectBuilder:
         voxels = self.parameters.style == "voxels"
         held = {id(one): self._cells_of(one) for one in placements}
         own = [one for one in placements if one.template == CELLS or voxels]
-        solids = self._solids_of(own, held)
+        solids = solids_of(own, held, self.coats)
+        well = {}
+        if voxels:
+            kinds = self._kinds_of_placement
+            well = well_fitted(placements, held, solids, self.coats, self.lattice, kinds)
         for placement in sorted(placements, key=in_order):
             cells = held[id(placement)]
             known = placement.template != CELLS
-            solid = solids.get(id(placement))
-            if voxels and known and solid and self.put_well(placement, cells, solid):
-                continue
-            if not known or not self.put_template(placement, cells, forced=not len(cells)):
+            if id(placement) in well:
+                self._put_made(placement, cells, well[id(placement)])
+            elif not known or not self.put_template(placement, cells, forced=not len(cells)):
+                solid = solids.get(id(placement))
                 self.put_cells(cells, placement.class_id, placement.object_id, solid)
         rest = np.isin(self.grid.labels, OBJECT_CLASSES)
         rest &= ~self._shown() & ~self._told(placements) & ~self.fitted
@@ -154,37 +157,15 @@ class ObjectBuilder:
         reach = 2 * self.grid.voxel_m
         return own_cells(replace(placement, size_m=placement.size_m + reach), self.grid)
 
-    def _solids_of(
-        self, placements: Sequence[Placement], held: Mapping[int, np.ndarray]
-    ) -> dict[int, Solid]:
-        """Return what placements are fitted to, copies alike, by the id of each."""
-        solids: dict[int, Solid] = {}
-        for one in placements:
-            if len(held[id(one)]):
-                cells, _ = self.coats.with_tops(held[id(one)])
-                inner = inner_cells(cells, self.grid, one.class_id)
-                solids[id(one)] = solid_of(cells, inner, one.quarter_turns)
-        return shared_solids(solids, {id(one): one.class_id for one in placements})
+    def _kinds_of_placement(self, cells: np.ndarray, placement: Placement) -> frozenset[str]:
+        return self._kinds(cells, Thing(placement.class_id, placement.object_id))
 
-    def put_well(self, placement: Placement, cells: np.ndarray, solid: Solid) -> bool:
-        """Set an object of a template from its own cells; False, and nothing, where they fit badly.
-
-        The guard of reference/fit.md: an object that loses over half of its thin parts, or is
-        missed by more than the least IoU, goes to the library instead.
-        """
-        thing = Thing(placement.class_id, placement.object_id)
+    def _put_made(self, placement: Placement, cells: np.ndarray, made: CellsDesign) -> None:
+        """Set a fit of an object's own cells."""
         cells, hues = self.coats.with_tops(cells)
-        kinds = kinds_of_sheet(self._kinds(hues, thing), solid, self.cell_blocks)
-        if not kinds & BULKY:
-            return False
-        made = design_of_cells(
-            cells, solid, self.grid, self.lattice, kinds, True, placement.class_id in LAID_ON
-        )
-        if made.fit.iou < LEAST_IOU or made.fit.thin_recall < LEAST_THIN:
-            return False
         self.fitted[tuple(cells.T)] = True
+        thing = Thing(placement.class_id, placement.object_id)
         self._put_design(made.design, Hues(hues, made.blocks), thing)
-        return True
 
     def put_cells(
         self, cells: np.ndarray, class_id: int, number: int, solid: Solid | None = None
@@ -263,12 +244,13 @@ class ObjectBuilder:
             guessed = not forced and placement.iou < SURE_IOU
             if guessed and self._open_in(filled, low) > self._limit(placement):
                 return False
-            low = low + self._step(filled, low)
+            low = low + self._step(filled, low, held=placement.iou >= SURE_IOU)
         start, solid = body_box(found, placement, self.lattice, low, size)
         hues = self.coats.stretched(cells, placement, start, solid.tolist())
         seen = block_colours(tuple(size.tolist()), hues.blocks - low, *self.coats.colours_of(hues))
         hue = Hue(*seen, self.paints.get(thing.instance))
         put_idiom(self.canvas, found, low, thing, hue, self.palette, self.within, self.parameters)
+        self.fitted[tuple(cells.T)] = True
         return True
 
     def _limit(self, placement: Placement) -> float:
@@ -294,11 +276,16 @@ class ObjectBuilder:
         colours, usable = self.coats.colours_of(Hues(cells, cells))
         return self.dresser.kinds(colours[usable], thing.class_id)
 
-    def _step(self, filled: np.ndarray, low: np.ndarray) -> np.ndarray:
-        """Return the step of at most a block, int64 [3], that keeps most of a thing whole."""
+    def _step(self, filled: np.ndarray, low: np.ndarray, *, held: bool = False) -> np.ndarray:
+        """Return the step of at most a block, int64 [3], that keeps most of a thing whole.
+
+        What is ``held`` in its place by a good match is moved where others stand there alone: a
+        block of a thin part is mostly free wherever it is.
+        """
         free = (self.canvas.states == 0) & self.within
         stands = int(low[2]) == self.lattice.ground_under(float(low[2]))
-        return best_step(filled, low, free, self.open_share > OPEN, stands)
+        opened = np.zeros_like(free) if held else self.open_share > OPEN
+        return best_step(filled, low, free, opened, stands)
 
     def _contradicted(self, design: Design, window: "Window") -> float:
         """Return the share of a design's blocks that were seen free and nearly nothing else."""

@@ -15,6 +15,7 @@ from world2minecraft.geometry.parts import connected_parts
 
 BROKEN = 60.0  # Sub-cells given up for a joint: a plate half a block lower, not a whole block.
 LEG_BROKEN = 160.0  # The same for a leg: a corner of a table may become a stair for it.
+STACKED = 30.0  # Stairs over stairs: an upright wall of them looks like a washboard.
 ROUNDS = 6
 
 
@@ -44,7 +45,7 @@ def joined(
         shapes: the set.
     """
     contact = touching(shapes)[:, : shapes.free]
-    posts = shapes.kinds == "post"
+    posts, stairs = shapes.kinds == "post", shapes.kinds == "stairs"
     padded = np.pad(grid, 1)
     places = tuple((problem.cells + 1).T)
     rows = rows[padded[places][rows] > 0]
@@ -58,6 +59,8 @@ def joined(
             asked = problem.flows[way, mine] & (other > 0)
             cost = np.where(posts[other], LEG_BROKEN, BROKEN).astype(np.float32)
             energy -= cost[:, None] * (~contact[way][:, other].T & asked[:, None])
+            if step[2]:
+                energy -= np.float32(STACKED) * (stairs[other][:, None] & stairs[: shapes.free])
         best = energy.argmax(1)
         here = tuple(axis[mine] for axis in places)
         moved[turn % 2] = bool((padded[here] != best).any())
