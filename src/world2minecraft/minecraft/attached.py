@@ -47,7 +47,8 @@ def attached(
     stated = _stated(nbt)
     if stated is None:
         return dict(nbt)
-    moved = dict(zip(TILE, (s + d for s, d in zip(stated, shift, strict=True)), strict=True))
+    steps = (s + d for s, d in zip(stated, shift, strict=True))
+    moved: dict[str, Any] = dict(zip(TILE, steps, strict=True))
     block = attached_block(moved, position)
     if "block_pos" in nbt:
         return {**nbt, "block_pos": np.array(block, np.int32)}
