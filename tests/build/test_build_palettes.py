@@ -21,6 +21,7 @@ from world2minecraft.classes import CLASS_NAMES, SemanticClass
 from world2minecraft.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.minecraft.colours import colour_of
 from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.minecraft.states import check_state, parse_state
 from world2minecraft.types import BlockVolume, Placement
@@ -375,3 +376,11 @@ def test_a_piece_of_several_cells_fills_no_place():
     }
     with pytest.raises(ValueError, match="a piece of several cells cannot fill a place"):
         piece_of(raw)
+
+
+def test_a_mods_block_has_the_colour_of_the_wood_or_dye_in_its_name():
+    assert colour_of("refurbished_furniture:dark_oak_chair") == colour_of("dark_oak_planks")
+    assert colour_of("refurbished_furniture:light_blue_sofa[shape=left]") == colour_of(
+        "light_blue_wool"
+    )
+    assert colour_of("tmeo_ultra:shafa") != colour_of("tmeo_ultra:yigui")

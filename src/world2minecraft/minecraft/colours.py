@@ -2,8 +2,9 @@
 
 The table ``data/block_colours.json`` holds our own estimates of the mean sRGB colour of the
 blocks of 1.20.1. Slabs, stairs, fences and the like take the colour of what they are made of; a
-block that neither the table nor a rule knows (of a mod) gets a colour of its own that depends on
-its name alone, so that it stays recognisable from picture to picture.
+block that neither the table nor a rule knows (of a mod) takes the colour of the wood or dye that
+its name begins with, else one of its own that depends on its name alone, so that it stays
+recognisable from picture to picture.
 """
 
 import json
@@ -84,7 +85,18 @@ def colour_of(state: str) -> tuple[int, int, int]:
         found = _known_colour(plain)
         if found is not None:
             return found
-    return _name_colour(name)
+    return _hinted_colour(plain) or _name_colour(name)
+
+
+def _hinted_colour(name: str) -> tuple[int, int, int] | None:
+    """Return the colour of the wood or dye that a name begins with: ``dark_oak_chair``."""
+    words = name.split("_")
+    for count in (2, 1):
+        for ending in ("_planks", "_wool"):
+            found = _table().get("_".join(words[:count]) + ending)
+            if found is not None and len(words) > count:
+                return found
+    return None
 
 
 def _known_colour(name: str) -> tuple[int, int, int] | None:
