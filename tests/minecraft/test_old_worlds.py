@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import anvil
 import nbtlib
 import numpy as np
 import pytest
@@ -292,3 +293,17 @@ def test_a_section_of_light_alone_is_passed_over(tmp_path):
     data = old_chunk({"Y": Byte(-1), "SkyLight": np.zeros(2048, np.int8)})
     (folder / "region" / "r.0.0.mca").write_bytes(pack_region({(0, 0): data})[0])
     assert not read_world(folder).states.any()
+
+
+@pytest.mark.parametrize("name", ["1.13.2", "1.14.4", "1.15.2", "1.16.5", "1.17.1", "1.18.2"])
+def test_anvil_parser_reads_the_same_blocks(name, tmp_path):
+    volume = random_volume((16, 32, 16), 1, (0, 48, 0), seed=6)
+    volume = volume_of(volume.states, (AIR, *(f"mod:b{n}" for n in range(1, 60))), (0, 48, 0))
+    folder = write(volume, tmp_path / "world", name) / "region"
+    chunk = anvil.Region.from_file(str(folder / "r.0.0.mca")).get_chunk(0, 0)
+    texts = state_texts(volume)
+    for section in (3, 4):
+        for index, block in enumerate(chunk.stream_blocks(section=section)):
+            y, z, x = np.unravel_index(index, (16, 16, 16))
+            expected = texts[x, y + 16 * (section - 3), z]
+            assert f"{block.namespace}:{block.id}" == expected
