@@ -12,7 +12,7 @@ from world2minecraft.coordinates import block_to_room
 from world2minecraft.errors import ServerError, UsageError
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.server.building import LiveBuilder
-from world2minecraft.minecraft.server.plan import moved, plan_build
+from world2minecraft.minecraft.server.plan import plan_build
 from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES, RconClient
 from world2minecraft.minecraft.states import complete, parse_state
 from world2minecraft.minecraft.versions import game_version
@@ -89,7 +89,7 @@ def test_without_clearing_what_stands_there_stays():
     volume = volume_of(np.zeros((2, 2, 2)))
     with Console() as console:
         console.blocks[(-3, 64, 5)] = "minecraft:stone"
-        build(console, volume, clear=False)
+        build(console, volume, built=np.zeros(volume.states.shape, bool))
         assert console.blocks == {(-3, 64, 5): "minecraft:stone"}
 
 
@@ -184,20 +184,3 @@ def test_data_too_long_for_a_packet_is_counted():
 def test_a_build_that_leaves_the_world_is_refused():
     with pytest.raises(UsageError, match="from layer 316 to 320, but the world has -64 to 319"):
         plan_build(replace(random_volume(), corner=(0, 316, 0)), VERSION)
-
-
-@given(st.tuples(*[st.integers(-40, 40)] * 3), st.tuples(*[st.integers(-40, 40)] * 3))
-def test_moves_add_up_and_the_room_stays_where_it_is(a, b):
-    volume = replace(
-        random_volume(),
-        entities=(Entity((0.25, 66.0, 7.5), "minecraft:pig"),),
-        block_entities=(BlockEntity((-2, 65, 6), "minecraft:sign"),),
-    )
-    both = moved(moved(volume, a), b)
-    once = moved(volume, tuple(i + j for i, j in zip(a, b, strict=True)))
-    assert both.corner == once.corner
-    np.testing.assert_allclose(both.block_to_room, once.block_to_room, atol=1e-9)
-    assert both.entities[0].position == pytest.approx(once.entities[0].position)
-    assert both.block_entities == once.block_entities
-    corner = both.block_to_room @ [*both.corner, 1]
-    np.testing.assert_allclose(corner, volume.block_to_room @ [*volume.corner, 1], atol=1e-9)

@@ -54,7 +54,7 @@ Turns = Annotated[
     int, typer.Option("--turns", help="With --at: quarter turns, counter-clockwise from above.")
 ]
 Air = Annotated[
-    str, typer.Option("--air", help="With --into: which air is built: room, box or none.")
+    str, typer.Option("--air", help="With --at: which air is built: room, box or none.")
 ]
 NewChunks = Annotated[
     bool, typer.Option("--new-chunks", help="With --into: make what the game never generated.")
@@ -80,10 +80,10 @@ def run(
     """Build a world from an occupancy grid, or build into a world that exists.
 
     A run's folder is built from its objects and placements as they stand; from a grid alone the
-    objects are found and matched first. With --into, the corner of the room's floor comes to
-    stand at X Y Z, so that one stands on the floor at height Y; every file that is touched is
-    backed up first, and `w2m undo WORLD` brings it back. With --rcon the blocks are set on a
-    running server, whose password is read from W2M_RCON_PASSWORD; that cannot be undone.
+    objects are found and matched first. With --into or --rcon, the corner of the room's floor
+    comes to stand at X Y Z, so that one stands on it at height Y. With --into every file that is
+    touched is backed up, and `w2m undo WORLD` brings it back. With --rcon the blocks are set on a
+    running server (password: W2M_RCON_PASSWORD); that cannot be undone.
 
     Args:
         source: what to build.
@@ -93,7 +93,7 @@ def run(
         at: where the room's corner goes, in blocks of that world.
         turns: quarter turns before that.
         air: which air of the room replaces blocks of the world.
-        new_chunks: whether chunks that the game never generated are made.
+        new_chunks: whether chunks are made that the game never did.
         blocks_per_metre: the scale.
         style: what furniture is made of.
         palette: which blocks may be used.
@@ -112,19 +112,42 @@ def run(
     if out is not None:
         into_folder(source, out, chosen)
     if into is not None and at is not None:
-        from world2minecraft.cli.into_world import check_world, into_world
-
-        check_world(into, air)  # Before the work.
-        is_room = holds_room(source)
-        volume = volume_of(source, chosen)
-        into_world(volume, into, at, turns, air=air, new_chunks=new_chunks, is_room=is_room)
+        build_into(source, chosen, into, at, turns, air, new_chunks)
     if rcon is not None:
-        from world2minecraft.cli.on_server import on_server, parse_address, password_of_environment
+        build_on(source, chosen, rcon, at, turns, air)
 
-        parse_address(rcon)  # Before the work.
-        password_of_environment()
-        volume = volume_of(source, chosen)
-        on_server(volume, rcon, at, clear=air != "none", mc_version=mc_version)
+
+def build_into(
+    source: Path,
+    chosen: "Parameters",
+    world: Path,
+    at: tuple[int, int, int],
+    turns: int,
+    air: str,
+    new_chunks: bool,
+) -> None:
+    """Build into a world; what can be known of it is checked before any work."""
+    from world2minecraft.cli.into_world import check_world, into_world
+
+    check_world(world, air)
+    how = {"air": air, "new_chunks": new_chunks, "is_room": holds_room(source)}
+    into_world(volume_of(source, chosen), world, at, turns, **how)
+
+
+def build_on(
+    source: Path,
+    chosen: "Parameters",
+    server: str,
+    at: tuple[int, int, int] | None,
+    turns: int,
+    air: str,
+) -> None:
+    """Build on a server; what can be known of it is checked before any work."""
+    from world2minecraft.cli.on_server import check_server, on_server
+
+    check_server(server, air)
+    how = {"air": air, "is_room": holds_room(source), "mc_version": chosen.mc_version}
+    on_server(volume_of(source, chosen), server, at, turns, **how)
 
 
 def check_targets(

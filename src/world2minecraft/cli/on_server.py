@@ -20,8 +20,10 @@ def on_server(
     volume: "BlockVolume",
     address: str,
     at: tuple[int, int, int] | None,
+    turns: int,
     *,
-    clear: bool,
+    air: str,
+    is_room: bool,
     mc_version: str,
 ) -> None:
     """Build a volume on a server.
@@ -29,8 +31,10 @@ def on_server(
     Args:
         volume: the blocks.
         address: ``HOST`` or ``HOST:PORT`` of its remote console.
-        at: where the corner of the room's floor comes to stand; None is 0 64 0.
-        clear: whether the volume's box is emptied first.
+        at: where the blocks' smallest x and z, and their ground, come to stand; 0 64 0 for None.
+        turns: quarter turns before that.
+        air: which air is built, as ``edit.into_world`` has it.
+        is_room: whether the volume is a room of ours, whose ground is at the usual height.
         mc_version: the server's game.
 
     Raises:
@@ -41,23 +45,25 @@ def on_server(
     password = password_of_environment()
     from world2minecraft.cli.progress import shown
     from world2minecraft.coordinates import ROOM_CORNER_BLOCK
+    from world2minecraft.edit.into_world import built_mask
+    from world2minecraft.edit.placing import placed
     from world2minecraft.minecraft.losses import Losses
     from world2minecraft.minecraft.server.building import LiveBuilder
-    from world2minecraft.minecraft.server.plan import moved, plan_build
+    from world2minecraft.minecraft.server.plan import plan_build
     from world2minecraft.minecraft.server.rcon import RconClient
     from world2minecraft.minecraft.versions import game_version
 
-    if at is not None:
-        volume = moved(volume, tuple(a - b for a, b in zip(at, ROOM_CORNER_BLOCK, strict=True)))
-    losses = Losses()
-    plan = plan_build(volume, game_version(mc_version), clear=clear, losses=losses)
+    at = at or ROOM_CORNER_BLOCK
+    volume = placed(volume, at, turns, ROOM_CORNER_BLOCK[1] if is_room else None)
+    losses, built = Losses(), built_mask(volume, air)
+    plan = plan_build(volume, game_version(mc_version), built=built, losses=losses)
     note = note_of(f"{host}:{port}", plan.digest)
     if note.is_file():
         print("An earlier run of this build was stopped; this one goes on from there.")
     client = RconClient(host, port, password)
     with shown() as progress:
         result = LiveBuilder(client, plan, note, progress).run()
-    x, y, z = at or ROOM_CORNER_BLOCK
+    x, y, z = at
     size = " x ".join(str(side) for side in volume.states.shape)
     print(f"\nBuilt {int((volume.states > 0).sum()):,} blocks at {x} {y} {z} ({size}).")
     cuts = f", {result.reconnects} lost connections survived" if result.reconnects else ""
@@ -65,6 +71,19 @@ def on_server(
     for what, count in losses:
         print(f"  left out: {count} {what}")
     print(f"  look   /tp @s {x} {y} {z}, or a few blocks into the room")
+
+
+def check_server(address: str, air: str) -> None:
+    """Check what can be known before any work.
+
+    Raises:
+        UsageError: the address or the environment lacks something, or there is no such ``air``.
+    """
+    from world2minecraft.edit.into_world import check_air
+
+    parse_address(address)
+    password_of_environment()
+    check_air(air)
 
 
 def parse_address(text: str) -> tuple[str, int]:

@@ -47,6 +47,12 @@ def block_commands(volume: BlockVolume, version: GameVersion) -> list[str]:
     return commands
 
 
+def air_commands(volume: BlockVolume, mask: np.ndarray) -> list[str]:
+    """Return the commands that empty the cells of a mask, bool [X, Y, Z], of a volume's box."""
+    boxes = merge_boxes(mask.astype(np.uint16))[:, 1:] + np.tile(volume.corner, 2)
+    return [f"fill {' '.join(map(str, box))} minecraft:air" for box in boxes.tolist()]
+
+
 def data_commands(volume: BlockVolume) -> list[str]:
     """Return a ``data merge`` command for each block entity that says something."""
     return [

@@ -2,15 +2,15 @@
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from world2minecraft.errors import UsageError
 from world2minecraft.minecraft.commands import (
+    air_commands,
     block_commands,
     chunk_rows,
-    clear_commands,
     data_commands,
     entity_commands,
     entity_tag,
@@ -54,7 +54,7 @@ def plan_build(
     volume: BlockVolume,
     version: GameVersion,
     *,
-    clear: bool = True,
+    built: np.ndarray | None = None,
     samples: int = 256,
     losses: Losses | None = None,
 ) -> BuildPlan:
@@ -63,7 +63,7 @@ def plan_build(
     Args:
         volume: the blocks.
         version: the game of the server, for the names of blocks.
-        clear: empty the volume's box first.
+        built: bool [X, Y, Z], the cells that are set, air among them; all where it is left out.
         samples: how many of its blocks to ask for in the end; half of them not air. The places
             depend on the volume alone.
         losses: told of data and entities that are too long for a command.
@@ -73,7 +73,8 @@ def plan_build(
     """
     _check_layers(volume, version)
     lost = Losses() if losses is None else losses
-    blocks = [*(clear_commands(volume) if clear else ()), *block_commands(volume, version)]
+    air = (volume.states == 0) & (True if built is None else built)
+    blocks = [*air_commands(volume, air), *block_commands(volume, version)]
     data = _short("block entities whose data is too long for RCON", data_commands(volume), lost)
     entities = _short("entities too long for RCON", entity_commands(volume), lost)
     gone = [f"kill @e[tag={entity_tag(volume)}]"] if entities else []
@@ -83,29 +84,8 @@ def plan_build(
         loaded=_corners(volume),
         work=(*blocks, *data, *gone, *entities),
         entities_from=len(blocks) + len(data),
-        probes=_probes(volume, version, samples, with_air=clear),
+        probes=_probes(volume, version, samples, air),
         release=tuple(f"forceload remove {row}" for row in rows),
-    )
-
-
-def moved(volume: BlockVolume, by: tuple[int, int, int]) -> BlockVolume:
-    """Return a volume shifted by whole blocks, with all that stands in it."""
-    x, y, z = by
-    to_room = volume.block_to_room.copy()
-    to_room[:3, 3] -= to_room[:3, :3] @ np.array(by, np.float64)
-    east, up, south = volume.corner
-    return replace(
-        volume,
-        corner=(east + x, up + y, south + z),
-        block_to_room=to_room,
-        block_entities=tuple(
-            replace(e, block_pos=(e.block_pos[0] + x, e.block_pos[1] + y, e.block_pos[2] + z))
-            for e in volume.block_entities
-        ),
-        entities=tuple(
-            replace(e, position=(e.position[0] + x, e.position[1] + y, e.position[2] + z))
-            for e in volume.entities
-        ),
     )
 
 
@@ -134,14 +114,14 @@ def _corners(volume: BlockVolume) -> tuple[tuple[int, int, int], ...]:
 
 
 def _probes(
-    volume: BlockVolume, version: GameVersion, samples: int, *, with_air: bool
+    volume: BlockVolume, version: GameVersion, samples: int, air: np.ndarray
 ) -> tuple[Probe, ...]:
     rng = np.random.default_rng(0)
     flat = volume.states.ravel()
     chosen = []
     for kind in (
         np.flatnonzero(flat),
-        np.flatnonzero(flat == 0) if with_air else np.array([], int),
+        np.flatnonzero(air),
     ):
         count = min(len(kind), samples // 2)
         chosen.append(np.sort(rng.choice(kind, count, replace=False)) if count else kind[:0])
