@@ -90,3 +90,23 @@ def test_a_brown_sofa_that_was_scanned_is_a_leather_one(on, expected):
     assert placement.template == expected
     assert placement.iou >= 0.9
     assert set(placement.parameters) == set(template(expected).parameters)
+
+
+@pytest.mark.parametrize(
+    ("size_m", "rgb", "template_name"),
+    [
+        ((0.6, 0.6, 0.85), WHITE, "washing_machine"),
+        ((0.6, 0.6, 0.85), BROWN, "cabinet"),
+        ((0.4, 0.45, 0.55), BROWN, "nightstand"),
+        ((0.4, 1.6, 0.48), BROWN, "tv_stand"),
+    ],
+)
+def test_a_closed_box_is_what_it_is_by_size_and_colour(size_m, rgb, template_name):
+    offered = ("nightstand", "tv_stand", "washing_machine")
+    within = [name for name in offered if all(map(_holds, size_m, template(name).size_m))]
+    (placement,) = choose([_choice("cabinet", rgb, size_m, within)])
+    assert placement.template == template_name
+
+
+def _holds(side, span):
+    return span.minimum <= side <= span.maximum

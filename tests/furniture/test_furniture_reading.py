@@ -53,7 +53,7 @@ def test_every_file_of_the_library_is_read_under_its_own_name():
         (
             _changed("colour", value=1),
             "a design has no 'colour'; it has: name, title, class, family, size_m, front, "
-            "clearance_m, materials, mount, turns, parameters, options, match, suits",
+            "clearance_m, materials, mount, turns, parameters, options, match, suits, stands_for",
         ),
         (
             _changed("class", value="wall"),

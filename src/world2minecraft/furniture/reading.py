@@ -22,7 +22,7 @@ SIZES = ("depth", "width", "height")
 CLEARANCES = ("front", "back", "side")
 MOUNTS = ("floor", "wall", "ceiling", "any")
 NEEDED = ("name", "title", "class", "family", "size_m", "front", "clearance_m", "materials")
-OPTIONAL = ("mount", "turns", "parameters", "options", "match", "suits")
+OPTIONAL = ("mount", "turns", "parameters", "options", "match", "suits", "stands_for")
 
 
 def read_design(path: Path) -> Template:
@@ -65,7 +65,7 @@ def design_of(raw: Any) -> Template:
         name=_text("name", known["name"]),
         title=_text("title", known["title"]),
         class_id=CLASS_NAMES.index(kind),
-        family=_text("family", known["family"]),
+        family=_stood_for(known),
         size_m=(_size("depth", sizes), _size("width", sizes), _size("height", sizes)),
         build=family.build,
         design=family.design,
@@ -78,6 +78,13 @@ def design_of(raw: Any) -> Template:
         matched=_one_of("match", known.get("match", False), (True, False)),
         suits=tuple(_colour(one) for one in _list("suits", known.get("suits", []))),
     )
+
+
+def _stood_for(known: Mapping[str, Any]) -> str:
+    """Return the family whose matches a design may stand for: its own where it says no other."""
+    stood = _text("stands_for", known.get("stands_for", known["family"]))
+    FAMILIES.load(stood)
+    return stood
 
 
 def _keys(
