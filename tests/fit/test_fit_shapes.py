@@ -5,8 +5,8 @@ import pytest
 
 from world2minecraft.fit.masks import PROBES, SUB, faces_of, mask_of, solid_of
 from world2minecraft.fit.shapes import CALM, Shape, shape_set
-from world2minecraft.minecraft.shapes import boxes_of
 from world2minecraft.minecraft.states import check_state, complete, parse_state
+from world2minecraft.minecraft.visual import visual_boxes_of
 
 ALL = shape_set(CALM | {"carpet", "post"})
 SAMPLES = [shape.sample for shape in ALL.shapes]
@@ -19,7 +19,7 @@ def slow_solid(state: str) -> np.ndarray:
         at = np.array([i, j, k]) * (PROBES // 4) + 3
         x, y, z = (at + 0.5) / PROBES
         point = np.array([x, z, 1 - y])
-        inside = [(box[:3] < point) & (point < box[3:]) for box in boxes_of(state)]
+        inside = [(box[:3] < point) & (point < box[3:]) for box in visual_boxes_of(state)]
         solid[tuple(at)] = any(bool(one.all()) for one in inside)
     return solid[3 :: PROBES // 4, 3 :: PROBES // 4, 3 :: PROBES // 4]
 

@@ -140,6 +140,7 @@ def design_of_cells(
     kinds: frozenset[str],
     shift: bool,
     flush: bool = False,
+    hangs: bool = False,
 ) -> CellsDesign:
     """Return an object's cells as shapes in place.
 
@@ -152,16 +153,18 @@ def design_of_cells(
         shift: whether the object may move by up to half a block sideways, and a quarter up or
             down, to fall on the lattice crisply.
         flush: whether its top must end with a block where it nearly does: things lie on tables.
+        hangs: whether it hangs on a wall where it does not begin at a floor.
     """
     low, high = cells.min(0), cells.max(0) + 1
     ends = np.array([[lattice.edges_of(grid, a)[at[a]] for a in range(3)] for at in (low, high)])
     side = grid.voxel_m * lattice.blocks_per_metre
     base, bottom = standing(float(ends[0, 2]), lattice)
+    stands = not hangs or base == lattice.ground_under(float(base))
     body = _body_of(solid.mask, side, bottom, shift, flush)
     target = _target(solid.mask, body, grid.voxel_m, bottom)
     shapes, turns = shape_set(kinds), solid.turns
     centre = ends[:, :2].mean(0) + _turned_way(body.middle, turns) * side
-    rules = Rules(calm=NOISY, flush=body.flush, legs=True, phase=body.phase)
+    rules = Rules(calm=NOISY, flush=body.flush, legs=True, phase=body.phase, stands=stands)
     if shift:
         fit = fit_solid(target, shapes, replace(rules, even=_even(target, body)))
     else:

@@ -19,6 +19,7 @@ from world2minecraft.build.lattice import Lattice
 from world2minecraft.classes import SemanticClass
 from world2minecraft.types import Placement
 
+HUNG = (SemanticClass.FURN,)  # What of it does not stand on a floor hangs on a wall.
 BULKY = {"slab", "stairs"}  # Without them a fit is of cubes, and those are better laid by parts.
 # Below these a fit is worse than the library's design. reference/fit.md has 0.3 for cells that
 # count whole; here what is one cell thick counts half.
@@ -59,7 +60,16 @@ def well_fitted(
         cells, hues = coats.with_tops(held[id(one)])
         kinds = kinds_of_sheet(kinds_of(hues, one), solids[id(one)], side)
         flush = one.class_id in LAID_ON
-        of_cells = (cells, solids[id(one)], coats.grid, lattice, kinds, True, flush)
+        of_cells = (
+            cells,
+            solids[id(one)],
+            coats.grid,
+            lattice,
+            kinds,
+            True,
+            flush,
+            one.class_id in HUNG,
+        )
         fit = design_of_cells(*of_cells) if kinds & BULKY else None
         if fit and fit.fit.iou >= LEAST_IOU and fit.fit.thin_recall >= LEAST_THIN:
             made[id(one)] = fit

@@ -19,7 +19,7 @@ from world2minecraft.build.coats import Coats, Hues
 from world2minecraft.build.dressing import Dresser
 from world2minecraft.build.fitted import LAID_ON, Design, design_of_parts, of_halves, one_block
 from world2minecraft.build.fitting import best_place, best_step
-from world2minecraft.build.guarding import BULKY, solids_of, well_fitted
+from world2minecraft.build.guarding import BULKY, HUNG, solids_of, well_fitted
 from world2minecraft.build.hues import default_colour, spread
 from world2minecraft.build.idioms import Thing, body_box, filled_by, idiom_box, put_idiom
 from world2minecraft.build.lattice import volume_shares
@@ -178,9 +178,8 @@ class ObjectBuilder:
         solid = solid or solid_of(cells, inner_cells(cells, self.grid, class_id), 0)
         kinds = kinds_of_sheet(self._kinds(hues, thing), solid, self.cell_blocks)
         if kinds & BULKY:
-            made = design_of_cells(
-                cells, solid, self.grid, self.lattice, kinds, number > 0, class_id in LAID_ON
-            )
+            of_cells = (cells, solid, self.grid, self.lattice, kinds, number > 0)
+            made = design_of_cells(*of_cells, class_id in LAID_ON, class_id in HUNG)
             design, blocks = made.design, made.blocks
         else:
             share = self.parameters.object_share

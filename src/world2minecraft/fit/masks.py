@@ -1,6 +1,7 @@
 """How much of each sub-cell of a block a block state fills, in room axes.
 
-A block has ``SUB`` sub-cells along each axis. The boxes of a state are in block axes (y up); masks
+A block has ``SUB`` sub-cells along each axis. What is seen of it counts, not what one bumps into.
+The boxes of a state are in block axes (y up); masks
 are ``[x, y, z]`` with z up, like every array of a room.
 """
 
@@ -9,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from world2minecraft.coordinates import block_axes_to_grid
-from world2minecraft.minecraft.shapes import boxes_of
+from world2minecraft.minecraft.visual import visual_boxes_of
 
 SUB = 8  # Finer masks gained 0.003 to 0.013 of IoU for three times the time (reference/fit.md).
 PROBES = 32  # Along each axis: every box of the game's that matters lies on 32nds.
@@ -23,7 +24,7 @@ def solid_of(state: str) -> np.ndarray:
         UsageError: the text is no block state.
     """
     solid = np.zeros((PROBES,) * 3, bool)
-    for box in np.clip(boxes_of(state), 0, 1):
+    for box in np.clip(visual_boxes_of(state), 0, 1):
         low = np.ceil(box[:3] * PROBES - 0.5).astype(int)
         high = np.ceil(box[3:] * PROBES - 0.5).astype(int)
         solid[tuple(map(slice, low, high))] = True
