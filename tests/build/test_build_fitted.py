@@ -137,6 +137,22 @@ def test_nothing_that_is_built_falls(scale, style):
     assert unstable(volume) == []
 
 
+@pytest.mark.parametrize("whole", [True, False])
+def test_the_guard_sends_what_fits_badly_to_the_library(whole):
+    """A cupboard of all its cells is shown by them; three specks of one are built as a design."""
+    sketch = Sketch()
+    if whole:
+        sketch.put((10, 16), (4, 16), (0, 12), FURN, SPRUCE, 1)
+    else:
+        for x, y, z in ((10, 4, 0), (15, 15, 11), (12, 9, 5)):
+            sketch.put((x, x + 1), (y, y + 1), (z, z + 1), FURN, SPRUCE, 1)
+    held = placement("cabinet", FURN, (1.04, 0.8, 0.48), (0.48, 0.96, 0.96))
+    voxels, blocks = (build(sketch, 4.0, [held], style=style) for style in ("voxels", "blocks"))
+    same = names_of(voxels, 1) == names_of(blocks, 1)
+    assert same is not whole
+    assert names_of(voxels, 1)
+
+
 def test_what_lies_within_a_cupboard_belongs_to_it():
     sketch = Sketch()
     sketch.put((10, 16), (4, 12), (8, 9), FURN, WOOD, 1)

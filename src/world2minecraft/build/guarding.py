@@ -17,6 +17,7 @@ from world2minecraft.build.coats import Coats
 from world2minecraft.build.fitted import LAID_ON
 from world2minecraft.build.lattice import Lattice
 from world2minecraft.classes import SemanticClass
+from world2minecraft.metrics.solids import OWN_CELLS
 from world2minecraft.types import Placement
 
 HUNG = (SemanticClass.FURN,)  # What of it does not stand on a floor hangs on a wall.
@@ -56,7 +57,7 @@ def well_fitted(
     side = coats.grid.voxel_m * lattice.blocks_per_metre
     made: dict[int, CellsDesign] = {}
     lost: set[str] = set()
-    for one in (one for one in placements if one.template != CELLS and id(one) in solids):
+    for one in (one for one in placements if one.template != OWN_CELLS and id(one) in solids):
         cells, hues = coats.with_tops(held[id(one)])
         kinds = kinds_of_sheet(kinds_of(hues, one), solids[id(one)], side)
         flush = one.class_id in LAID_ON
