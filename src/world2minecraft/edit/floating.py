@@ -9,18 +9,19 @@ import numpy as np
 from world2minecraft.classes import SemanticClass
 from world2minecraft.edit.contact import touches, touching_parts
 from world2minecraft.edit.draft import Draft
+from world2minecraft.edit.gaps import close_gap, whole_of
 from world2minecraft.edit.sight import (
     blocks_in,
+    crumb_blocks,
     free_cells,
     move,
     seen_blocks,
     structure_of,
     take_away,
 )
-from world2minecraft.types import AIR, Blocks
+from world2minecraft.types import AIR
 
 CARRIER_M2 = 0.5  # A piece of structure of this area carries, though it holds to nothing itself.
-CRUMB_M3 = 0.03  # At 4 blocks a metre two blocks; a smaller piece without its object is noise.
 JOIN_M = 0.5  # A part is joined to its own object over no wider gap,
 STEP_M = 0.5  # and moved aside by no more.
 CORD_M = 1.25  # A cord is no longer than this.
@@ -90,14 +91,14 @@ def _again(
 def _mend(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> None:
     """Mend one part, int [N, 3]; ``carriers`` are the blocks that are carried."""
     classes = draft.semantic[tuple(cells.T)]
-    told = f"{len(cells)} block{'s' * (len(cells) > 1)} of it"
+    told = f"{_count(len(cells))} of it"
     if np.isin(classes, (1, 2, 3, 4)).all():
         take_away(draft, cells, "drop", f"a piece of structure, {told}, holds to nothing")
     elif _is_crumb(draft, cells, carriers):
         take_away(draft, cells, "drop", f"a crumb, {told}, hangs in the air")
     elif not (
         _join(draft, cells, carriers)
-        or _settle_slabs(draft, cells, carriers)
+        or close_gap(draft, cells, carriers)
         or _put(draft, cells, carriers)
         or (not np.isin(classes, STANDING).any() and _hang(draft, cells, carriers))
         or _lower(draft, cells, carriers)
@@ -107,7 +108,7 @@ def _mend(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> None:
 
 def _is_crumb(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     """Whether a part is small, and of no object or of one that stands elsewhere."""
-    if len(cells) > max(1, CRUMB_M3 * draft.start.blocks_per_metre**3):
+    if len(cells) > crumb_blocks(draft):
         return False
     numbers = np.unique(draft.instance[tuple(cells.T)])
     return bool((numbers == 0).all() or np.isin(numbers, draft.instance[carriers]).all())
@@ -127,7 +128,7 @@ def _join(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
                 if not _inside(draft, way[-1]) or not rest[tuple(way[-1])]:
                     continue
                 at = tuple(start)
-                state = _whole(draft.palette[draft.states[at]])
+                state = whole_of(draft.palette[draft.states[at]])
                 ends = draft.palette[draft.states[at]], draft.palette[draft.states[tuple(way[-1])]]
                 if free[tuple(way[:-1].T)].all() and _bridges(state, ends, step):
                     number = int(draft.instance[at])
@@ -145,11 +146,6 @@ def _join(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     return False
 
 
-def _whole(state: str) -> str:
-    """A slab as a whole block, another state as it is."""
-    return state.replace("type=bottom", "type=double").replace("type=top", "type=double")
-
-
 def _bridges(state: str, ends: tuple[str, str], step: np.ndarray) -> bool:
     """Whether a row of a state along a step holds to itself and to what is at its ends."""
     x, y, z = step.tolist()
@@ -157,43 +153,25 @@ def _bridges(state: str, ends: tuple[str, str], step: np.ndarray) -> bool:
     return all(touches(one, other, (x, y, z)) for one, other in pairs)
 
 
-def _settle_slabs(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
-    """Close a gap of half a block: upper slabs go down, or the slab under them is made whole."""
-    at = tuple(cells.T)
-    names = np.array(draft.palette, object)
-    upper = np.array(["type=top" in state for state in names[draft.states[at]]])
-    under = cells + DOWN
-    under = under[[_inside(draft, cell) and bool(carriers[tuple(cell)]) for cell in under]]
-    if upper.all() and len(under):
-        states = [state.replace("type=top", "type=bottom") for state in names[draft.states[at]]]
-        return _restate(draft, cells, states, "it hangs half a block over what it lies on")
-    lower = [cell for cell in under if "type=bottom" in names[draft.states[tuple(cell)]]]
-    if not lower:
+def _put(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
+    """Move a part down or aside, by no more than half a metre, to something carried."""
+    ways = []
+    for order, step in enumerate((DOWN, *ASIDE)):
+        for length in range(1, blocks_in(draft, STEP_M) + 1):
+            if not _fits(draft, cells, step * length):
+                break
+            if _touches(draft, cells, step * length, carriers):
+                ways.append((length, order, step * length))
+                break
+    if not ways:
         return False
-    below = np.array(lower)
-    states = [s.replace("type=bottom", "type=double") for s in names[draft.states[tuple(below.T)]]]
-    return _restate(draft, below, states, "what lies on it hangs half a block over it")
-
-
-def _restate(draft: Draft, cells: np.ndarray, states: list[str], reason: str) -> bool:
-    numbers = np.array([draft.id_of(state) for state in states], np.uint16)
-    old = draft.held(cells)
-    after = Blocks(numbers, old.semantic, old.instance, old.block_entities)
-    about = int(old.semantic[0]), int(old.instance[0])
-    draft.change("settle", cells, after, reason=reason, class_id=about[0], instance=about[1])
+    length, _, step = min(ways, key=lambda way: way[:2])
+    move(draft, cells, step, f"it hung in the air, {_count(length)} off")
     return True
 
 
-def _put(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
-    """Move a part down or aside, by no more than half a metre, to something carried."""
-    for length in range(1, blocks_in(draft, STEP_M) + 1):
-        for step in (DOWN, *ASIDE):
-            if _fits(draft, cells, step * length) and _touches(
-                draft, cells, step * length, carriers
-            ):
-                move(draft, cells, step * length, f"it hung in the air, {length} blocks off")
-                return True
-    return False
+def _count(length: int) -> str:
+    return f"{length} block{'s' * (length > 1)}"
 
 
 def _hang(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
@@ -229,7 +207,7 @@ def _lower(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     while _fits(draft, cells, DOWN * (length + 1)):
         length += 1
         if _touches(draft, cells, DOWN * length, carriers):
-            move(draft, cells, DOWN * length, f"it hung in the air, {length} blocks too high")
+            move(draft, cells, DOWN * length, f"it hung in the air, {_count(length)} too high")
             return True
     return False
 

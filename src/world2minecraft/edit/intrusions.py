@@ -9,7 +9,7 @@ import numpy as np
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.edit.draft import Draft
-from world2minecraft.edit.sight import structure_of, take_away, things_of
+from world2minecraft.edit.sight import crumb_blocks, structure_of, take_away, things_of
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.minecraft.shapes import is_full_cube
 
@@ -38,11 +38,18 @@ def trim_cut_off(draft: Draft) -> None:
                 continue
             between = _between(cells, main)
             at = tuple(between.T)
-            is_one = draft.semantic[tuple(main[0])] in WHOLE
+            is_one = draft.semantic[tuple(main[0])] in WHOLE and _is_stray(draft, cells)
             if len(between) and structure[at].any():
                 _take_out(draft, cells, "a piece of it stands behind or in a wall")
             elif is_one and (things[at] & (draft.instance[at] != number)).any():
                 _take_out(draft, cells, "a piece of it stands beyond another object")
+
+
+def _is_stray(draft: Draft, cells: np.ndarray) -> bool:
+    """Whether a piece is a crumb that stands on no floor: not a leg, nor a back of its own."""
+    under = np.maximum(cells - [0, 1, 0], 0)
+    on_floor = (draft.semantic[tuple(under.T)] == SemanticClass.FLOOR).any()
+    return len(cells) <= crumb_blocks(draft) and not on_floor
 
 
 def _take_out(draft: Draft, cells: np.ndarray, reason: str) -> None:

@@ -10,6 +10,7 @@ from world2minecraft.edit.draft import Draft
 from world2minecraft.minecraft.visual import visual_boxes_of
 from world2minecraft.types import AIR, BlockEdit, BlockEntity, Blocks
 
+CRUMB_M3 = 0.03  # Two blocks at 4 blocks a metre.
 FREE = (AIR, "minecraft:cave_air", "minecraft:void_air", "minecraft:light")
 
 
@@ -38,6 +39,11 @@ def blocks_in(draft: Draft, metres: float, least: int = 1) -> int:
     return max(least, round(metres * draft.start.blocks_per_metre))
 
 
+def crumb_blocks(draft: Draft) -> float:
+    """Return how many blocks a crumb has at most: without its object it is noise."""
+    return max(1.0, CRUMB_M3 * draft.start.blocks_per_metre**3)
+
+
 def take_away(draft: Draft, cells: np.ndarray, kind: str, reason: str) -> BlockEdit:
     """Make cells [N, 3] air and record it; the object is that of most of them."""
     numbers = draft.instance[tuple(cells.T)]
@@ -55,7 +61,7 @@ def take_away(draft: Draft, cells: np.ndarray, kind: str, reason: str) -> BlockE
 def move(draft: Draft, cells: np.ndarray, step: np.ndarray, reason: str) -> BlockEdit:
     """Move what stands in cells [N, 3] by a step of whole blocks, int [3], and record it.
 
-    What signs and chests hold goes with them. The cells that they come to must be free.
+    What signs and chests hold goes with them. What is in the cells that they come to is gone.
     """
     old = draft.held(cells)
     there = cells + step
