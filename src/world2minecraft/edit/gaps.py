@@ -31,7 +31,7 @@ def close_gap(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
     """
     bottom = cells[cells[:, 1] == cells[:, 1].min()]
     under = bottom + DOWN
-    held = (under >= 0).all(axis=1)
+    held = np.asarray((under >= 0).all(axis=1))
     held[held] = carriers[tuple(under[held].T)]
     if not held.any():
         return False
