@@ -1,6 +1,7 @@
 import io
 import json
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import nbtlib
@@ -231,6 +232,62 @@ def test_a_pack_of_pieces_places_each_where_it_belongs(tmp_path):
     assert texts == {cell: stated[cell] for cell in np.ndindex(stated.shape)}
     assert sorted(entity.position for entity in entities) == [chair.position, beside.position]
     assert all(entity.nbt["Tags"][-1] == "w2m_-7_60_9" for entity in entities)
+
+
+def test_a_pack_of_pieces_is_read_back_whole(tmp_path):
+    held = furnished_volume()
+    base = random_volume((100, 50, 30), 40, (-7, 60, 9), seed=5)
+    chair = Entity((60.5, 61.0, 10.5), "minecraft:block_display", {"Tags": ["chair"]})
+    sign = replace(held.block_entities[0], block_pos=(50, 70, 20))
+    volume = replace(base, entities=(chair,), block_entities=(sign,))
+    write_structure_pack(volume, tmp_path / "pack.zip")
+    found = read_blocks(tmp_path / "pack.zip")
+    assert found.corner == volume.corner
+    np.testing.assert_array_equal(state_texts(found), state_texts(volume))
+    assert [entity.position for entity in found.entities] == [chair.position]
+    assert [entity.block_pos for entity in found.block_entities] == [(50, 70, 20)]
+
+
+def repacked(path: Path, change) -> Path:
+    """The pack with its files changed."""
+    with zipfile.ZipFile(path) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, data in change(files).items():
+            archive.writestr(name, data)
+    return path
+
+
+PACK_DAMAGE = {
+    "no pieces": (
+        lambda files: {name: data for name, data in files.items() if not name.endswith(".nbt")},
+        "places a piece that it does not hold",
+    ),
+    "pieces elsewhere": (
+        lambda files: {name: data.replace(b" 60 9", b" 61 9") for name, data in files.items()},
+        "what says to stand at",
+    ),
+    "nothing placed": (
+        lambda files: {
+            name: data.replace(b"place template", b"say") for name, data in files.items()
+        },
+        "places no structure",
+    ),
+    "a piece that is text": (
+        lambda files: {n: b"text" if n.endswith(".nbt") else data for n, data in files.items()},
+        "is no valid NBT",
+    ),
+}
+
+
+@pytest.mark.parametrize(("change", "reason"), PACK_DAMAGE.values(), ids=PACK_DAMAGE.keys())
+def test_a_damaged_pack_is_refused_by_name(change, reason, tmp_path):
+    path = tmp_path / "pack.zip"
+    write_structure_pack(random_volume((50, 3, 3), 4, (0, 60, 9)), path)
+    with pytest.raises(InputError) as caught:
+        read_blocks(repacked(path, change))
+    text = str(caught.value)
+    assert text.startswith(f"{path}: ") and reason in text and "\n" not in text
 
 
 def test_a_large_structure_gets_its_pack_beside_it(tmp_path):

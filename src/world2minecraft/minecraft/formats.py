@@ -224,7 +224,13 @@ class DatapackFormat:
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read what its function ``build`` sets."""
         from world2minecraft.minecraft.command_reading import read_datapack  # noqa: PLC0415
+        from world2minecraft.minecraft.structure_pack import (  # noqa: PLC0415
+            is_structure_pack,
+            read_structure_pack,
+        )
 
+        if is_structure_pack(path):
+            return read_structure_pack(path, losses)
         return read_datapack(path, losses)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:

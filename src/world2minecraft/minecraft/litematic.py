@@ -37,13 +37,15 @@ from world2minecraft.minecraft.unlabelled import (
     MAX_FILE_BYTES,
     MISSHAPEN,
     check_size,
+    enclosing,
+    joined,
     own_tag,
     palette_of,
     stated_corner,
     unlabelled,
 )
 from world2minecraft.minecraft.versions import GameVersion, game_version
-from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
+from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
 LIMITS = NbtLimits()
 MAX_REGIONS = 4096
@@ -192,7 +194,7 @@ def read_litematic(path: str | Path, losses: Losses | None = None) -> BlockVolum
         return next(iter(regions.values()))
     if losses is not None:
         losses.add("names of regions", len(regions))
-    return _joined(list(regions.values()), Path(path))
+    return joined(list(regions.values()), path)
 
 
 def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, BlockVolume]:
@@ -207,7 +209,7 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
         if not 1 <= len(named) <= MAX_REGIONS:
             raise DamagedFileError(source, f"has {len(named)} regions; 1 to {MAX_REGIONS:,} are")
         boxes = {name: _box(region, source) for name, region in named.items()}
-        check_size(_enclosing(list(boxes.values()))[1], source)
+        check_size(enclosing(list(boxes.values()))[1], source)
         shift, game = _shift(root, boxes, source), root.get("MinecraftDataVersion", DEFAULT_GAME)
         found = {
             name: _region_volume(region, boxes[name], shift, game, source)
@@ -236,17 +238,12 @@ def _box(region: Mapping[str, Any], source: Path) -> tuple[np.ndarray, np.ndarra
     return position + np.minimum(size + 1, 0), np.abs(size)
 
 
-def _enclosing(boxes: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
-    low = np.min([corner for corner, _ in boxes], axis=0)
-    return low, np.max([corner + size for corner, size in boxes], axis=0) - low
-
-
 def _shift(root: Mapping[str, Any], boxes: Mapping[str, Any], source: Path) -> np.ndarray:
     """How far the file's coordinates are from those of the world that it was written from."""
     corner = stated_corner(root, source)
     if corner is None:
         return np.zeros(3, np.int64)
-    return np.array(corner) - _enclosing(list(boxes.values()))[0]
+    return np.array(corner) - enclosing(list(boxes.values()))[0]
 
 
 def _region_volume(
@@ -294,21 +291,6 @@ def _entity(nbt: Mapping[str, Any], start: np.ndarray) -> Entity:
     place = (x + dx, y + dy, z + dz)
     rest = attached(nbt, place, (dx, dy, dz))
     return Entity(place, str(nbt["id"]), {k: rest[k] for k in rest if k not in ("id", "Pos")})
-
-
-def _joined(parts: list[BlockVolume], source: Path) -> BlockVolume:
-    boxes = [(np.array(part.corner), np.array(part.states.shape)) for part in parts]
-    low, size = _enclosing(boxes)
-    palette, number_of = palette_of((s for part in parts for s in part.palette), source)
-    states = np.zeros(tuple(size.tolist()), np.uint16)
-    for part, (corner, shape) in zip(parts, boxes, strict=True):
-        place = tuple(slice(a, a + n) for a, n in zip(corner - low, shape, strict=True))
-        numbers = np.array([number_of[state] for state in part.palette], np.uint16)[part.states]
-        is_block = part.states != part.palette.index(AIR)
-        np.copyto(states[place], numbers, where=is_block)
-    x, y, z = low.tolist()
-    blocks = [held for part in parts for held in part.block_entities]
-    return unlabelled(states, palette, (x, y, z), blocks, [e for p in parts for e in p.entities])
 
 
 def _tell(root: Mapping[str, Any], losses: Losses) -> None:

@@ -5,25 +5,34 @@ Structures carry what commands cannot say shortly: block entities and entities a
 """
 
 import re
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
-from world2minecraft.files import write_bytes
+from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.files import UNREADABLE, write_bytes
 from world2minecraft.minecraft.commands import entity_tag
 from world2minecraft.minecraft.datapack import job_files
+from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.sizes import pack_mcmeta, pack_zip, size_functions
-from world2minecraft.minecraft.structure import structure_bytes
+from world2minecraft.minecraft.structure import structure_bytes, structure_of
+from world2minecraft.minecraft.unlabelled import joined
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.types import BlockVolume, Entity
 
 PIECE = 48  # What a structure block loads and saves, since 1.16.
 PACK_SUFFIX = "_pieces.zip"
 FIRST_PLACE_VERSION = 3105  # 1.19, the first game with /place template.
+MAX_PIECES = 4096
+MAX_BYTES = 64 << 20  # Of all pieces, packed; they are gzip themselves.
 FOLDERS = ("structure", "structures")  # From 1.21 on, and before.
 _NAME = re.compile(r"[a-z0-9_.-]+")
+_PART = re.compile(r"data/[^/]+/functions?/place/part_\d+\.mcfunction")
+_PLACE = re.compile(
+    r"place template ([a-z0-9_.-]+):([a-z0-9_./-]+) (-?\d{1,8}) (-?\d{1,8}) (-?\d{1,8})"
+)
 
 
 def is_too_large(volume: BlockVolume, version: GameVersion) -> bool:
@@ -71,6 +80,69 @@ def write_structure_pack(
         commands.append(f"place template {space}:{title} {place}")
     files |= job_files(volume, space, "place", commands, "placed")
     write_bytes(path, pack_zip(files))
+
+
+def is_structure_pack(path: Path) -> bool:
+    """Whether a zip has the function that places the pieces of a structure."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return any(_PART.fullmatch(name) for name in archive.namelist())
+    except UNREADABLE:
+        return False
+
+
+def read_structure_pack(path: str | Path, losses: Losses | None = None) -> BlockVolume:
+    """Read the pieces of a pack that this program wrote, each where the function places it.
+
+    Raises:
+        InputError: there is no file, or it places nothing. DamagedFileError: a piece is missing
+        or broken. LimitError: there are too many, or they are too large.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise InputError(source, "is not there")
+    try:
+        with zipfile.ZipFile(source) as archive:
+            names = set(archive.namelist())
+            files = _placed(archive, source)
+            sizes = [archive.getinfo(name).file_size for name, _ in files if name in names]
+            if len(files) > MAX_PIECES or sum(sizes) > MAX_BYTES:
+                raise LimitError(
+                    source, f"has more than {MAX_PIECES:,} pieces or {MAX_BYTES:,} bytes"
+                )
+            if len(sizes) < len(files):
+                raise DamagedFileError(source, "places a piece that it does not hold")
+            parts = [
+                _read_piece(archive.read(name), source, place, losses) for name, place in files
+            ]
+    except UNREADABLE as error:
+        raise DamagedFileError(source, f"is no readable zip ({error})") from error
+    return joined(parts, source)
+
+
+def _placed(archive: zipfile.ZipFile, source: Path) -> list[tuple[str, tuple[int, int, int]]]:
+    """Return the file of each piece, and where the function places it."""
+    parts = sorted(name for name in archive.namelist() if _PART.fullmatch(name))
+    found = {}
+    for name in parts:
+        if archive.getinfo(name).file_size > MAX_BYTES:
+            raise LimitError(source, f"has a function of more than {MAX_BYTES:,} bytes")
+        folder = FOLDERS[1] if "/functions/" in name else FOLDERS[0]
+        for match in _PLACE.finditer(archive.read(name).decode("utf-8", "replace")):
+            space, title, x, y, z = match.groups()
+            found[space, title] = (f"data/{space}/{folder}/{title}.nbt", (int(x), int(y), int(z)))
+    if not found:
+        raise InputError(source, "places no structure")
+    return list(found.values())
+
+
+def _read_piece(
+    data: bytes, source: Path, place: tuple[int, int, int], losses: Losses | None
+) -> BlockVolume:
+    piece = structure_of(data, source, losses)
+    if piece.corner != place:
+        raise DamagedFileError(source, f"places at {place} what says to stand at {piece.corner}")
+    return piece
 
 
 def pieces(volume: BlockVolume) -> dict[tuple[int, int, int], BlockVolume]:

@@ -4,7 +4,7 @@ Readers know their blocks as a list of state texts, of which the volume's palett
 first, the others sorted, each once.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -74,6 +74,31 @@ def unlabelled(
         block_entities=tuple(block_entities),
         entities=tuple(entities),
     )
+
+
+def enclosing(boxes: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest corner and the size of the box around boxes of a corner and a size."""
+    low = np.min([corner for corner, _ in boxes], axis=0)
+    return low, np.max([corner + size for corner, size in boxes], axis=0) - low
+
+
+def joined(parts: Sequence[BlockVolume], path: str | Path) -> BlockVolume:
+    """Return volumes of one world as one; of two in a place the later stands, but for its air.
+
+    Raises:
+        LimitError: their box is too large, or they have too many states together.
+    """
+    boxes = [(np.array(part.corner), np.array(part.states.shape)) for part in parts]
+    low, size = enclosing(boxes)
+    palette, number_of = palette_of((s for part in parts for s in part.palette), path)
+    states = np.zeros(check_size(size, path), np.uint16)
+    for part, (corner, shape) in zip(parts, boxes, strict=True):
+        place = tuple(slice(a, a + n) for a, n in zip(corner - low, shape, strict=True))
+        numbers = np.array([number_of[state] for state in part.palette], np.uint16)
+        np.copyto(states[place], numbers[part.states], where=part.states != 0)
+    x, y, z = low.tolist()
+    blocks = [held for part in parts for held in part.block_entities]
+    return unlabelled(states, palette, (x, y, z), blocks, [e for p in parts for e in p.entities])
 
 
 def stated_corner(tree: Mapping[str, Any], path: str | Path) -> Corner | None:
