@@ -254,6 +254,17 @@ def test_a_ceiling_is_not_closed_where_one_saw_through():
 
 
 @pytest.mark.parametrize("scale", SCALES)
+def test_what_stands_before_a_wall_s_hidden_foot_makes_no_floor_behind_it(scale):
+    sketch = Sketch((50, 40, 30))
+    sketch.put((18, 36), (-1, 0), (0, 16), 255, 0)  # Behind the sofa nothing was seen.
+    sketch.put((20, 34), (-1, 0), (16, 26), WALL + 1, (180, 200, 210))
+    sketch.put((18, 36), (-1, 9), (0, 10), 7, (90, 90, 90), 1)
+    volume = build(sketch, scale)
+    floor = volume.semantic[:, 63 - volume.corner[1]] == FLOOR
+    assert np.flatnonzero(floor.any(0)).size == round(40 * VOXEL_M * scale)
+
+
+@pytest.mark.parametrize("scale", SCALES)
 def test_glass_shuts_a_room_whose_ceiling_nobody_saw(scale):
     sketch = Sketch(ceiling=False)
     sketch.labels[:, :, -2:] = 255

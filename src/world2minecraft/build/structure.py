@@ -72,10 +72,11 @@ def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParamete
     footprints: list[np.ndarray] = []
     floor = np.zeros(lattice.shape, bool)
     for ground, top in lattice.storeys:
+        # First of all, so that what stands before a wall's hidden foot is not taken for a room.
+        _up_and_down(walls, ceiling, open_share, lattice, (ground, top), parameters)
         open_floor = _open_floor(grid, free, lattice, ground)
         footprint = _footprint(grid, open_share, walls, lattice, (ground, top), open_floor)
         _floor(grid, footprint, walls, lattice, (ground, top), open_floor, floor, coloured)
-        _up_and_down(walls, ceiling, open_share, lattice, (ground, top), parameters)
         _level_tops(walls, patches, open_share, (ground, top))
         open_doorways(walls, grid, lattice, (ground, top))
         footprints.append(footprint)
