@@ -10,7 +10,7 @@ from world2minecraft.fit.shapes import ShapeSet
 from world2minecraft.fit.stilts import grounded, on_stilts
 
 LEG_SHARE = 0.5  # Of what a column of blocks holds, so much is thin: then it is a leg.
-POLE_FILL, POLE_CELLS = 0.2, 16  # Seen from above a pole takes a quarter of its block at most.
+POLE_FILL, POLE_SPAN = 0.2, 4  # A pole is half a block thick at most, both ways.
 CRUMB_SHARE = 0.12  # A loose part of less than this share of an object is left out.
 
 
@@ -78,11 +78,18 @@ def _poles(problem: Problem) -> np.ndarray:
     """Return which blocks hold a leg or a pole, bool [N]: upright, thin both ways, or its foot."""
     filled = problem.wanted.reshape(-1, SUB, SUB, SUB) > POLE_FILL
     upright = filled.any((1, 2)).sum(1) >= SUB - 1
-    slim = filled.any(3).sum((1, 2)) <= POLE_CELLS
-    foot = np.median(filled.sum((1, 2)), axis=1) <= POLE_CELLS
+    along, across = filled.any((2, 3)), filled.any((1, 3))
+    slim = np.maximum(_span(along), _span(across)) <= POLE_SPAN
+    foot = np.median(filled.sum((1, 2)), axis=1) <= POLE_SPAN**2
     foot &= problem.cells[:, 2] == 0
     thin = problem.thin.sum(1) > LEG_SHARE * problem.wanted.sum(1)
     return upright & (slim | foot) & thin
+
+
+def _span(rows: np.ndarray) -> np.ndarray:
+    """Return how far apart the first and the last set cells of rows, bool [N, 8], are, int [N]."""
+    first, last = rows.argmax(1), SUB - 1 - rows[:, ::-1].argmax(1)
+    return np.where(rows.any(1), last - first + 1, 0)
 
 
 def _add_legs(grid: np.ndarray, problem: Problem, shapes: ShapeSet) -> None:
