@@ -14,6 +14,7 @@ from world2minecraft.minecraft.datapack import write_datapack
 from world2minecraft.minecraft.game_names import (
     count_unknown,
     is_unknown,
+    mod_blocks,
     read_state,
     written_state,
 )
@@ -235,6 +236,12 @@ def test_blocks_that_a_game_does_not_know_are_counted():
     assert is_unknown("minecraft:stone_slab", 1631) and not is_unknown("minecraft:stone", 1519)
     assert is_unknown("minecraft:cherry_planks", 3218)
     assert not is_unknown("minecraft:cherry_planks", 3337)
+
+
+def test_blocks_of_mods_are_counted_by_mod():
+    palette = (AIR, "tmeo:bed", "minecraft:stone", "shop:shelf", "tmeo:bed[facing=east]", "a:b")
+    volume = volume_of(np.array([1, 4, 2, 3, 0, 1]).reshape(6, 1, 1), palette, (0, 0, 0))
+    assert list(mod_blocks(volume).items()) == [("shop", 1), ("tmeo", 3)]
 
 
 def test_old_versions_come_before_the_others():

@@ -89,6 +89,7 @@ def convert(
 ) -> None:
     """Read ``source``, write ``target`` and print what came of it. Raises what ``run`` raises."""
     from world2minecraft.exchange.forms import read_form, write_form
+    from world2minecraft.minecraft.game_names import mod_blocks
     from world2minecraft.minecraft.losses import Losses
 
     unread, unwritten = Losses(), Losses()
@@ -102,6 +103,8 @@ def convert(
     filled = int((volume.states != 0).sum())
     size = " x ".join(str(side) for side in volume.states.shape)
     print(f"{target}: {filled:,} blocks of {len(volume.palette) - 1} kinds, {size}")
+    for mod, count in mod_blocks(volume).items():
+        print(f"kept by their names: {count:,} blocks of the mod {mod}")
     tell_losses(unread, f"not read from {source.name}")
     tell_losses(unwritten, f"not written to {target.name}")
 

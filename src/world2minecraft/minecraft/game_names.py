@@ -100,6 +100,17 @@ def count_unknown(volume: BlockVolume, version: GameVersion, losses: Losses) -> 
             losses.add(f"blocks {name}, which Minecraft {version.name} does not know", count)
 
 
+def mod_blocks(volume: BlockVolume) -> dict[str, int]:
+    """Return how many blocks are of each mod: they are carried by their names alone."""
+    counts = np.bincount(volume.states.ravel(), minlength=len(volume.palette))
+    found: dict[str, int] = {}
+    for state, count in zip(volume.palette, counts.tolist(), strict=True):
+        space = state.partition(":")[0]
+        if space != "minecraft" and count:
+            found[space] = found.get(space, 0) + count
+    return dict(sorted(found.items()))
+
+
 def is_unknown(state: str, data_version: int) -> bool:
     """Whether a block of the game came with a later version. Blocks of mods count as known."""
     name = written_state(state, data_version).partition("[")[0]
