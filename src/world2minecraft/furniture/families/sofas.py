@@ -202,16 +202,19 @@ def _corner_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     left = look["side"] > 0
     last = size.width - 1
     corner = last if left else 0
-    rim: Side = "left" if left else "right"
     seat = [
         (i, j)
         for i in range(size.depth)
         for j in range(size.width)
         if i < run or (last - j if left else j) < wing
     ]
-    wall: Side = "back"
-    back: list[tuple[int, int, Side]] = [(0, j, wall) for j in range(size.width)]
-    back += [(i, corner, rim) for i in range(1, size.depth)]
+    sides: list[tuple[range, range, Side]] = [
+        (range(1), range(size.width), "back"),
+        (range(1, size.depth), range(corner, corner + 1), "left" if left else "right"),
+    ]
+    back: list[tuple[int, int, Side]] = [
+        (i, j, side) for along, across, side in sides for i in along for j in across
+    ]
     return _lay(plan, _Run(seat, back, []))
 
 
