@@ -18,7 +18,7 @@ from world2minecraft.types import AIR, BlockVolume
 
 WALL_SIGN = "minecraft:oak_wall_sign[facing={},waterlogged=false]"
 SIGN = "minecraft:oak_sign[rotation={},waterlogged=false]"
-NEAR, FAR = 1.0, 12.0  # Blocks from the spawn; nearer it would be in one's face.
+NEAR, BEST, FAR = 1.0, 3.0, 12.0  # Blocks from the spawn; nearer it would be in one's face.
 ASIDE = 5.0  # Blocks of way that looking straight at it is worth. A guess.
 LARGER = 1.5  # Blocks a metre from which on the player's own size matters.
 TOGGLE = "/function w2m:toggle_size"
@@ -129,7 +129,7 @@ def _cost(
     cell: tuple[int, int, int],
     facing: tuple[int, int] | None,
 ) -> float | None:
-    """Return how bad a place is for a sign: far, or aside of where one looks; None if unseen."""
+    """Return how bad a place is for a sign: not near, or aside of one's look; None if unseen."""
     eye = np.array(spawn.position) - volume.corner + [0, 1.0, 0]
     way = np.array(cell) + 0.5 - eye
     far = float(np.hypot(way[0], way[2]))
@@ -140,7 +140,7 @@ def _cost(
     turned = 1.0 if facing is None else float(-(way[0] * facing[0] + way[2] * facing[1]) / far)
     if turned < 0.3 or not _sees(free, eye, way):
         return None
-    return round(far + ASIDE * (1 - ahead) + ASIDE / 2 * (1 - turned), 6)
+    return round(abs(far - BEST) + ASIDE * (1 - ahead) + ASIDE / 2 * (1 - turned), 6)
 
 
 def _sees(free: np.ndarray, eye: np.ndarray, way: np.ndarray) -> bool:
