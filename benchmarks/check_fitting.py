@@ -67,7 +67,8 @@ def _check_objects(room, scale: float, rows: Rows) -> None:
         scores = [fit_object(one, above, scale, shapes) for one, above in objects_of(room)]
         means = np.mean([(one.iou, one.thin) for one in scores], axis=0)
         sums = np.sum([one[2:] for one in scores], axis=0)
-        rows[scale, name].append(Score(*means.tolist(), int(sums[0]), int(sums[1]), float(sums[2])))
+        iou, thin = means.tolist()
+        rows[scale, name].append(Score(iou, thin, int(sums[0]), int(sums[1]), float(sums[2])))
 
 
 def table(rows: Rows) -> Table:

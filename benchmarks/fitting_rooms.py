@@ -118,7 +118,7 @@ def fit_room(wanted: Solid, blocks_per_metre: float) -> tuple[np.ndarray, float]
         return wanted.filled.astype(np.intp), 0.0
     begun = time.process_time()
     cells, layers, counts = _blocks(wanted, blocks_per_metre)
-    problem = problem_of(cells, *layers, counts, ALL)
+    problem = problem_of(cells, layers[0], layers[1], counts, ALL)
     grid, _ = finished(problem, ALL, Rules(), _walled(counts))
     return grid, time.process_time() - begun
 

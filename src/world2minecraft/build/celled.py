@@ -111,7 +111,7 @@ def _is_copy(one: np.ndarray, other: np.ndarray) -> bool:
         return False
     first, second = _centred([one, other])
     shared, whole = np.count_nonzero(first & second), np.count_nonzero(first | second)
-    return shared >= COPY_IOU * whole
+    return bool(shared >= COPY_IOU * whole)
 
 
 def _centred(masks: Sequence[np.ndarray]) -> np.ndarray:
@@ -206,7 +206,8 @@ def _body_of(mask: np.ndarray, side: float, bottom: int, shift: bool, flush: boo
     A side that nearly ends a block is stretched until it does: a rim of slabs and stairs around a
     bed shows nothing of the bed.
     """
-    sides, middle, phase = np.full(3, side), np.zeros(2), [None, None]
+    sides, middle = np.full(3, side), np.zeros(2)
+    phase: list[int | None] = [None, None]
     if not shift:
         return Body(sides, middle, (None, None), False)
     for axis in (0, 1):

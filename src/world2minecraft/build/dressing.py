@@ -59,8 +59,9 @@ class Dresser:
         result = plain.copy()
         for at in zip(*np.nonzero(shaped), strict=True):
             shape = design.shapes.shapes[int(design.numbers[at]) - 1]
-            near = self._is_near(own[at], plain[at], colours[at])
-            state = self.materials.dressed(shape, own[at] if near else plain[at])
+            first, second = str(own[at]), str(plain[at])
+            near = self._is_near(first, second, colours[at])
+            state = self.materials.dressed(shape, first if near else second)
             result[at] = state or plain[at]
         return result[design.filled]
 

@@ -82,11 +82,10 @@ def choose(
 
     if lam is not None:
         return best(lam), lam
-    value = START
+    value, chosen = START, best(START)
     for _ in range(ROUNDS):
-        chosen = best(value)
         reached = short.iou(chosen)
         if abs(reached - value) < SETTLED:
             break
-        value = reached
+        value, chosen = reached, best(reached)
     return chosen, value

@@ -49,7 +49,7 @@ def _windows(edges: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
 def _met(solid: np.ndarray, windows: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
     """Return which blocks have a solid cell in their window, bool [X', Y', Z']."""
     for axis, (cells, shares) in enumerate(windows):
-        touched = (shares > 0).any(1)
+        touched = np.asarray((shares > 0).any(1))
         result = np.zeros((*solid.shape[:axis], len(cells), *solid.shape[axis + 1 :]), bool)
         shape = [1, 1, 1]
         shape[axis] = -1

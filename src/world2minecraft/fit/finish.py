@@ -78,7 +78,7 @@ def _poles(problem: Problem) -> np.ndarray:
     """Return which blocks hold a leg or a pole, bool [N]: upright, thin both ways, or its foot."""
     filled = problem.wanted.reshape(-1, SUB, SUB, SUB) > POLE_FILL
     upright = filled.any((1, 2)).sum(1) >= SUB - 1
-    along, across = filled.any((2, 3)), filled.any((1, 3))
+    along, across = (np.asarray(filled.any(axes)) for axes in ((2, 3), (1, 3)))
     slim = np.maximum(_span(along), _span(across)) <= POLE_SPAN
     foot = np.median(filled.sum((1, 2)), axis=1) <= POLE_SPAN**2
     foot &= problem.cells[:, 2] == 0

@@ -112,7 +112,7 @@ def _ways(grid: np.ndarray, part: np.ndarray, filled: np.ndarray) -> list[tuple[
 def _standing_shape(now: int, row: int, scores: np.ndarray, shapes: ShapeSet) -> int:
     """Return the best shape for a block over a post; 0 where there is none."""
     touches = shapes.faces[:, 2, 0, SUB // 2 - 1 : SUB // 2 + 1, SUB // 2 - 1 : SUB // 2 + 1]
-    able = touches.any((1, 2))
+    able = np.asarray(touches.any((1, 2)))
     if able[now]:
         return int(now)
     if row < 0:
