@@ -94,6 +94,28 @@ def test_gaps_are_found_where_they_are_and_a_corridor_is_none():
     assert find_gaps(corridor, corridor.labels == 0, 0.0) == []
 
 
+def dead_end() -> Sketch:
+    """A corridor 1.2 m wide, at whose shut end doorways lead into the rooms at its sides."""
+    sketch = Sketch((70, 60, 30))
+    for y in (20, 36):
+        sketch.put((0, 70), (y, y + 1), (0, 30), WALL, (230, 228, 224))
+        sketch.put((3, 14), (y, y + 1), (0, 26), 0, 0)
+    return sketch
+
+
+@pytest.mark.parametrize("scale", SCALES)
+def test_the_end_of_a_corridor_beside_doorways_stays_shut(scale):
+    sketch = dead_end()
+    grid = sketch.grid()
+    gaps = find_gaps(grid, grid.labels == 0, 0.0)
+    assert sorted(gap.axis for gap in gaps) == [0, 0]
+    volume = build_volume(grid, (), (), corner_m=sketch.corner_m, blocks_per_metre=scale)
+    x, _ = column_of(volume, -0.01, 2.3)
+    _, z = column_of(volume, 1.0, 2.3)
+    ground = 64 - volume.corner[1]
+    assert (volume.semantic[x, ground : ground + round(2 * scale), z] == WALL).all()
+
+
 def test_walls_of_both_storeys_stand_over_one_another():
     volume = built(4.0)
     for storey in (0, 1):

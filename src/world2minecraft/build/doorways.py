@@ -73,10 +73,21 @@ def find_gaps(grid: OccupancyGrid, free: np.ndarray, floor_m: float) -> list[Gap
             cells = np.argwhere(parts == number)
             start, stop = cells.min(axis=0), cells.max(axis=0) + 1
             wide_m, thick_m = (stop - start)[[axis, 1 - axis]] * grid.voxel_m
-            if wide_m >= NARROWEST_M and thick_m <= THICKEST_M:
+            if (
+                wide_m >= NARROWEST_M
+                and thick_m <= THICKEST_M
+                and _leads_on(walled, axis, start, stop)
+            ):
                 spans = [(int(start[i]), int(stop[i])) for i in (axis, 1 - axis)]
                 gaps.append(Gap(axis, spans[0], spans[1]))
     return gaps
+
+
+def _leads_on(walled: np.ndarray, axis: int, start: np.ndarray, stop: np.ndarray) -> bool:
+    """Whether no wall stands right before or behind a gap, as at the end of a corridor."""
+    plan = np.moveaxis(walled, axis, 0)[start[axis] : stop[axis]]
+    beside = (int(start[1 - axis]) - 1, int(stop[1 - axis]))
+    return not any(0 <= m < plan.shape[1] and plan[:, m].mean() > 0.5 for m in beside)
 
 
 def _between_walls(walled: np.ndarray, clear: np.ndarray, axis: int, most: int) -> np.ndarray:
