@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from world2minecraft.fit.joins import parts_of_shapes
+from world2minecraft.fit.joins import parts_of_shapes, touching
 from world2minecraft.fit.masks import SUB
-from world2minecraft.fit.problem import Problem
+from world2minecraft.fit.problem import WAYS, Problem
 from world2minecraft.fit.shapes import ShapeSet
 
 LEAST_VOLUME = 90.0  # Sub-cells, about a panel: what is smaller is a crumb.
@@ -51,7 +51,8 @@ def on_stilts(
     """Return shapes, int [X, Y, Z], with posts under the parts that nothing carries.
 
     A post stands where the wanted has a leg, else under the corners of the part; the block over
-    it takes the best shape that touches it. Where the way down is not free, nothing is done.
+    it takes the best shape that touches it. Where no way down is free, but the wanted runs up to
+    what holds it, as the cord of a lamp does, the posts go up. Else nothing is done.
 
     Args:
         grid: the shapes.
@@ -72,14 +73,32 @@ def on_stilts(
     hovering = ~carried & (volumes >= LEAST_VOLUME)
     hovering[0] = False
     for number in np.flatnonzero(hovering):
-        for x, y, top in _ways(result, parts == number, filled):
-            shape = _standing_shape(
-                result[x, y, top], problem.rows[x + 1, y + 1, top + 1], scores, shapes
-            )
+        part = parts == number
+        ways, side = _ways(result, part, filled), 0
+        if not ways and held is not None:
+            ways, side = _cords(result, part, filled, held), 1
+        for x, y, level in ways:
+            shape = _touching_shape(result, (x, y, level), side, problem, scores, shapes)
             if shape:
-                result[x, y, top] = shape
-                result[x, y, :top] = posts[0]
+                result[x, y, level] = shape
+                result[x, y, slice(0, level) if side == 0 else slice(level + 1, None)] = posts[0]
     return result
+
+
+def _cords(
+    grid: np.ndarray, part: np.ndarray, filled: np.ndarray, held: np.ndarray
+) -> list[tuple[int, int, int]]:
+    """Return the column in which a part hangs from the ceiling, and its highest block there."""
+    last = np.where(part.any(2), part.shape[2] - 1 - part[:, :, ::-1].argmax(2), -1)
+    ways = [
+        (int(x), int(y), int(last[x, y]))
+        for x, y in np.argwhere(last >= 0)
+        if held[x, y, -1]
+        and filled[x, y, last[x, y] + 1 :].all()
+        and not grid[x, y, last[x, y] + 1 :].any()
+    ]
+    middle = np.argwhere(part)[:, :2].mean(0)
+    return sorted(ways, key=lambda way: float(np.abs(np.array(way[:2]) - middle).sum()))[:1]
 
 
 def _ways(grid: np.ndarray, part: np.ndarray, filled: np.ndarray) -> list[tuple[int, int, int]]:
@@ -109,15 +128,31 @@ def _ways(grid: np.ndarray, part: np.ndarray, filled: np.ndarray) -> list[tuple[
     return [ways[n] for n in sorted(corners)]
 
 
-def _standing_shape(now: int, row: int, scores: np.ndarray, shapes: ShapeSet) -> int:
-    """Return the best shape for a block over a post; 0 where there is none."""
-    touches = shapes.faces[:, 2, 0, SUB // 2 - 1 : SUB // 2 + 1, SUB // 2 - 1 : SUB // 2 + 1]
-    able = np.asarray(touches.any((1, 2)))
+def _touching_shape(
+    grid: np.ndarray,
+    place: tuple[int, int, int],
+    side: int,
+    problem: Problem,
+    scores: np.ndarray,
+    shapes: ShapeSet,
+) -> int:
+    """Return the best shape for a block over (side 0) or under (1) a post; 0 where there is none.
+
+    It touches the post, and every neighbour that the shape touched that stands there now.
+    """
+    core = slice(SUB // 2 - 1, SUB // 2 + 1)
+    able = np.asarray(shapes.faces[:, 2, side, core, core].any((1, 2)))
+    padded, (x, y, z) = np.pad(grid, 1), (axis + 1 for axis in place)
+    now = int(grid[place])
+    contact = touching(shapes)
+    for way, (i, j, k) in enumerate(WAYS.tolist()):
+        other = int(padded[x + i, y + j, z + k])
+        if contact[way][now, other]:
+            able &= contact[way][:, other]
     if able[now]:
-        return int(now)
-    if row < 0:
-        return 0
+        return now
+    row = int(problem.rows[x, y, z])
     able[shapes.free :] = False
     gains = np.where(able, scores[row], -np.inf)
     best = int(gains.argmax())
-    return best if np.isfinite(gains[best]) else 0
+    return best if row >= 0 and np.isfinite(gains[best]) else 0
