@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from world2minecraft.minecraft.formats import WriteOptions, write_blocks
 from world2minecraft.minecraft.nbt import Byte, Long, Short, pack_gzip, write_nbt
 
-COUNT = 8  # Broken copies of each source here; ``benchmarks.check_fuzz`` makes as many as asked.
+COUNT = 4  # Broken copies of each source here; ``benchmarks.check_fuzz`` makes as many as asked.
 KNOWN = {"read", "DamagedFileError", "LimitError", "InputError", "UsageError"}
 
 
@@ -84,7 +84,7 @@ values = st.recursive(
 
 
 @pytest.mark.parametrize("suffix", [".schem", ".litematic", ".nbt", ".schematic"])
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(st.dictionaries(keys, values, max_size=12))
 def test_any_tree_is_read_or_refused(suffix, tmp_path_factory, tree):
     path = tmp_path_factory.getbasetemp() / f"tree{suffix}"
@@ -109,6 +109,7 @@ def near_tree(suffix: str, put: dict) -> dict:
 
 
 @pytest.mark.parametrize("suffix", [".schem", ".litematic", ".nbt", ".schematic"])
+@settings(max_examples=25)
 @given(st.dictionaries(keys, values, max_size=3))
 def test_a_nearly_right_tree_is_read_or_refused(suffix, tmp_path_factory, put):
     path = tmp_path_factory.getbasetemp() / f"tree{suffix}"
