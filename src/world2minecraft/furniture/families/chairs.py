@@ -29,7 +29,7 @@ def _chair_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
     if _is_small(size, look):
         _stair_chair(plan)
         return plan.blocks
-    layer = _seat(plan)
+    layer = _seat(plan, whole=look.option("arms") == "wood")
     lay_legs(plan, "leg", plan.corners, layer)
     top = max(size.height, layer + 2)
     lay_back(plan, "back", plan.width, range(layer + 1, top))
@@ -44,10 +44,10 @@ def _is_small(size: BlockSize, look: Look) -> bool:
     return size.per_metre < FINE or (size.depth == 1 and look["seat_height"] * size.per_metre < 1.5)
 
 
-def _seat(plan: Plan) -> int:
+def _seat(plan: Plan, *, whole: bool = False) -> int:
     """Lay a thin seat that rises at its back to meet the panels there; a soft one is whole."""
     height = plan.look["seat_height"] * plan.size.per_metre
-    if not plan.look.has("seat", "slab", "stairs"):
+    if whole or not plan.look.has("seat", "slab", "stairs"):
         return lay_plate(plan, "seat", plan.depth, plan.width, height, ("full",))
     layer = max(int(height), 1)
     plan.slab("seat", plan.depth, plan.width, layer)

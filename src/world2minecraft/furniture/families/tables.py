@@ -44,13 +44,14 @@ def _table_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
 def _is_braced(plan: Plan) -> bool:
     """Lay a table whose top ends level with a block, with braces at its corners; whether it does.
 
-    A plate in the lower half of a block would leave no room for what stands on the table.
+    A plate in the lower half of a block would leave no room for what stands on the table, and one
+    of trapdoors would be of another colour than the braces.
     """
     layer = round(plan.size.exact[2]) - 1
     fine = abs(plan.size.exact[2] - layer - 1) <= 0.3 and min(plan.size[:2]) > 2 and layer > 1
-    if not fine or not plan.look.has("top", "trapdoor", "stairs"):
+    if not fine or not plan.look.has("top", "slab", "stairs"):
         return False
-    plan.plate("top", plan.depth, plan.width, layer, "top")
+    plan.slab("top", plan.depth, plan.width, layer, "top")
     last = plan.size.width - 1
     for i, j in plan.corners:
         plan.stairs("top", i, j, layer, "left" if j == last else "right", "top")
