@@ -233,6 +233,11 @@ def test_blocks_that_a_game_does_not_know_are_counted():
     assert list(losses) == [("blocks minecraft:light, which Minecraft 1.16.5 does not know", 3)]
     count_unknown(volume, game_version("1.17"), losses)
     assert len(losses) == 1
+    told = Losses()
+    count_unknown(furnished_volume(), game_version("1.19.3"), told)
+    assert list(told) == [("display entities, which Minecraft 1.19.3 does not know", 1)]
+    count_unknown(furnished_volume(), game_version("1.19.4"), told)
+    assert len(told) == 1
     assert is_unknown("minecraft:stone_slab", 1631) and not is_unknown("minecraft:stone", 1519)
     assert is_unknown("minecraft:cherry_planks", 3218)
     assert not is_unknown("minecraft:cherry_planks", 3337)

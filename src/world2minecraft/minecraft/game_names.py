@@ -20,6 +20,8 @@ from world2minecraft.types import BlockVolume
 FIRST_1_14 = 1952  # Its first release; the names changed in snapshots before.
 FIRST_1_16 = 2566
 FIRST_1_17 = 2724
+FIRST_DISPLAYS = 3337  # 1.19.4.
+DISPLAYS = tuple(f"minecraft:{kind}_display" for kind in ("block", "item", "text"))
 _OLD_SIGNS = {
     "minecraft:sign": "minecraft:oak_sign",
     "minecraft:wall_sign": "minecraft:oak_wall_sign",
@@ -86,10 +88,13 @@ def written_state(text: str, data_version: int) -> str:
 
 
 def count_unknown(volume: BlockVolume, version: GameVersion, losses: Losses) -> None:
-    """Count the blocks of a volume that a version of the game does not know yet.
+    """Count the blocks and displays of a volume that a version of the game does not know yet.
 
-    They are written by their names; the game puts air in their place.
+    They are written by their names; the game puts air in their place, or nothing.
     """
+    if version.data_version < FIRST_DISPLAYS:
+        shown = sum(entity.id in DISPLAYS for entity in volume.entities)
+        losses.add(f"display entities, which Minecraft {version.name} does not know", shown)
     unknown = [is_unknown(state, version.data_version) for state in volume.palette]
     if not any(unknown):
         return
