@@ -21,7 +21,7 @@ VERBS: dict[str, str] = {
     "demo": "Try this first: a room is generated, scanned, built.",
     "scan": "Tell what a capture holds, before any long work.",
     "reconstruct": "Turn a capture into a Minecraft world, with a report.",
-    "build": "Turn any occupancy grid into a Minecraft world.",
+    "build": "Build a room: a world of its own, in yours, on a server.",
     "rooms generate": "Generate a furnished room or a house, with exact truth.",
     "rooms scan": "Scan a generated room or house with a virtual depth camera.",
     "evaluate reconstruction": "Score a reconstruction against a scanned room's truth.",
@@ -30,7 +30,7 @@ VERBS: dict[str, str] = {
     "furniture add": "Add a piece of your own from a schematic.",
     "furniture sheet": "Draw all furniture on one sheet.",
     "palettes": "List the palettes, or check one of your own.",
-    "convert": "Turn one Minecraft format into another.",
+    "convert": "Turn any form of a room or build into any other.",
     "clean": "Mend a built room as a person would.",
     "install": "Copy a built world to where the game finds it.",
     "undo": "Take back what was last built into a world.",
@@ -41,6 +41,7 @@ EXAMPLES = """\
 w2m demo                                  a room to OUT/, nothing needed
 w2m scan my_scan                          what is in this folder?
 w2m reconstruct my_scan --out OUT         the whole way
+w2m install OUT                           the world comes into your game
 w2m doctor                                check this machine
 w2m convert house.schem worlds/house      a schematic becomes a world
 """
