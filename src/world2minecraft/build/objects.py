@@ -34,6 +34,7 @@ from world2minecraft.build.tinting import Hue
 from world2minecraft.build.windows import Window, window_on
 from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.fit import without_loose
+from world2minecraft.fit.masks import SUB
 from world2minecraft.furniture import Idiom, idiom, template
 from world2minecraft.metrics.solids import own_cells
 from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
@@ -223,7 +224,8 @@ class ObjectBuilder:
             coarse = design_of(placement, parts, self.lattice)
             design = of_halves(coarse.low, coarse.halves, coarse.part)
         window = self._window(design)
-        if not forced and self._contradicted(design, window) > self._limit(placement):
+        guessed = not forced and placement.iou < SURE_IOU
+        if guessed and self._contradicted(design, window) > self._limit(placement):
             return False
         design = design.moved(self._step(design.filled, design.low))
         self.plates.plate_over(design, thing.instance)
@@ -286,10 +288,17 @@ class ObjectBuilder:
         opened = np.zeros_like(free) if held else self.open_share > OPEN
         return best_step(filled, low, free, opened, stands)
 
-    def _contradicted(self, design: Design, window: "Window") -> float:
-        """Return the share of a design's blocks that were seen free and nearly nothing else."""
-        filled = np.argwhere(design.filled[window.box]) + window.low
-        return float((self.open_share[tuple(filled.T)] > OPEN).mean()) if len(filled) else 0.0
+    def _contradicted(self, design: Design, window: Window) -> float:
+        """Return the share of a design's blocks that were seen free, but for what they show.
+
+        A thin panel leaves most of its block free.
+        """
+        filled = np.argwhere(design.filled[window.box])
+        if not len(filled):
+            return 0.0
+        numbers = design.numbers[window.box][tuple(filled.T)]
+        most = np.maximum(OPEN, 1 - design.shapes.volumes[numbers] / (2 * SUB**3))
+        return float((self.open_share[tuple((filled + window.low).T)] > most).mean())
 
     def _blocks_of(self, cells: np.ndarray) -> np.ndarray:
         """Return the block, int [N, 3], in which each cell's centre lies, above the floor."""
