@@ -116,6 +116,18 @@ def test_the_end_of_a_corridor_beside_doorways_stays_shut(scale):
     assert (volume.semantic[x, ground : ground + round(2 * scale), z] == WALL).all()
 
 
+@pytest.mark.parametrize("scale", [2.0, 4.0])
+@pytest.mark.parametrize("shift", range(6))
+def test_a_pillar_near_a_wall_is_no_doorway_s_jamb(scale, shift):
+    sketch = Sketch((50, 40, 30))
+    sketch.put((12 + shift, 17 + shift), (10, 15), (0, 30), WALL, (230, 228, 224))
+    volume = build_volume(sketch.grid(), (), (), corner_m=sketch.corner_m, blocks_per_metre=scale)
+    middle = np.array(column_of(volume, (14.5 + shift) * 0.08, 12.5 * 0.08))
+    near = np.ix_(*(np.arange(at - 1, at + 2) for at in middle))
+    ground = 64 - volume.corner[1]
+    assert (volume.semantic[:, ground + 2][near] == WALL).any()
+
+
 def test_walls_of_both_storeys_stand_over_one_another():
     volume = built(4.0)
     for storey in (0, 1):

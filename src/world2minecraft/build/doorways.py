@@ -19,6 +19,7 @@ THICKEST_M = 0.45  # A gap that goes on for longer is a corridor.
 BODY_M = (0.3, 1.7)  # Over thresholds, under lintels.
 BODY_SHARE = 0.9  # Of a column of cells at a body's height that was seen free.
 HIGHEST_M = 2.2
+OPEN_COVER = 0.7  # Of a block's width, for it to be open.
 PLAYER_BLOCKS = 2
 
 
@@ -111,7 +112,8 @@ def _columns(
     low, high = edges[gap.along[0]], edges[gap.along[1]]
     touched = np.arange(int(np.floor(low)), int(np.ceil(high)))
     cover = np.minimum(high, touched + 1) - np.maximum(low, touched)
-    chosen = touched[cover >= 0.5] if (cover >= 0.5).any() else touched[[int(cover.argmax())]]
+    # A block that a jamb or a pillar shares stays, where others are open.
+    chosen = touched[cover >= min(OPEN_COVER, float(cover.max()))]
     across = lattice.edges_of(grid, 1 - gap.axis)
     first = int(np.floor(across[gap.across[0]])) - 1
     last = int(np.ceil(across[gap.across[1]])) + 1
