@@ -1,5 +1,6 @@
 """``w2m clean``: mend a built room as a person would, and take any mend back."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -125,7 +126,7 @@ def opened(build: Path) -> "History":
         raise ConflictError(build / EDITS_FILE, f"{reason}; remove it, or build again") from error
 
 
-def listed(edits: "list[BlockEdit] | tuple[BlockEdit, ...]", is_done: list[bool], first=0) -> str:
+def listed(edits: "Sequence[BlockEdit]", is_done: list[bool], first: int = 0) -> str:
     """Return edits as lines: number, verb, blocks, object, place, reason."""
     from world2minecraft.classes import CLASS_NAMES
 

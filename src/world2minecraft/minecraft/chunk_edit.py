@@ -64,8 +64,14 @@ def open_chunk(data: bytes, place: Place, path: Path) -> dict[str, Any] | None:
         reason = f"chunk {place} is of a game before 1.18 (data version {version})"
         raise InputError(path, f"{reason}; open the world once in a newer game and go there")
     stated = (root.get("xPos"), root.get("zPos"))
-    if stated != place or not isinstance(root.get("sections", []), list):
+    if stated != place:
         raise DamagedFileError(path, f"chunk {place} says that it is chunk {stated}")
+    for key in ("sections", "block_entities"):
+        held = root.setdefault(key, [])
+        if not isinstance(held, list) or not all(isinstance(entry, dict) for entry in held):
+            raise DamagedFileError(path, f"chunk {place} has {key} that are no list of compounds")
+    if not all(isinstance(section.get("Y"), int) for section in root["sections"]):
+        raise DamagedFileError(path, f"chunk {place} has a section without a height")
     return root if root.get("Status") in FULL else None
 
 
@@ -163,7 +169,7 @@ def data_of(root: dict[str, Any], path: Path) -> list[BlockEntity]:
         DamagedFileError: one has no id or no place.
     """
     found = []
-    for nbt in root.get("block_entities", []):
+    for nbt in root["block_entities"]:
         try:
             rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
             position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))

@@ -17,7 +17,6 @@ from world2minecraft.files import read_bytes
 from world2minecraft.minecraft.anvil import (
     EXTERNAL,
     MAX_CHUNK_BYTES,
-    MAX_REGION_BYTES,
     SECTOR,
     ZLIB,
     region_position,
@@ -25,6 +24,7 @@ from world2minecraft.minecraft.anvil import (
 )
 
 Place = tuple[int, int]
+MAX_EDITED_BYTES = 128 << 20  # It is held three times; regions of players have 2 to 20 MB.
 LEVEL = 1  # As anvil.pack_region: a third of the time of 6, and most of a file is padding.
 MOST_SECTORS = 255  # A longer record lies in a file of its own.
 _HEAD = struct.Struct(">IB")
@@ -86,7 +86,7 @@ def read_region_file(path: Path) -> RegionFile:
         DamagedFileError: it is no region file. LimitError: it is too large.
     """
     region_x, region_z = region_position(path)
-    data = read_bytes(path, MAX_REGION_BYTES) if path.exists() else b""
+    data = read_bytes(path, MAX_EDITED_BYTES) if path.exists() else b""
     if not data:
         return RegionFile(path)
     if len(data) < 2 * SECTOR:
