@@ -1,6 +1,7 @@
 """The room itself: shut, one block thick, lit to its corners, with a plaque; and it stays."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,13 +13,14 @@ from world2minecraft.build import BuildParameters, build_volume, find_spawn
 from world2minecraft.build.connect import settle
 from world2minecraft.build.lamps import WALK_BLOCKS
 from world2minecraft.build.lights import LEAST_CORNER, light_of_volume
-from world2minecraft.build.morphology import parts_of
+from world2minecraft.build.morphology import beside, grown, parts_of
 from world2minecraft.build.plaque import FAR
 from world2minecraft.classes import OBJECT_CLASSES
+from world2minecraft.coordinates import apply, invert
 from world2minecraft.errors import UsageError
 from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.minecraft.stability import unstable
-from world2minecraft.rooms import generate_room
+from world2minecraft.rooms import generate_house, generate_room
 
 SCALES = (1.0, 2.0, 4.0)
 CEILING, FLOOR, WALL = 1, 2, 3
@@ -207,6 +209,28 @@ def test_nothing_of_a_room_built_from_its_cells_would_fall_or_change(seed):
     grid = true_grid(generate_room(seed))
     for scale in SCALES:
         assert unstable(build_volume(grid, (), (), blocks_per_metre=scale)) == []
+
+
+@pytest.mark.parametrize(
+    ("maker", "seed", "scale"),
+    [(generate_house, 3, 4.0), (generate_room, 2103, 2.0)],
+)
+def test_every_wall_of_a_generated_home_stands(maker, seed, scale):
+    """Each column of wall that one sees from a room has a block of wall in or beside its own."""
+    room = maker(seed)
+    full = true_grid(room)
+    labels = np.where(full.labels > WALL + 1, 0, full.labels).astype(np.uint8)
+    grid = replace(full, labels=labels, instance=np.zeros_like(full.instance))
+    corner = np.array([0.0, np.round(room.size_m[1] / VOXEL_M) * VOXEL_M])
+    volume = build_volume(grid, (), (), corner_m=corner, blocks_per_metre=scale)
+    low = round(float(-grid.origin_m[2] / VOXEL_M))
+    band = slice(low + 4, low + 22)
+    walls = np.isin(labels[:, :, band], (WALL, WALL + 1)).mean(2) > 0.9
+    cells = np.argwhere(walls & beside((labels[:, :, band] == 0).mean(2) > 0.9))
+    points = np.column_stack([(cells + 0.5) * VOXEL_M + grid.origin_m[:2], np.ones(len(cells))])
+    blocks = np.floor(apply(invert(volume.block_to_room), points) - volume.corner).astype(int)
+    standing = grown(np.isin(volume.semantic, (WALL, WALL + 1)), (1, 0, 1))
+    assert standing[tuple(blocks.T)].all()
 
 
 def test_what_would_fall_is_taken_away_with_what_it_carries():
