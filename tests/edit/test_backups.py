@@ -260,7 +260,7 @@ def test_a_program_that_is_really_killed_leaves_a_world_that_comes_back(tmp_path
     world = write_ground(tmp_path / "world")
     before = tree(world)
     chance = random.Random(5)
-    for _ in range(4):
+    for _ in range(2):
         words = [sys.executable, "-c", BUILD, str(world), os.path.dirname(__file__)]
         with subprocess.Popen(words, stdout=subprocess.PIPE) as process:
             process.stdout.readline()

@@ -42,7 +42,7 @@ def test_a_file_cut_at_any_byte_holds_the_whole_records_before(tmp_path):
         write_journal(tmp_path / "part", Journal(tmp_path / "j").edits[:count])
         ends.append((tmp_path / "part").stat().st_size)
     assert ends[-1] == len(data)
-    for cut in range(len(data)):
+    for cut in sorted({*range(0, len(data), 3), *ends, *(end - 1 for end in ends)} - {len(data)}):
         (tmp_path / "cut").write_bytes(data[:cut])
         whole = max(0, sum(cut >= end for end in ends) - 1)
         assert len(Journal(tmp_path / "cut").edits) == whole
