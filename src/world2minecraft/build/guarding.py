@@ -20,7 +20,8 @@ from world2minecraft.classes import SemanticClass
 from world2minecraft.metrics.solids import OWN_CELLS
 from world2minecraft.types import Placement
 
-HUNG = (SemanticClass.FURN,)  # What of it does not stand on a floor hangs on a wall.
+# What of these does not stand on a floor may hang on a wall.
+HUNG = (SemanticClass.FURN, SemanticClass.TVS, SemanticClass.OBJS)
 BULKY = {"slab", "stairs"}  # Without them a fit is of cubes, and those are better laid by parts.
 # Below these a fit is worse than the library's design. reference/fit.md has 0.3 for cells that
 # count whole; here what is one cell thick counts half.

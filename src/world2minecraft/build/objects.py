@@ -7,6 +7,7 @@ import numpy as np
 
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.celled import (
+    CLOSED,
     CellsDesign,
     Solid,
     design_of_cells,
@@ -41,6 +42,7 @@ from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
 
 CELLS = "cells"
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
+PLAIN = {"full", "slab"}  # Of so few blocks a bed or cupboard with stairs and panels is rubble.
 SURE_IOU = 0.5  # What matched as well as this is no guess; a block of a thin part is mostly free.
 FINE_SCALE = 3.0  # Blocks per metre from which a design is held against what was seen free.
 LEAST_ALONE = 0.25  # Blocks: a chair at one block a metre is less, and at two it is more.
@@ -180,7 +182,7 @@ class ObjectBuilder:
         kinds = kinds_of_sheet(self._kinds(hues, thing), solid, self.cell_blocks)
         if kinds & BULKY:
             of_cells = (cells, solid, self.grid, self.lattice, kinds, number > 0)
-            made = design_of_cells(*of_cells, class_id in LAID_ON, class_id in HUNG)
+            made = design_of_cells(*of_cells, class_id in LAID_ON, self._hangs(cells, class_id))
             design, blocks = made.design, made.blocks
         else:
             share = self.parameters.object_share
@@ -188,6 +190,13 @@ class ObjectBuilder:
             design, blocks = of_halves(shape.low, shape.halves), shape.blocks
         self.fitted[tuple(cells.T)] = True
         self._put_design(design, Hues(hues, blocks), thing)
+
+    def _hangs(self, cells: np.ndarray, class_id: int) -> bool:
+        """Whether nothing that is built lies under an object that may hang on a wall."""
+        blocks = np.unique(self._blocks_of(cells), axis=0)
+        lowest = blocks[blocks[:, 2] == blocks[:, 2].min()]
+        under = self.canvas.states[tuple((lowest - [0, 0, 1]).T)] > 0
+        return class_id in HUNG and not under.any()
 
     def _put_design(self, design: Design, hues: Hues, thing: Thing) -> None:
         """Set a design of own cells; one that hangs flush on a wall takes wall blocks."""
@@ -275,7 +284,9 @@ class ObjectBuilder:
         if paint is not None:
             return self.dresser.kinds(np.reshape(paint, (-1, 3)), thing.class_id)
         colours, usable = self.coats.colours_of(Hues(cells, cells))
-        return self.dresser.kinds(colours[usable], thing.class_id)
+        kinds = self.dresser.kinds(colours[usable], thing.class_id)
+        coarse = self.lattice.blocks_per_metre < FINE_SCALE
+        return kinds & PLAIN if coarse and thing.class_id in CLOSED else kinds
 
     def _step(self, filled: np.ndarray, low: np.ndarray, *, held: bool = False) -> np.ndarray:
         """Return the step of at most a block, int64 [3], that keeps most of a thing whole.
