@@ -22,6 +22,8 @@ CHROMA_WEIGHT, HUE_WEIGHT = 0.6, 1.5
 # Of what is nearly grey the hue is noise, and a clear colour in its place is plainly wrong: the
 # kitchen's blue-grey carpet came out purple.
 FAINT_CHROMA, CLEAR_CHROMA, FAINT_WEIGHT = 0.01, 0.025, 2.5
+DULL_CHROMA, STRONG_CHROMA = 0.035, 0.055  # From where on a grey for a colour is a fault.
+FADED = 0.05  # How great a fault, of an object; on walls and floors a calm grey is none.
 SAME_PAINT = 0.06  # Oklab distance of two medians of one paint: about the noise of fused colours.
 MAX_DISTANCES = 1 << 24  # Blocks times candidates held at once: 64 MB.
 
@@ -31,12 +33,14 @@ def costs_of(
     candidates: Sequence[str],
     lightness_weight: float,
     handicaps: np.ndarray,
+    fading: float = 0.0,
 ) -> np.ndarray:
     """Return squared distances, float32 [N, M], of Oklab colours [N, 3] to M blocks.
 
     The difference of a and b is parted into that of chroma and the rest, which is that of hue.
 
-    ``handicaps`` float [M] are added to the distances.
+    ``handicaps`` float [M] are added to the distances, and ``fading`` to those of blocks that would
+    turn a clear colour grey: a purple sofa may be another purple, but no dark stone.
     """
     wanted = colours.astype(np.float32)[:, None]
     offered = oklab_of_srgb(colours_of(candidates))
@@ -48,7 +52,9 @@ def costs_of(
     weight = FAINT_WEIGHT + (CHROMA_WEIGHT - FAINT_WEIGHT) * clear
     weight = np.where(chroma < 0, weight, CHROMA_WEIGHT)  # Greyer than it is, is no such fault.
     apart = lightness_weight * square[..., 0] + weight * chroma**2 + HUE_WEIGHT * hue
-    return (np.sqrt(apart) + handicaps.astype(np.float32)) ** 2
+    faded = fading * np.clip((own - DULL_CHROMA) / (STRONG_CHROMA - DULL_CHROMA), 0, 1)
+    faded = faded * (np.hypot(offered[:, 1], offered[:, 2]) < own / 2)
+    return (np.sqrt(apart) + handicaps.astype(np.float32) + faded) ** 2
 
 
 def choose_few(costs: np.ndarray, most: int, noticed: float) -> np.ndarray:
@@ -116,6 +122,7 @@ def paint(
     noticed: float,
     match_weight: float | None = None,
     handicaps: np.ndarray | None = None,
+    fading: float = 0.0,
 ) -> np.ndarray:
     """Return which candidate each block of a surface becomes.
 
@@ -131,6 +138,7 @@ def paint(
             takes ``lightness_weight``. A low weight finds the parts of an unevenly lit floor,
             a higher one finds the block that is as light as it.
         handicaps: float [M], Oklab distances added to those of each candidate; None adds none.
+        fading: the Oklab distance added to greys that stand for a clear colour.
 
     Returns:
         intp [N], indices into ``candidates``.
@@ -139,16 +147,17 @@ def paint(
         return np.zeros(0, np.intp)
     stride = -(-len(colours) * len(candidates) // MAX_DISTANCES)
     extra = np.zeros(len(candidates)) if handicaps is None else handicaps
-    sample = costs_of(colours[::stride], candidates, lightness_weight, extra)
+    sample = costs_of(colours[::stride], candidates, lightness_weight, extra, fading)
     few = choose_few(sample, most, noticed)
     offered = [str(candidates[index]) for index in few]
-    parts = calm(costs_of(colours, offered, lightness_weight, extra[few]), positions, calm_step)
+    costs = costs_of(colours, offered, lightness_weight, extra[few], fading)
+    parts = calm(costs, positions, calm_step)
     weight = lightness_weight if match_weight is None else match_weight
     parts = _joined(parts, colours, len(few), lightness_weight, SAME_PAINT)
-    matched = _matched(parts, colours, candidates, weight, extra)
+    matched = _matched(parts, colours, candidates, weight, extra, fading)
     shown = oklab_of_srgb(colours_of([str(candidates[index]) for index in matched]))
     parts = _joined(parts, shown[parts], len(few), lightness_weight, noticed)
-    return _matched(parts, colours, candidates, weight, extra)[parts]
+    return _matched(parts, colours, candidates, weight, extra, fading)[parts]
 
 
 def _matched(
@@ -157,10 +166,11 @@ def _matched(
     candidates: Sequence[str],
     weight: float,
     handicaps: np.ndarray,
+    fading: float,
 ) -> np.ndarray:
     """Return the candidate nearest to the median of each part, intp [parts]."""
     medians, _ = group_medians(parts, colours, int(parts.max()) + 1)
-    return costs_of(medians, candidates, weight, handicaps).argmin(1)
+    return costs_of(medians, candidates, weight, handicaps, fading).argmin(1)
 
 
 def _joined(

@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.hues import default_colour, group_medians, spread
-from world2minecraft.build.paint import paint
+from world2minecraft.build.paint import FADED, paint
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.classes import STRUCTURE_CLASSES
@@ -82,6 +82,7 @@ def painted(
         match_weight=weight,
         calm_step=parameters.calm,
         handicaps=handicaps,
+        fading=0.0 if shell else FADED,
     )
     return np.array(choices, object)[index]
 

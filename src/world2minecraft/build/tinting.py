@@ -11,20 +11,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.build.paint import costs_of
+from world2minecraft.build.paint import FADED, costs_of
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.surfaces import painted
 from world2minecraft.furniture import IdiomBlock, Material
 from world2minecraft.furniture.materials import FIXED, PLAIN, Swatch, restated, shape_of, swatches
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colour_of, colours_of
+from world2minecraft.minecraft.colours import colour_of
 from world2minecraft.minecraft.shapes import is_full_cube
 
 OTHER_KIND = 0.1  # Oklab: what another kind of material must come nearer by. A guess.
 OWN_LOOK = 0.1  # Oklab: up to this far off a fixed block keeps its own look. A guess.
-FADED = 0.05  # Oklab: a grey that stands for a clear colour: a blue chair stays blue. A guess.
-CLEAR_CHROMA, FAINT_CHROMA, CLEAR_SHARE = 0.06, 0.03, 0.3
+CLEAR_CHROMA, CLEAR_SHARE = 0.06, 0.3
 PLAIN_PAINTS = 3  # Blocks of one plain role: a front, its trim and one thing in it.
 
 
@@ -146,8 +145,5 @@ def _nearest(
         return None
     handicaps = np.array([0.0] * len(own) + [OTHER_KIND] * (len(offered) - len(own)))
     samples = [one.sample for one in offered]
-    if np.hypot(*colour[1:]) >= CLEAR_CHROMA:
-        chroma = np.hypot(*oklab_of_srgb(colours_of(samples))[:, 1:].T)
-        handicaps = handicaps + FADED * (chroma < FAINT_CHROMA)
-    costs = costs_of(colour[None], samples, parameters.lightness_weight, handicaps)
+    costs = costs_of(colour[None], samples, parameters.lightness_weight, handicaps, FADED)
     return offered[int(costs[0].argmin())]

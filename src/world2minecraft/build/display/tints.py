@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from world2minecraft.build.display.frame import Frame
-from world2minecraft.build.paint import costs_of
+from world2minecraft.build.paint import FADED, costs_of
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.coordinates import apply, invert
@@ -119,7 +119,8 @@ def nearest_state(
     colour: np.ndarray, choices: Sequence[str], parameters: BuildParameters
 ) -> tuple[str, float]:
     """Return the block nearest to an Oklab colour, and how far it is."""
-    costs = costs_of(colour[None], choices, parameters.lightness_weight, np.zeros(len(choices)))[0]
+    none = np.zeros(len(choices))
+    costs = costs_of(colour[None], choices, parameters.lightness_weight, none, FADED)[0]
     best = int(costs.argmin())
     return choices[best], float(np.sqrt(costs[best]))
 
