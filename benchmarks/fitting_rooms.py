@@ -258,7 +258,8 @@ def fit_object(wanted: Solid, above: int, blocks_per_metre: float, shapes: Shape
     begun = time.process_time()
     side = wanted.voxel_m * blocks_per_metre
     stands = above <= 0
-    target = target_of(wanted, side, round(above * side * SUB) % SUB if not stands else 0)
+    half = np.floor(2 * above * side + 0.5) / 2  # As the builder puts what lies on something.
+    target = target_of(wanted, side, 0 if stands else round(half % 1 * SUB))
     fit = fit_solid(target, shapes, Rules(stands=stands))
     seconds = time.process_time() - begun
     size = np.array(wanted.filled.shape) * side

@@ -15,8 +15,8 @@ from world2minecraft.fit.masks import SUB
 from world2minecraft.fit.problem import Problem, Rules, Target, problem_at
 from world2minecraft.fit.shapes import ShapeSet
 
-PHASE_STEP = 2  # Sub-cells: quarters of a block; finer ones gained nothing.
-FINALISTS = 2  # Phases that are solved with joints after all were tried without.
+PHASE_STEP = 1  # Sub-cells: of 64 shifts the best is worth 0.03 of IoU more than of 16.
+FINALISTS = 6  # Phases that are solved with joints after all were tried without.
 EVEN = 0.85  # IoU with its mirror image from which an object is taken for symmetric.
 USUAL = Rules()
 
