@@ -42,6 +42,11 @@ DYES = (
     "pink",
 )
 _KEPT_DYES = ("white",)  # A design's own white is meant: a pillow, a sheet.
+LIFTED_UNDER, HIGH_M = (
+    1.5,
+    1.2,
+)  # Blocks per metre; what hangs so high over the floor has air below.
+TIE = 1e-6
 OWN_COLOUR = 0.1  # Oklab distance up to which a design's full block keeps its own look. A guess.
 
 
@@ -68,8 +73,14 @@ def idiom_box(
     low = np.floor(np.array([*(middle[:2] - solid[:2] / 2), bottom]) + 0.5).astype(int)
     if placement.quarter_turns >= 2:  # The front looks to where coordinates fall.
         low[axis] -= out
+    ground = lattice.ground_under(float(bottom))
+    if (
+        lattice.blocks_per_metre < LIFTED_UNDER
+        and (bottom - ground) / lattice.blocks_per_metre >= HIGH_M
+    ):
+        low[2] = int(np.ceil(bottom - TIE))  # Else a wall unit would stand on the counter below.
     most = np.maximum(np.array(lattice.shape) - size, 0)
-    least = [0, 0, lattice.ground_under(float(bottom))]
+    least = [0, 0, ground]
     return np.clip(low, least, np.maximum(most, least)), size
 
 

@@ -106,6 +106,7 @@ class ObjectBuilder:
             missing = number and not (self.canvas.instance == number).any()
             if missing or self._is_large(cells):
                 self.put_cells(cells, key >> 16, number)
+        self.plates.put_carpets()
         classes = {one.object_id: one.class_id for one in placements}
         for number in sorted(set(classes) - set(np.unique(self.canvas.instance).tolist())):
             if self._is_large(np.argwhere(self.grid.instance == number)):

@@ -10,7 +10,11 @@ from world2minecraft.build.worktops import Worktop, find_worktop, joined
 from world2minecraft.classes import SemanticClass
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colours_of
+from world2minecraft.minecraft.shapes import is_full_cube
+from world2minecraft.minecraft.states import known_blocks
 from world2minecraft.types import OccupancyGrid
+
+PLATES_FROM = 1.5  # Blocks per metre: below, a counter is one block high.
 
 
 class Plates:
@@ -28,6 +32,8 @@ class Plates:
             if number and top is not None:
                 self.worktops[int(number)] = top
         self.worktops = joined(self.worktops)
+        if self.lattice.blocks_per_metre < PLATES_FROM:
+            return
         for number, top in self.worktops.items():
             self._put_plate(top, top.columns, number)
 
@@ -46,10 +52,31 @@ class Plates:
         state = f"{self.palette.slabs[block]}[type=bottom]" if top.half != FULL else block
         self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
 
+    def put_carpets(self) -> None:
+        """Lay carpets for the worktops of a scale at which a plate would be all of a counter.
+
+        So its front keeps its own colour, and its top shows the worktop's.
+        """
+        if self.lattice.blocks_per_metre >= PLATES_FROM:
+            return
+        carpets = [block for block in known_blocks() if block.endswith("_carpet")]
+        carpets = [block for block in carpets if self.palette.allows(block)]
+        full = np.array([is_full_cube(state) for state in self.canvas.palette])
+        for number, top in self.worktops.items():
+            own = (self.canvas.instance == number) & full[self.canvas.states]
+            under = own[:, :, top.layer] & top.columns
+            free = self.canvas.states[:, :, top.layer + 1] == 0
+            apart = np.linalg.norm(oklab_of_srgb(colours_of(carpets)) - top.colour, axis=1)
+            if carpets and (under & free).any():
+                mask = np.zeros(self.lattice.shape, bool)
+                mask[:, :, top.layer + 1] = under & free
+                state = carpets[int(apart.argmin())]
+                self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
+
     def plate_over(self, design: Design, number: int) -> None:
         """Let an object's worktop cover one of its designs that reaches up to it."""
         top = self.worktops.get(number)
-        if top is None:
+        if top is None or self.lattice.blocks_per_metre < PLATES_FROM:
             return
         level = top.layer - int(design.low[2])
         if level == design.numbers.shape[2] - 1:

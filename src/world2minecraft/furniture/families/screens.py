@@ -1,7 +1,7 @@
 """Screens: on a wall, or on a foot.
 
 A thin one is of panes, which join side by side to one dark plate; one block wide a pane would be a
-post, so that is a panel.
+post, so that is a panel, and at few blocks a metre a whole block: a panel is brown, a screen is not.
 """
 
 from world2minecraft.furniture.family import Family
@@ -12,6 +12,7 @@ from world2minecraft.furniture.shapes import part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 
 THICK = 0.3  # Blocks: a screen this deep is a whole block.
+PANELS_FROM = 3.0  # Blocks per metre.
 
 
 def _wall_screen(depth: float, width: float, height: float, look: Look) -> list[Part]:
@@ -26,7 +27,8 @@ def _wall_blocks(size: BlockSize, look: Look) -> list[LocalBlock]:
 
 def _lay_screen(plan: Plan, bottom: int, deep: float) -> None:
     above = range(bottom, max(plan.size.height, bottom + 1))
-    if deep > THICK or not plan.look.has("screen", "pane", "trapdoor"):
+    small = plan.size.width == 1 and plan.size.per_metre < PANELS_FROM
+    if small or deep > THICK or not plan.look.has("screen", "pane", "trapdoor"):
         plan.put("screen", 0, plan.width, above)
     elif plan.size.width > 1:
         plan.put("screen", 0, plan.width, above, "pane")
