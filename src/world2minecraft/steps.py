@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.build import build_volume, write_build
+from world2minecraft.build import WORLD_NAME, build_volume, write_build
 from world2minecraft.edit.cleanup import mended
 from world2minecraft.edit.journal import write_edits
 from world2minecraft.exchange.centers import write_centers
@@ -81,7 +81,8 @@ def furnish_stage(folder: Path, chosen: Parameters) -> None:
 def build_stage(folder: Path, chosen: Parameters) -> None:
     """``room.npz`` and ``placements.json`` -> the world and its other forms in ``build``."""
     volume, edits = _mended(folder, chosen)
-    write_build(folder / "build", volume, mc_version=chosen.mc_version)
+    name = scene_name(folder) or WORLD_NAME
+    write_build(folder / "build", volume, mc_version=chosen.mc_version, name=name)
     write_edits(folder / "build", edits)
     write_further_forms(folder, volume, chosen)
 

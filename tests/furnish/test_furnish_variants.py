@@ -40,6 +40,12 @@ def test_colour_decides_among_designs_of_one_size(rgb, template_name):
     assert placement.template == template_name
 
 
+def test_pale_wood_is_neither_stone_nor_steel():
+    offered = ("dining_table_stone", "dining_table_steel", "dining_table_white")
+    (placement,) = choose([_choice("dining_table", (176, 161, 134), offered=offered)])
+    assert placement.template == "dining_table"
+
+
 def test_size_decides_where_colour_says_nothing():
     wide, narrow = (2.1, 2.0, 1.1), (2.05, 1.5, 0.95)
     kings = ("double_bed_king",)

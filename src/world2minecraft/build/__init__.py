@@ -5,13 +5,14 @@ from typing import TYPE_CHECKING, Any
 from world2minecraft.build.parameters import BuildParameters
 
 if TYPE_CHECKING:
-    from world2minecraft.build.outputs import write_build
+    from world2minecraft.build.outputs import WORLD_NAME, write_build
     from world2minecraft.build.spawn import Spawn, find_spawn
     from world2minecraft.build.volume import build_volume
 
-__all__ = ["BuildParameters", "Spawn", "build_volume", "find_spawn", "write_build"]
+__all__ = ["WORLD_NAME", "BuildParameters", "Spawn", "build_volume", "find_spawn", "write_build"]
 
 _HOMES = {
+    "WORLD_NAME": "outputs",
     "Spawn": "spawn",
     "build_volume": "volume",
     "find_spawn": "spawn",

@@ -12,13 +12,15 @@ from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
 from world2minecraft.minecraft.world import write_world
 from world2minecraft.types import BlockVolume
 
+WORLD_NAME = "World2Minecraft room"  # Where nothing says what the room is called.
+
 
 def write_build(
     folder: str | Path,
     volume: BlockVolume,
     *,
     mc_version: str = DEFAULT_VERSION,
-    name: str = "World2Minecraft room",
+    name: str = WORLD_NAME,
 ) -> None:
     """Write ``world/``, ``room.schem``, ``datapack.zip``, ``scene.json`` and ``scene.npz``.
 

@@ -161,10 +161,17 @@ def taken_back(history: "History", undo: int, undo_all: bool, redo: int) -> str:
 
 def write_again(build: Path, history: "History") -> None:
     """Write a build with other blocks in it, under the name that its world has."""
-    from world2minecraft.build import write_build
+    from world2minecraft.build import WORLD_NAME, write_build
     from world2minecraft.exchange.scene import read_scene
+    from world2minecraft.files import read_json
     from world2minecraft.minecraft.world_reading import read_level
+    from world2minecraft.parameters import Parameters
+    from world2minecraft.steps import write_further_forms
 
-    name = str(read_level(build / "world").get("LevelName", "World2Minecraft room"))
-    write_build(build, history.volume, mc_version=read_scene(build).mc_version, name=name)
+    name, version = read_level(build / "world").get("LevelName"), read_scene(build).mc_version
+    write_build(build, history.volume, mc_version=version, name=str(name or WORLD_NAME))
+    if (build / "forms.json").is_file():
+        formats = ",".join(read_json(build / "forms.json"))
+        chosen = Parameters(formats=formats, mc_version=version)
+        write_further_forms(build.parent, history.volume, chosen)
     print(f"{build / 'world'} is written anew, with its other forms.")

@@ -103,8 +103,10 @@ def convert(
     filled = int((volume.states != 0).sum())
     size = " x ".join(str(side) for side in volume.states.shape)
     print(f"{target}: {filled:,} blocks of {len(volume.palette) - 1} kinds, {size}")
+    told = " ".join(what for what, _ in unwritten)
     for mod, count in mod_blocks(volume).items():
-        print(f"kept by their names: {count:,} blocks of the mod {mod}")
+        if f"{mod}:" not in told:
+            print(f"kept by their names: {count:,} blocks of the mod {mod}")
     tell_losses(unread, f"not read from {source.name}")
     tell_losses(unwritten, f"not written to {target.name}")
 

@@ -21,6 +21,7 @@ LOST_IOU = 0.02  # What another design may explain less: about the noise of a sc
 SLACK_M = 0.04  # Half a cell: sizes are whole cells.
 NEUTRAL = 0.1  # Oklab: a design that suits any colour is as good as one this far off.
 SIZE_COST = 0.1  # The Oklab distance that a side at the end of its span is worth. A guess.
+CLEAR_CHROMA, FADED = 0.025, 0.1  # From where on a colour has a hue, and what losing it costs.
 STAY = 0.02  # What another design must be better by than the match itself.
 LIGHT = np.sqrt(0.4)  # How much lightness counts against hue, as where blocks are chosen.
 SAME_SET, SAME_SIZE_M = 0.08, 0.12
@@ -155,8 +156,14 @@ def _cost(design: Template, size_m: np.ndarray, colour: np.ndarray | None) -> fl
     if colour is None:
         return np.inf
     suited = oklab_of_srgb(np.array(design.suits, np.uint8))
-    apart = min(_colours_apart(colour, one) for one in suited)
+    apart = min(_colours_apart(colour, one) + _faded(colour, one) for one in suited)
     return apart + SIZE_COST * far
+
+
+def _faded(colour: np.ndarray, suited: np.ndarray) -> float:
+    """Return what it costs to take a grey thing for one with a hue: pale wood is no steel."""
+    own, other = (float(np.hypot(*one[1:])) for one in (colour, suited))
+    return FADED if own >= CLEAR_CHROMA and other < own / 2 else 0.0
 
 
 def _strangeness(side: float, span: Span) -> float:
