@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 from rich.console import Console
-from world2minecraft.minecraft.stability import unstable
 
 from benchmarks.compare_builds import captioned, in_rows
 from world2minecraft.build.parameters import STYLES
 from world2minecraft.files import write_bytes
+from world2minecraft.minecraft.stability import unstable
 from world2minecraft.parameters import Parameters, with_settings
 from world2minecraft.rebuild import blocks_of
 from world2minecraft.render.preview import preview

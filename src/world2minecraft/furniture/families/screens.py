@@ -1,7 +1,7 @@
 """Screens: on a wall, or on a foot.
 
-A thin one is of panes, which join side by side to one dark plate; one block wide a pane would be a
-post, so that is a panel, and at few blocks a metre a whole block: a panel is brown, a screen is not.
+A thin one is of panes, which join side by side to one dark plate. One block wide a pane would be a
+post, so that is a panel, or at few blocks a metre a whole block: a panel is brown, a screen is not.
 """
 
 from world2minecraft.furniture.family import Family
