@@ -21,11 +21,10 @@ BACK_M, ARM_M = 0.2, 0.18
 def _upholstered(back_m: float, arm_m: float) -> Build:
     def build(depth: float, width: float, height: float, look: Look) -> list[Part]:
         seat = min(look["seat_height"], 0.7 * height)
-        sides = (
-            []
-            if look.option("arms") == "none"
-            else arms(depth, width, seat, min(look["arm_height"], height), arm_m)
-        )
+        ends = arms(depth, width, seat, min(look["arm_height"], height), arm_m)
+        # Full arms are upholstered like the seat, low ones are of wood.
+        padded = [one._replace(role="seat") for one in ends]
+        sides = {"none": [], "low": ends, "full": padded}[look.option("arms")]
         return [
             slab("seat", depth, width, 0.0, seat),
             backrest(depth, width, seat, height, back_m),
@@ -141,7 +140,8 @@ def _plush_layers(plan: Plan, run: _Run) -> None:
     seat = max(1, round(look["seat_height"] * scale))
     low = look.option("arms") == "low"
     arm = seat if low else seat + 1
-    back = max(int(plan.size.exact[2] + 0.65), seat + 1, arm)
+    # A back no higher than the arms would make a tub of it.
+    back = max(int(plan.size.exact[2] + 0.65), seat + 1, arm if low else arm + 1)
     for i, j in run.seat:
         plan.put("seat", i, j, range(seat))
     for i, j, _ in run.arms if plan.size.width >= WIDE else ():
