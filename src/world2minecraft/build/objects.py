@@ -30,6 +30,7 @@ from world2minecraft.build.parts import design_of
 from world2minecraft.build.places import LAST, in_order, within_storeys
 from world2minecraft.build.plates import Plates
 from world2minecraft.build.seats import chair_paints
+from world2minecraft.build.standins import known_by_shape
 from world2minecraft.build.surfaces import block_colours
 from world2minecraft.build.tinting import Hue
 from world2minecraft.build.windows import Window, window_on
@@ -83,6 +84,8 @@ class ObjectBuilder:
         if self.parameters.close_tops:
             self.plates.put_worktops(self.grid, self.colours, self.coloured)
         voxels = self.parameters.style == "voxels"
+        if not voxels and self.lattice.blocks_per_metre < FINE_SCALE:
+            placements = known_by_shape(placements, self._cells_of, self.coats)
         held = {id(one): self._cells_of(one) for one in placements}
         own = [one for one in placements if one.template == CELLS or voxels]
         solids = solids_of(own, held, self.coats)

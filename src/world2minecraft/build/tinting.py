@@ -21,6 +21,7 @@ from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colour_of
 from world2minecraft.minecraft.shapes import is_full_cube
 
+OTHER_CLOTH = 0.03  # Oklab: what another full block must be nearer by than wool. A guess.
 OTHER_KIND = 0.1  # Oklab: what another kind of material must come nearer by. A guess.
 OWN_LOOK = 0.1  # Oklab: up to this far off a fixed block keeps its own look. A guess.
 CLEAR_CHROMA, CLEAR_SHARE = 0.06, 0.3
@@ -66,7 +67,9 @@ def tinted(
     for material, indices in groups.items():
         own, at = [states[index] for index in indices], cells[indices]
         colour = _colour(at, hue)
-        if material.kind not in (PLAIN, FIXED):
+        if material.kind == "cloth" and all(map(is_full_cube, own)):
+            renewed = [_cube_of(colour, own[0], palette.blocks[class_id], parameters)] * len(own)
+        elif material.kind not in (PLAIN, FIXED):
             renewed = _restated(own, material.kind, colour, parameters)
         elif material.kind == FIXED and not _is_far(material, colour, parameters.lightness_weight):
             renewed = own
@@ -77,6 +80,20 @@ def tinted(
         for index, state in zip(indices, renewed, strict=True):
             states[index] = state
     return states
+
+
+def _cube_of(
+    colour: np.ndarray, wool: str, choices: Sequence[str], parameters: BuildParameters
+) -> str:
+    """Return the full block nearest to the colour of a cloth: wool, or what is clearly nearer.
+
+    Cloth comes in sixteen colours, and no cube looks woven.
+    """
+    own = _restated([wool], "cloth", colour, parameters)
+    offered = [*own, *choices]
+    handicaps = np.array([0.0] + [OTHER_CLOTH] * len(choices))
+    costs = costs_of(colour[None], offered, parameters.lightness_weight, handicaps, FADED)
+    return offered[int(costs[0].argmin())]
 
 
 def _is_far(material: Material, colour: np.ndarray, lightness_weight: float) -> bool:

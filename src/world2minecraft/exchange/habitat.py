@@ -98,7 +98,7 @@ def semantic_colour(number: int) -> tuple[int, int, int]:
 
     Example:
         >>> semantic_colour(1)
-        (31, 65, 217)
+        (32, 64, 193)
     """
     hue = number * _TURN % 1.0
     value = 1.0 - 0.15 * (number % 4)

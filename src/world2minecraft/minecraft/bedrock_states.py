@@ -67,7 +67,7 @@ def java_of_bedrock(name: str, states: Mapping[str, Any]) -> str | None:
 
     Example:
         >>> java_of_bedrock('minecraft:planks', {'wood_type': 'oak'})
-        'minecraft:red_wool'
+        'minecraft:oak_planks'
     """
     pairs = sorted((key, str(int(v) if isinstance(v, int) else v)) for key, v in states.items())
     found = bedrock_table().read.get(f"{name}[{','.join(f'{k}={v}' for k, v in pairs)}]")
