@@ -30,8 +30,9 @@ class Console:
         return self
 
     def __exit__(self, *_):
-        self._server.shutdown(socket.SHUT_RDWR)  # Else accept keeps the port open.
-        self._server.close()
+        if self._server.fileno() >= 0:
+            self._server.shutdown(socket.SHUT_RDWR)  # Else accept keeps the port open.
+            self._server.close()
         self._thread.join(5)
 
     def _serve(self):

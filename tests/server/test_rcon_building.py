@@ -174,6 +174,20 @@ def test_nobody_there_is_one_line():
         builder.run()
 
 
+def test_a_server_that_goes_away_for_good_is_told_after_some_tries():
+    waits = []
+
+    def wait(seconds):
+        waits.append(seconds)
+        console.__exit__()
+
+    with Console(cuts=[5]) as console:
+        plan = plan_build(random_volume(), VERSION)
+        with pytest.raises(ServerError, match="any more; run the same command again to go on"):
+            LiveBuilder(client_of(console), plan, sleep=wait).run()
+    assert waits == [0.5, 1.0, 2.0, 4.0, 8.0, 8.0]
+
+
 def test_data_too_long_for_a_packet_is_counted():
     held = BlockEntity((-3, 64, 5), "minecraft:sign", {"text": "x" * 2000})
     losses = Losses()

@@ -144,7 +144,7 @@ class LiveBuilder:
             except OSError as error:
                 self._reconnects += self._connected
                 self._connected = False
-                if tries == RETRIES:
+                if tries == RETRIES or not self._commands:  # Nobody was ever there.
                     raise self._gone(error) from error
                 self._keep_note()
                 self._sleep(wait)
@@ -156,10 +156,10 @@ class LiveBuilder:
 
     def _gone(self, error: OSError) -> ServerError:
         where = f"{self._client.host}:{self._client.port}"
-        return ServerError(
-            f"{where} does not answer ({error.strerror or error}); it needs enable-rcon=true in "
-            "server.properties. Run the same command again to go on"
-        )
+        said = f"{where} does not answer ({error.strerror or error})"
+        if self._commands:
+            return ServerError(f"{said} any more; run the same command again to go on")
+        return ServerError(f"{said}; it needs enable-rcon=true in server.properties")
 
     def _check(self) -> int:
         """Ask for the probes; where one is wrong, build once more and ask for it again."""
