@@ -68,7 +68,7 @@ class LiveBuilder:
         self._client, self._plan, self._note = client, plan, note
         self._progress, self._sleep = progress, sleep
         self._commands = self._reconnects = self._done = 0
-        self._connected = False
+        self._connected = self._was_there = False
         self._noted_at = 0.0
         self._to_release: tuple[str, ...] = plan.release
 
@@ -139,12 +139,12 @@ class LiveBuilder:
             try:
                 if not self._connected:
                     self._client.connect()
-                    self._connected = True
+                    self._connected = self._was_there = True
                 reply = self._client.command(command)
             except OSError as error:
                 self._reconnects += self._connected
                 self._connected = False
-                if tries == RETRIES or not self._commands:  # Nobody was ever there.
+                if tries == RETRIES or not self._was_there:
                     raise self._gone(error) from error
                 self._keep_note()
                 self._sleep(wait)
@@ -157,7 +157,7 @@ class LiveBuilder:
     def _gone(self, error: OSError) -> ServerError:
         where = f"{self._client.host}:{self._client.port}"
         said = f"{where} does not answer ({error.strerror or error})"
-        if self._commands:
+        if self._was_there:
             return ServerError(f"{said} any more; run the same command again to go on")
         return ServerError(f"{said}; it needs enable-rcon=true in server.properties")
 
