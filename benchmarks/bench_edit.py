@@ -15,7 +15,7 @@ from benchmarks.rows import Row
 from world2minecraft.edit.backups import steps_of, take_back
 from world2minecraft.edit.cleanup import mended
 from world2minecraft.edit.into_world import build_into, take_blocks_out
-from world2minecraft.minecraft.world import write_world
+from world2minecraft.minecraft.worlds.world import write_world
 from world2minecraft.rooms import generate_room
 from world2minecraft.types import AIR, BlockVolume
 

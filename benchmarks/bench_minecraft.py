@@ -14,16 +14,16 @@ import numpy as np
 from benchmarks import rivals_minecraft as rivals
 from benchmarks.rows import Row
 from world2minecraft.coordinates import block_to_room
-from world2minecraft.minecraft.datapack import write_datapack
-from world2minecraft.minecraft.legacy_blocks import legacy_state
-from world2minecraft.minecraft.litematic import read_litematic, write_litematic
-from world2minecraft.minecraft.mcedit import read_schematic
+from world2minecraft.minecraft.commands.datapack import write_datapack
 from world2minecraft.minecraft.nbt import Short, pack_gzip, write_nbt
-from world2minecraft.minecraft.schem import read_schem, write_schem
+from world2minecraft.minecraft.schematics.legacy_blocks import legacy_state
+from world2minecraft.minecraft.schematics.litematic import read_litematic, write_litematic
+from world2minecraft.minecraft.schematics.mcedit import read_schematic
+from world2minecraft.minecraft.schematics.schem import read_schem, write_schem
+from world2minecraft.minecraft.schematics.structure import read_structure, write_structure
 from world2minecraft.minecraft.states import states_of
-from world2minecraft.minecraft.structure import read_structure, write_structure
 from world2minecraft.minecraft.versions import GameVersion, game_version
-from world2minecraft.minecraft.world import read_world, write_world
+from world2minecraft.minecraft.worlds.world import read_world, write_world
 from world2minecraft.types import AIR, BlockVolume
 
 SHAPE = (256, 64, 256)  # 4.2 million cells in 256 chunks.

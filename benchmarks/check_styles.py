@@ -18,7 +18,7 @@ from rich.console import Console
 from benchmarks.compare_builds import captioned, in_rows
 from world2minecraft.build.parameters import STYLES
 from world2minecraft.files import write_bytes
-from world2minecraft.minecraft.stability import unstable
+from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.parameters import Parameters, with_settings
 from world2minecraft.rebuild import blocks_of
 from world2minecraft.render.preview import preview

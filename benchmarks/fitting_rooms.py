@@ -26,8 +26,8 @@ from world2minecraft.fit import (
 )
 from world2minecraft.fit.joins import parts_of_shapes
 from world2minecraft.fit.masks import PROBES, SUB, solid_of
-from world2minecraft.minecraft.connections import connected
-from world2minecraft.minecraft.stability import unstable
+from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.rooms import Room
 from world2minecraft.rooms.voxels import SHELL
 from world2minecraft.types import AIR, BlockVolume

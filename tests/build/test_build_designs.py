@@ -10,7 +10,7 @@ from world2minecraft.build import BuildParameters, build_volume
 from world2minecraft.build.idioms import body_box, idiom_box
 from world2minecraft.build.lattice import Lattice
 from world2minecraft.furniture import idiom, template
-from world2minecraft.minecraft.stability import unstable
+from world2minecraft.minecraft.rules.stability import unstable
 
 BARE = BuildParameters(ceiling=False, lights=False, expose=False)
 

@@ -16,7 +16,7 @@ from world2minecraft.coordinates import apply, block_to_room, invert
 from world2minecraft.errors import UsageError
 from world2minecraft.furniture import template
 from world2minecraft.minecraft.displays import display_cubes
-from world2minecraft.minecraft.world import read_world
+from world2minecraft.minecraft.worlds.world import read_world
 from world2minecraft.render import preview
 from world2minecraft.types import ObjectInstance, Placement
 

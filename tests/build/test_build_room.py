@@ -18,8 +18,8 @@ from world2minecraft.build.plaque import FAR
 from world2minecraft.classes import OBJECT_CLASSES
 from world2minecraft.coordinates import apply, invert
 from world2minecraft.errors import UsageError
+from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.minecraft.shapes import is_full_cube
-from world2minecraft.minecraft.stability import unstable
 from world2minecraft.rooms import generate_house, generate_room
 
 SCALES = (1.0, 2.0, 4.0)

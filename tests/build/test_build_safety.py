@@ -6,7 +6,7 @@ from world2minecraft.build import BuildParameters, build_volume, find_spawn
 from world2minecraft.build.lights import LEVEL, light_of_volume, passes_light
 from world2minecraft.build.spawn import standing_cells
 from world2minecraft.classes import OBJECT_CLASSES
-from world2minecraft.minecraft.light import spread_light
+from world2minecraft.minecraft.rules.light import spread_light
 from world2minecraft.minecraft.shapes import boxes_of
 
 SKETCHES = {

@@ -7,11 +7,11 @@ from world2minecraft import cli
 from world2minecraft.build import write_build
 from world2minecraft.coordinates import block_to_room
 from world2minecraft.edit.journal import write_edits
-from world2minecraft.minecraft.level import level_data
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
 from world2minecraft.minecraft.signs import sign_entity
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.world_reading import read_level, read_world
+from world2minecraft.minecraft.worlds.level import level_data
+from world2minecraft.minecraft.worlds.reading import read_level, read_world
 from world2minecraft.report.scene import read_built
 from world2minecraft.types import AIR, BlockVolume
 

@@ -13,7 +13,7 @@ from world2minecraft.edit.cleanup import RULES, mended
 from world2minecraft.edit.draft import Draft, applied
 from world2minecraft.edit.floating import floating_cells
 from world2minecraft.errors import UnknownNameError
-from world2minecraft.minecraft.stability import unstable
+from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.types import AIR, BlockEntity, BlockVolume
 
 FLOOR, WALL, PANE = "minecraft:oak_planks", "minecraft:white_concrete", "minecraft:glass"

@@ -11,9 +11,9 @@ from worlds import room, tree, write_ground
 from world2minecraft.edit.backups import steps_of, take_back
 from world2minecraft.edit.into_world import build_into
 from world2minecraft.errors import World2MinecraftError
-from world2minecraft.minecraft.anvil import pack_region
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
-from world2minecraft.minecraft.region_edit import read_region_file
+from world2minecraft.minecraft.worlds.anvil import pack_region
+from world2minecraft.minecraft.worlds.region_edit import read_region_file
 
 REGION = "region/r.-1.-1.mca"
 

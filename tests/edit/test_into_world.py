@@ -25,13 +25,13 @@ from world2minecraft.edit.backups import steps_of, take_back
 from world2minecraft.edit.into_world import build_into, built_mask, take_blocks_out
 from world2minecraft.edit.placing import moved, placed, trimmed
 from world2minecraft.errors import ConflictError, InputError, UsageError
-from world2minecraft.minecraft import region_edit
-from world2minecraft.minecraft.anvil import pack_region, read_region
-from world2minecraft.minecraft.level import level_data
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
-from world2minecraft.minecraft.region_edit import read_region_file
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.world_reading import read_world
+from world2minecraft.minecraft.worlds import region_edit
+from world2minecraft.minecraft.worlds.anvil import pack_region, read_region
+from world2minecraft.minecraft.worlds.level import level_data
+from world2minecraft.minecraft.worlds.reading import read_world
+from world2minecraft.minecraft.worlds.region_edit import read_region_file
 from world2minecraft.types import AIR
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from world2minecraft.fit.choose import choose, gains_of
 from world2minecraft.fit.settle import with_corners
 from world2minecraft.fit.shapes import CALM, SIDES, shape_set
-from world2minecraft.minecraft.connections import connected
+from world2minecraft.minecraft.rules.connections import connected
 
 CALM_SET = shape_set(CALM)
 FEW = shape_set(frozenset(("slab",)))

@@ -20,8 +20,8 @@ from world2minecraft.fit import (
 )
 from world2minecraft.fit.finish import without_crumbs
 from world2minecraft.fit.joins import parts_of_shapes
-from world2minecraft.minecraft.connections import connected
-from world2minecraft.minecraft.stability import unstable
+from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.types import BlockVolume
 
 ALL = shape_set(CALM | {"carpet", "post"})

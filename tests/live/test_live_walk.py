@@ -18,7 +18,7 @@ from world2minecraft.jit import user_cache_dir
 from world2minecraft.minecraft.nbt import read_nbt, unpack
 from world2minecraft.minecraft.states import complete, parse_state
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.world import read_world, write_world
+from world2minecraft.minecraft.worlds.world import read_world, write_world
 from world2minecraft.types import AIR, BlockVolume
 
 pytestmark = pytest.mark.live

@@ -14,19 +14,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.errors import DamagedFileError, InputError, UsageError
-from world2minecraft.minecraft.bedrock import read_mcstructure, write_mcstructure
-from world2minecraft.minecraft.bedrock_data import bedrock_data, java_state, plain_text
-from world2minecraft.minecraft.bedrock_states import (
+from world2minecraft.minecraft.bedrock.block_data import bedrock_data, java_state, plain_text
+from world2minecraft.minecraft.bedrock.nbt_little import read_little, write_little
+from world2minecraft.minecraft.bedrock.states import (
     bedrock_of_java,
     bedrock_table,
     is_kept,
     java_of_bedrock,
 )
+from world2minecraft.minecraft.bedrock.structure import read_mcstructure, write_mcstructure
 from world2minecraft.minecraft.blocks import block_table
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Float, Long, NbtLimits, Short
-from world2minecraft.minecraft.nbt_little import read_little, write_little
 from world2minecraft.minecraft.states import states_of
 from world2minecraft.types import AIR, BlockEntity, Entity
 

@@ -10,13 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.errors import InputError, UsageError
-from world2minecraft.minecraft import command_reading
-from world2minecraft.minecraft.command_reading import read_command_list, read_datapack
-from world2minecraft.minecraft.commands import snbt
+from world2minecraft.minecraft.commands import reading as command_reading
+from world2minecraft.minecraft.commands.reading import read_command_list, read_datapack
+from world2minecraft.minecraft.commands.snbt import SnbtReader, read_snbt
+from world2minecraft.minecraft.commands.writing import snbt
 from world2minecraft.minecraft.formats import WriteOptions, read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
-from world2minecraft.minecraft.snbt import SnbtReader, read_snbt
 from world2minecraft.types import AIR
 
 VOLUME = random_volume((9, 6, 7), 6, (2, 60, -3))

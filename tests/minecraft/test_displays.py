@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.errors import UsageError
-from world2minecraft.minecraft.commands import entity_commands, entity_tag
-from world2minecraft.minecraft.datapack import datapack_files
+from world2minecraft.minecraft.commands.datapack import datapack_files
+from world2minecraft.minecraft.commands.writing import entity_commands, entity_tag
 from world2minecraft.minecraft.displays import (
     block_display,
     check_displays,
@@ -21,10 +21,10 @@ from world2minecraft.minecraft.displays import (
     owner_of,
     tags_of,
 )
-from world2minecraft.minecraft.schem import read_schem, write_schem
+from world2minecraft.minecraft.schematics.schem import read_schem, write_schem
 from world2minecraft.minecraft.turn import turn_volume
 from world2minecraft.minecraft.versions import GameVersion, game_version
-from world2minecraft.minecraft.world import read_world, write_world
+from world2minecraft.minecraft.worlds.world import read_world, write_world
 from world2minecraft.types import Entity
 
 CHAIR = block_display(

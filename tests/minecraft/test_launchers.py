@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from world2minecraft.minecraft.launchers import find_games
+from world2minecraft.minecraft.worlds.launchers import find_games
 
 
 def instance(root: Path, name: str, title: str, version: str = "1.20.1", folder="minecraft"):

@@ -9,22 +9,22 @@ from hypothesis import strategies as st
 from nbt_equality import same_block_entities, same_entities
 
 from world2minecraft.errors import InputError, UsageError
-from world2minecraft.minecraft.entries import state_text
-from world2minecraft.minecraft.litematic import (
+from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, unpack, write_nbt
+from world2minecraft.minecraft.schematics.litematic import (
     read_litematic,
     read_regions,
     write_litematic,
     write_regions,
 )
-from world2minecraft.minecraft.losses import Losses
-from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, unpack, write_nbt
-from world2minecraft.minecraft.straddled import (
+from world2minecraft.minecraft.versions import game_version
+from world2minecraft.minecraft.worlds.entries import state_text
+from world2minecraft.minecraft.worlds.straddled import (
     bits_for,
     pack_straddled,
     unpack_straddled,
     words_for,
 )
-from world2minecraft.minecraft.versions import game_version
 from world2minecraft.types import AIR, Entity
 
 STONE, WOOD = "minecraft:stone", "minecraft:oak_planks"

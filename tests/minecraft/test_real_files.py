@@ -9,7 +9,7 @@ from nbt_equality import same_block_entities, same_entities
 
 from world2minecraft.minecraft.formats import WriteOptions, read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
-from world2minecraft.minecraft.structure import write_structure
+from world2minecraft.minecraft.schematics.structure import write_structure
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.types import AIR, BlockVolume
 

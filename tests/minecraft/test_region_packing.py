@@ -13,16 +13,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
-from world2minecraft.minecraft.anvil import (
+from world2minecraft.minecraft.nbt import write_nbt
+from world2minecraft.minecraft.worlds.anvil import (
     COMPRESSIONS,
     MAX_CHUNK_BYTES,
     SECTOR,
     pack_region,
     read_region,
 )
-from world2minecraft.minecraft.lz4_blocks import checksum, pack_lz4, unpack_lz4, xxhash32
-from world2minecraft.minecraft.nbt import write_nbt
-from world2minecraft.minecraft.world import read_world, write_world
+from world2minecraft.minecraft.worlds.lz4_blocks import checksum, pack_lz4, unpack_lz4, xxhash32
+from world2minecraft.minecraft.worlds.world import read_world, write_world
 
 each_way = pytest.mark.parametrize("compression", COMPRESSIONS)
 

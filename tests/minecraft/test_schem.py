@@ -10,7 +10,7 @@ from block_volumes import furnished_volume, random_volume, state_texts, volume_o
 
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.minecraft.nbt import Short, pack_gzip, read_nbt, unpack, write_nbt
-from world2minecraft.minecraft.schem import read_schem, write_schem
+from world2minecraft.minecraft.schematics.schem import read_schem, write_schem
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.types import AIR

@@ -8,8 +8,8 @@ import types
 import pytest
 
 from world2minecraft.errors import ConflictError, InputError, OutputError
-from world2minecraft.minecraft import session_lock as locks
-from world2minecraft.minecraft.session_lock import SNOWMAN, session_lock
+from world2minecraft.minecraft.worlds import session_lock as locks
+from world2minecraft.minecraft.worlds.session_lock import SNOWMAN, session_lock
 
 # As the game does it: the file is made, the snowman written, the whole channel locked.
 GAME = """

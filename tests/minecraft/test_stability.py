@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.errors import UsageError
-from world2minecraft.minecraft.connections import connected
 from world2minecraft.minecraft.formats import read_blocks
-from world2minecraft.minecraft.light import light_of
-from world2minecraft.minecraft.stability import unstable, unstable_cells
+from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.light import light_of
+from world2minecraft.minecraft.rules.stability import unstable, unstable_cells
 from world2minecraft.minecraft.states import complete, known_blocks, parse_state, states_of
 from world2minecraft.minecraft.turn import turn_volume
 from world2minecraft.minecraft.visual import visual_boxes_of

@@ -13,9 +13,7 @@ from hypothesis import strategies as st
 from nbt_equality import same_block_entities, same_entities
 
 from world2minecraft.errors import InputError, LimitError, UsageError
-from world2minecraft.minecraft import structure as our_structure
 from world2minecraft.minecraft.block_list import _SIZES, skip_value
-from world2minecraft.minecraft.entries import state_text
 from world2minecraft.minecraft.formats import WriteOptions, read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import (
@@ -29,9 +27,15 @@ from world2minecraft.minecraft.nbt import (
     unpack,
     write_nbt,
 )
-from world2minecraft.minecraft.structure import read_structure, structure_of, write_structure
-from world2minecraft.minecraft.structure_pack import pieces, write_structure_pack
+from world2minecraft.minecraft.schematics import structure as our_structure
+from world2minecraft.minecraft.schematics.structure import (
+    read_structure,
+    structure_of,
+    write_structure,
+)
+from world2minecraft.minecraft.schematics.structure_pack import pieces, write_structure_pack
 from world2minecraft.minecraft.versions import GameVersion, game_version
+from world2minecraft.minecraft.worlds.entries import state_text
 from world2minecraft.types import AIR, Entity
 
 STONE = "minecraft:stone"

@@ -17,13 +17,13 @@ from world2minecraft.errors import (
     OutputError,
     UsageError,
 )
-from world2minecraft.minecraft import anvil as our_anvil
-from world2minecraft.minecraft import world as our_world
-from world2minecraft.minecraft.anvil import pack_region, read_region
-from world2minecraft.minecraft.level import GAME_RULES
 from world2minecraft.minecraft.nbt import write_nbt
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.world import read_world, write_world
+from world2minecraft.minecraft.worlds import anvil as our_anvil
+from world2minecraft.minecraft.worlds import world as our_world
+from world2minecraft.minecraft.worlds.anvil import pack_region, read_region
+from world2minecraft.minecraft.worlds.level import GAME_RULES
+from world2minecraft.minecraft.worlds.world import read_world, write_world
 from world2minecraft.types import AIR
 
 VOLUMES = {
@@ -165,9 +165,10 @@ def test_a_world_for_another_version_says_so_and_reads_back(name, tmp_path):
 def test_the_same_volume_gives_the_same_bytes_in_any_process(tmp_path):
     script = (
         "import sys; sys.path.insert(0, sys.argv[1]);"
-        "from block_volumes import *; from world2minecraft.minecraft.world import write_world;"
-        "from world2minecraft.minecraft.schem import write_schem;"
-        "from world2minecraft.minecraft.datapack import write_datapack;"
+        "from block_volumes import *;"
+        "from world2minecraft.minecraft.worlds.world import write_world;"
+        "from world2minecraft.minecraft.schematics.schem import write_schem;"
+        "from world2minecraft.minecraft.commands.datapack import write_datapack;"
         "v = furnished_volume(); out = sys.argv[2];"
         "write_world(v, out + '/w', name='x', spawn=(0, 64, 0), spawn_yaw_deg=0);"
         "[write_schem(v, f'{out}/{n}.schem', schem_version=n) for n in (2, 3)];"

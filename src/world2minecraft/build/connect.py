@@ -8,8 +8,8 @@ import numpy as np
 
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.coordinates import block_axes_to_grid, grid_to_block_axes
-from world2minecraft.minecraft.connections import connected
-from world2minecraft.minecraft.stability import unstable_cells
+from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.stability import unstable_cells
 
 ROUNDS = 8  # A lantern at a chain at a fence: what falls seldom carries more than a few others.
 _LEAVES = ("falls", "pops off", "breaks", "flows")

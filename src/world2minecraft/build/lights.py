@@ -8,7 +8,7 @@ import numpy as np
 
 from world2minecraft.build.canvas import AIR, LIGHT, Canvas
 from world2minecraft.build.morphology import parts_of
-from world2minecraft.minecraft.light import (
+from world2minecraft.minecraft.rules.light import (
     BRIGHTEST,
     block_light,
     lets_light_through,

@@ -4,12 +4,12 @@ from pathlib import Path
 
 from world2minecraft.build.spawn import find_spawn
 from world2minecraft.exchange.scene import scene_of, write_scene
-from world2minecraft.minecraft.datapack import write_datapack
+from world2minecraft.minecraft.commands.datapack import write_datapack
 from world2minecraft.minecraft.displays import check_displays
-from world2minecraft.minecraft.schem import write_schem
+from world2minecraft.minecraft.schematics.schem import write_schem
 from world2minecraft.minecraft.signs import signs_for
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
-from world2minecraft.minecraft.world import write_world
+from world2minecraft.minecraft.worlds.world import write_world
 from world2minecraft.types import BlockVolume
 
 WORLD_NAME = "World2Minecraft room"  # Where nothing says what the room is called.

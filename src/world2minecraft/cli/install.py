@@ -10,7 +10,7 @@ import typer
 from world2minecraft.errors import InputError, UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.minecraft.launchers import Game
+    from world2minecraft.minecraft.worlds.launchers import Game
 
 EXAMPLES = """\
 w2m install OUT                       to the game of this machine
@@ -50,7 +50,7 @@ def run(
         UsageError: no game is found, or several. InputError: there is no world.
         OutputError: the saves folder cannot be written.
     """
-    from world2minecraft.minecraft.launchers import Game, find_games
+    from world2minecraft.minecraft.worlds.launchers import Game, find_games
 
     games = [] if saves else find_games(sys.platform, Path.home(), os.environ)
     if list_:
@@ -62,7 +62,7 @@ def run(
     chosen = Game("the game", saves) if saves else choose(games, game)
     if not chosen.saves.parent.is_dir():
         raise InputError(chosen.saves, "is no saves folder, nor is there one to make it in")
-    from world2minecraft.minecraft.installing import install_world
+    from world2minecraft.minecraft.worlds.installing import install_world
 
     target = install_world(world, chosen.saves, name or None)
     print(f"Copied to {target}")
@@ -120,7 +120,7 @@ def listed(games: "list[Game]") -> str:
 def age_note(world: Path, game: "Game") -> str:
     """Say so where the game is older than the world; empty where it is not, or not known."""
     from world2minecraft.minecraft.versions import game_versions
-    from world2minecraft.minecraft.world_reading import read_level
+    from world2minecraft.minecraft.worlds.reading import read_level
 
     known = {version.name: version.data_version for version in game_versions()}
     version = read_level(world).get("DataVersion")

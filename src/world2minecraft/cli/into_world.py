@@ -15,7 +15,7 @@ def check_world(world: Path, air: str) -> None:
         UsageError: no such ``air``.
     """
     from world2minecraft.edit.into_world import check_air
-    from world2minecraft.minecraft.session_lock import session_lock
+    from world2minecraft.minecraft.worlds.session_lock import session_lock
 
     check_air(air)
     with session_lock(world):
@@ -49,7 +49,7 @@ def into_world(
     from world2minecraft.coordinates import ROOM_CORNER_BLOCK
     from world2minecraft.edit.into_world import build_into
     from world2minecraft.edit.placing import placed
-    from world2minecraft.minecraft.sizes import size_pack
+    from world2minecraft.minecraft.commands.sizes import size_pack
 
     ground_y = ROOM_CORNER_BLOCK[1] if is_room else None
     put = placed(volume, at, turns, ground_y)

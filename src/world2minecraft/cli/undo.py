@@ -66,7 +66,7 @@ def undo_files(world: Path, force: bool) -> str:
         UsageError: there is no step. ConflictError: a file was changed since, without ``force``.
     """
     from world2minecraft.edit.backups import changed_since, recover, steps_of, take_back
-    from world2minecraft.minecraft.session_lock import session_lock
+    from world2minecraft.minecraft.worlds.session_lock import session_lock
 
     with session_lock(world):
         cut_off = [step for step in steps_of(world) if step.state != "done"]

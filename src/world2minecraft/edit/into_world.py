@@ -25,11 +25,11 @@ from world2minecraft.edit.journal import Journal
 from world2minecraft.edit.world_box import WorldBox, is_void, read_world_box
 from world2minecraft.edit.world_entities import WorldEntities, marked
 from world2minecraft.errors import ConflictError, DamagedFileError, InputError, UsageError
-from world2minecraft.minecraft.session_lock import session_lock
 from world2minecraft.minecraft.signs import signs_for
 from world2minecraft.minecraft.states import BlockState, parse_state
 from world2minecraft.minecraft.versions import GameVersion, game_versions, name_in_version
-from world2minecraft.minecraft.world_reading import read_level
+from world2minecraft.minecraft.worlds.reading import read_level
+from world2minecraft.minecraft.worlds.session_lock import session_lock
 from world2minecraft.types import BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
 
 AIR_CHOICES = ("room", "box", "none")

@@ -12,7 +12,9 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.errors import DamagedFileError, InputError, UsageError
-from world2minecraft.minecraft.chunk_edit import (
+from world2minecraft.minecraft.nbt import write_nbt
+from world2minecraft.minecraft.versions import game_version
+from world2minecraft.minecraft.worlds.chunk_edit import (
     StateNumbers,
     data_of,
     forget_light,
@@ -22,10 +24,8 @@ from world2minecraft.minecraft.chunk_edit import (
     set_data,
     set_section,
 )
-from world2minecraft.minecraft.nbt import write_nbt
-from world2minecraft.minecraft.region_edit import RegionFile, read_region_file
-from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.world_reading import read_level
+from world2minecraft.minecraft.worlds.reading import read_level
+from world2minecraft.minecraft.worlds.region_edit import RegionFile, read_region_file
 from world2minecraft.types import BlockEntity
 
 MAX_CELLS = 64 << 20

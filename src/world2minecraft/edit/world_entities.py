@@ -11,7 +11,7 @@ from world2minecraft.edit.world_box import Place, chunks_of, overworld_folder, r
 from world2minecraft.errors import DamagedFileError
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
-from world2minecraft.minecraft.region_edit import RegionFile, read_region_file
+from world2minecraft.minecraft.worlds.region_edit import RegionFile, read_region_file
 from world2minecraft.types import Entity
 
 BUILT = "w2m_built"  # The tag of the entities that were built into a world.

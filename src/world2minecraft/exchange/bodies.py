@@ -13,8 +13,8 @@ import numpy as np
 from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.coordinates import ROOM_AXES_TO_BLOCK, apply
 from world2minecraft.exchange.faces import faces_of_boxes
-from world2minecraft.minecraft.boxes import merge_boxes
 from world2minecraft.minecraft.colours import colour_of
+from world2minecraft.minecraft.commands.boxes import merge_boxes
 from world2minecraft.minecraft.displays import display_cubes, owner_of
 from world2minecraft.minecraft.glow import is_luminous
 from world2minecraft.minecraft.shapes import FULL_CUBE

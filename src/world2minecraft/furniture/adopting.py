@@ -153,7 +153,7 @@ def _trimmed(volume: BlockVolume) -> BlockVolume:
 
 def _joined(volume: BlockVolume) -> BlockVolume:
     """Return a volume with the connections and stair shapes that the game would compute."""
-    from world2minecraft.minecraft.connections import connected  # noqa: PLC0415  # It needs numba.
+    from world2minecraft.minecraft.rules.connections import connected  # noqa: PLC0415  # It needs numba.
 
     states, palette = connected(volume.states, volume.palette)
     used = sorted({0, *np.unique(states).tolist()})
@@ -262,7 +262,7 @@ def _packed(cells: np.ndarray, palette: tuple[str, ...]) -> dict[str, Any]:
 
 def _notes(volume: BlockVolume) -> list[str]:
     """Return what is to be said of the blocks: those that would not stay, and mods'."""
-    from world2minecraft.minecraft.stability import unstable_cells  # noqa: PLC0415
+    from world2minecraft.minecraft.rules.stability import unstable_cells  # noqa: PLC0415
     from world2minecraft.minecraft.states import known_blocks  # noqa: PLC0415
 
     floored = np.pad(volume.states, ((1, 1), (1, 1), (1, 1)))

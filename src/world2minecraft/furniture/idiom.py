@@ -94,7 +94,7 @@ def _turned(local: list[LocalBlock], quarter_turns: int) -> Idiom:
 
 def _connected(blocks: list[IdiomBlock], size: tuple[int, int, int]) -> list[IdiomBlock]:
     """Give fences, panes and stairs the connections and shapes that the game would compute."""
-    from world2minecraft.minecraft.connections import connected  # noqa: PLC0415
+    from world2minecraft.minecraft.rules.connections import connected  # noqa: PLC0415
 
     palette = ["minecraft:air", *sorted({block.state for block in blocks})]
     number = {state: index for index, state in enumerate(palette)}

@@ -9,7 +9,7 @@ from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import block_to_room
 from world2minecraft.furniture.idiom import Idiom, block_size, laid
 from world2minecraft.furniture.template import Parameters, Template
-from world2minecraft.minecraft.connections import connected
+from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.types import BlockVolume
 
 ROOM = "minecraft:smooth_stone"

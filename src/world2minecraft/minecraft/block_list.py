@@ -10,7 +10,7 @@ import numpy as np
 from world2minecraft.errors import DamagedFileError
 from world2minecraft.jit import njit
 from world2minecraft.minecraft.nbt import COMPOUND, INT, LIST, NbtReader, write_nbt
-from world2minecraft.minecraft.unlabelled import MISSHAPEN
+from world2minecraft.minecraft.schematics.unlabelled import MISSHAPEN
 
 _RECORD = np.dtype(
     [("pos_head", "V11"), ("pos", ">i4", 3), ("state_head", "V8"), ("state", ">i4"), ("end", "u1")]

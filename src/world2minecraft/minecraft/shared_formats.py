@@ -25,7 +25,7 @@ class LitematicFormat:
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read version 4 to 7, its regions joined."""
-        from world2minecraft.minecraft.litematic import read_litematic  # noqa: PLC0415  # numba.
+        from world2minecraft.minecraft.schematics.litematic import read_litematic  # noqa: PLC0415  # numba.
 
         return read_litematic(path, losses)
 
@@ -34,7 +34,7 @@ class LitematicFormat:
     ) -> None:
         """Write one region under the options' name."""
         from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
-        from world2minecraft.minecraft.litematic import write_litematic  # noqa: PLC0415
+        from world2minecraft.minecraft.schematics.litematic import write_litematic  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         version = game_version(options.mc_version)
@@ -56,7 +56,7 @@ class StructureFormat:
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read the structure, of several palettes the first."""
-        from world2minecraft.minecraft.structure import read_structure  # noqa: PLC0415  # numba.
+        from world2minecraft.minecraft.schematics.structure import read_structure  # noqa: PLC0415  # numba.
 
         return read_structure(path, losses)
 
@@ -65,8 +65,8 @@ class StructureFormat:
     ) -> None:
         """Write one structure; one too large for a structure block gets a pack of pieces too."""
         from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
-        from world2minecraft.minecraft.structure import write_structure  # noqa: PLC0415
-        from world2minecraft.minecraft.structure_pack import (  # noqa: PLC0415
+        from world2minecraft.minecraft.schematics.structure import write_structure  # noqa: PLC0415
+        from world2minecraft.minecraft.schematics.structure_pack import (  # noqa: PLC0415
             PACK_SUFFIX,
             is_too_large,
             write_structure_pack,
@@ -95,7 +95,7 @@ class LegacySchematicFormat:
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read it, its numbers as today's states."""
-        from world2minecraft.minecraft.mcedit import read_schematic  # noqa: PLC0415  # numba.
+        from world2minecraft.minecraft.schematics.mcedit import read_schematic  # noqa: PLC0415  # numba.
 
         return read_schematic(path, losses)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.errors import UsageError
-from world2minecraft.minecraft.commands import (
+from world2minecraft.minecraft.commands.writing import (
     air_commands,
     block_commands,
     chunk_rows,

@@ -1,0 +1,1 @@
+"""Commands: what data packs, command lists and RCON say, written and read."""

@@ -1,0 +1,1 @@
+"""The files that builders share: Sponge, Litematica, structures, and those of before 1.13."""

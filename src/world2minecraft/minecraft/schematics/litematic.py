@@ -1,0 +1,301 @@
+"""Litematica files: one or several regions, each a box with a palette of its own.
+
+A region's ``Position`` is one of its corners and its ``Size`` goes from there, along an axis
+backward where it is negative. Blocks and block entities count from the lowest corner, entities
+from ``Position``. Block (x, y, z) of a region of width W and length L is number
+(y * L + z) * W + x, in ``max(2, ceil log2)`` bits, packed without gaps.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.files import read_bytes, write_bytes
+from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.nbt import (
+    Long,
+    NbtLimits,
+    pack_gzip,
+    read_nbt,
+    unpack,
+    write_nbt,
+)
+from world2minecraft.minecraft.rules.attached import attached
+from world2minecraft.minecraft.schematics.unlabelled import (
+    MAX_FILE_BYTES,
+    MISSHAPEN,
+    check_size,
+    enclosing,
+    joined,
+    own_tag,
+    palette_of,
+    stated_corner,
+    unlabelled,
+)
+from world2minecraft.minecraft.sign_texts import signs_for, signs_of_today
+from world2minecraft.minecraft.versions import GameVersion, game_version
+from world2minecraft.minecraft.worlds.entries import palette_texts, state_entry
+from world2minecraft.minecraft.worlds.straddled import (
+    bits_for,
+    pack_straddled,
+    unpack_straddled,
+    words_for,
+)
+from world2minecraft.types import BlockEntity, BlockVolume, Entity
+
+LIMITS = NbtLimits()
+MAX_REGIONS = 4096
+VERSIONS = range(4, 8)  # 1.13 to today; before them blocks had the names of 1.12.
+LEAST_BITS = 2
+DEFAULT_GAME = 3465  # 1.20.1, for a file that does not say its game.
+Corner = tuple[int, int, int]
+
+
+# Writing.
+
+
+def write_litematic(
+    volume: BlockVolume,
+    path: str | Path,
+    *,
+    name: str = "room",
+    version: GameVersion | None = None,
+) -> None:
+    """Write a volume as a Litematica file of one region at the file's origin.
+
+    Args:
+        volume: the blocks; its corner is kept in a tag that Litematica ignores.
+        path: the file, ``.litematic``.
+        name: what the mod shows, and the region's name.
+        version: the game whose data version it carries; 1.20.1 where it is left out.
+
+    Raises:
+        UsageError: the volume is empty. OutputError: the file cannot be written.
+    """
+    write_regions({name: volume}, path, name=name, version=version)
+
+
+def write_regions(
+    regions: Mapping[str, BlockVolume],
+    path: str | Path,
+    *,
+    name: str = "room",
+    version: GameVersion | None = None,
+) -> None:
+    """Write volumes as the regions of one file, each where its corner puts it.
+
+    Args:
+        regions: volumes by name, in one world's coordinates; the lowest corner of all of them
+            becomes the file's origin.
+        path: the file, ``.litematic``.
+        name: what the mod shows.
+        version: the game whose data version it carries; 1.20.1 where it is left out.
+
+    Raises:
+        UsageError: there is no region, or an empty one. OutputError: it cannot be written.
+    """
+    version = version or game_version()
+    regions = {key: signs_for(volume, version.data_version) for key, volume in regions.items()}
+    if not regions or not all(volume.states.size for volume in regions.values()):
+        raise UsageError("a Litematica file holds one region or more, and at least a block each")
+    corners = np.array([volume.corner for volume in regions.values()])
+    ends = corners + [volume.states.shape for volume in regions.values()]
+    low = corners.min(axis=0)
+    tree = {
+        "MinecraftDataVersion": version.data_version,
+        "Version": _version_for(version),
+        "SubVersion": 1,
+        "Metadata": _metadata(regions, name, ends.max(axis=0) - low),
+        "Regions": {key: _region(volume, low, version) for key, volume in regions.items()},
+        **own_tag(low.tolist()),
+    }
+    write_bytes(path, pack_gzip(write_nbt(tree), level=4))
+
+
+def _version_for(version: GameVersion) -> int:
+    """The file's version: 7 since items have components, 6 since 1.20, 5 before."""
+    return 7 if version.data_version >= 3837 else 6 if version.data_version >= 3463 else 5
+
+
+def _metadata(regions: Mapping[str, BlockVolume], name: str, size: np.ndarray) -> dict[str, Any]:
+    air = {"minecraft:air", "minecraft:cave_air", "minecraft:void_air"}
+    blocks = 0
+    for volume in regions.values():
+        filled = np.array([state not in air for state in volume.palette])
+        blocks += int(filled[volume.states].sum())
+    return {
+        "Name": name,
+        "Author": "",
+        "Description": "",
+        "RegionCount": len(regions),
+        "TotalBlocks": blocks,
+        "TotalVolume": sum(volume.states.size for volume in regions.values()),
+        "TimeCreated": Long(0),
+        "TimeModified": Long(0),
+        "EnclosingSize": _xyz(size),
+    }
+
+
+def _region(volume: BlockVolume, low: np.ndarray, version: GameVersion) -> dict[str, Any]:
+    corner = np.array(volume.corner)
+    cells = np.ascontiguousarray(volume.states.transpose(1, 2, 0)).ravel()
+    bits = bits_for(len(volume.palette), LEAST_BITS)
+    words = np.zeros(words_for(len(cells), bits), np.uint64)
+    pack_straddled(cells, bits, words)
+    blocks = [
+        {**held.nbt, "id": held.id, **_xyz(np.array(held.block_pos) - corner)}
+        for held in volume.block_entities
+    ]
+    return {
+        "Position": _xyz(corner - low),
+        "Size": _xyz(np.array(volume.states.shape)),
+        "BlockStatePalette": [state_entry(s, version.data_version) for s in volume.palette],
+        "BlockStates": words.view(np.int64),
+        "TileEntities": blocks,
+        "Entities": [_entity_out(held, n, corner) for n, held in enumerate(volume.entities)],
+        "PendingBlockTicks": [],
+        "PendingFluidTicks": [],
+    }
+
+
+def _entity_out(entity: Entity, number: int, corner: np.ndarray) -> dict[str, Any]:
+    nbt = attached(entity_nbt(entity, number), entity.position, (0, 0, 0))
+    x, y, z = (np.array(entity.position) - corner).tolist()
+    dx, dy, dz = (-corner).tolist()
+    return {**attached(nbt, (x, y, z), (dx, dy, dz)), "Pos": [x, y, z]}
+
+
+def _xyz(values: np.ndarray) -> dict[str, int]:
+    return dict(zip("xyz", values.tolist(), strict=True))
+
+
+# Reading.
+
+
+def read_litematic(path: str | Path, losses: Losses | None = None) -> BlockVolume:
+    """Read a Litematica file, its regions joined to one volume.
+
+    Where regions overlap, the later one's blocks stand, but for its air.
+
+    Args:
+        path: the file.
+        losses: told what a volume cannot hold.
+
+    Raises:
+        InputError: there is no file, or one of 1.12. DamagedFileError: it is no Litematica file.
+        LimitError: it is larger than the program reads.
+    """
+    regions = read_regions(path, losses)
+    if len(regions) == 1:
+        return next(iter(regions.values()))
+    if losses is not None:
+        losses.add("names of regions", len(regions))
+    return joined(list(regions.values()), path)
+
+
+def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, BlockVolume]:
+    """Read the regions of a Litematica file by name. Args and errors as ``read_litematic``."""
+    source = Path(path)
+    raw = unpack(read_bytes(source, MAX_FILE_BYTES), source, LIMITS.bytes)
+    _, root = read_nbt(raw, source, LIMITS)
+    del raw  # So that the blocks do not come on top of it.
+    try:
+        _check_version(root, source)
+        named = root["Regions"]
+        if not 1 <= len(named) <= MAX_REGIONS:
+            raise DamagedFileError(source, f"has {len(named)} regions; 1 to {MAX_REGIONS:,} are")
+        boxes = {name: _box(region, source) for name, region in named.items()}
+        check_size(enclosing(list(boxes.values()))[1], source)
+        shift, game = _shift(root, boxes, source), root.get("MinecraftDataVersion", DEFAULT_GAME)
+        found = {
+            name: _region_volume(region, boxes[name], shift, game, source)
+            for name, region in named.items()
+        }
+    except MISSHAPEN as error:
+        missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
+        raise DamagedFileError(source, f"is no Litematica file{missing}") from error
+    if losses is not None:
+        _tell(root, losses)
+    return found
+
+
+def _check_version(root: Mapping[str, Any], source: Path) -> None:
+    version = root["Version"]
+    if not isinstance(version, int) or version not in VERSIONS:
+        known = f"{VERSIONS.start} to {VERSIONS.stop - 1} are read"
+        raise InputError(source, f"is a Litematica file of version {version}; {known}")
+
+
+def _box(region: Mapping[str, Any], source: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest corner and the size of a region."""
+    position = np.array([int(region["Position"][axis]) for axis in "xyz"])
+    size = np.array([int(region["Size"][axis]) for axis in "xyz"])
+    check_size(np.abs(size), source)
+    return position + np.minimum(size + 1, 0), np.abs(size)
+
+
+def _shift(root: Mapping[str, Any], boxes: Mapping[str, Any], source: Path) -> np.ndarray:
+    """How far the file's coordinates are from those of the world that it was written from."""
+    corner = stated_corner(root, source)
+    if corner is None:
+        return np.zeros(3, np.int64)
+    return np.array(corner) - enclosing(list(boxes.values()))[0]
+
+
+def _region_volume(
+    region: dict[str, Any],
+    box: tuple[np.ndarray, np.ndarray],
+    shift: np.ndarray,
+    data_version: Any,
+    source: Path,
+) -> BlockVolume:
+    low, size = box
+    texts = palette_texts(region["BlockStatePalette"], data_version, source)
+    palette, number_of = palette_of(texts, source)
+    lookup = np.array([number_of[text] for text in texts], np.uint16)
+    states = np.empty(tuple(size.tolist()), np.uint16)
+    words = region.pop("BlockStates")  # Its memory is free when the blocks are made.
+    bits = bits_for(max(len(texts), 1), LEAST_BITS)
+    if words.dtype != np.int64 or len(words) < words_for(states.size, bits):
+        raise DamagedFileError(source, f"says {states.size:,} blocks and holds fewer")
+    wrong = int(unpack_straddled(words.view(np.uint64), bits, lookup, states.transpose(1, 2, 0)))
+    if wrong >= 0:
+        raise DamagedFileError(source, f"has a block of number {wrong}, which its palette lacks")
+    del words
+    corner = low + shift
+    x, y, z = corner.tolist()
+    held = [_block_entity(nbt, corner) for nbt in region.get("TileEntities", [])]
+    start = np.array([int(region["Position"][axis]) for axis in "xyz"]) + shift
+    return unlabelled(
+        states,
+        palette,
+        (x, y, z),
+        signs_of_today(held, int(data_version)),
+        [_entity(nbt, start) for nbt in region.get("Entities", [])],
+    )
+
+
+def _block_entity(nbt: Mapping[str, Any], corner: np.ndarray) -> BlockEntity:
+    x, y, z = (int(nbt[axis]) + low for axis, low in zip("xyz", corner.tolist(), strict=True))
+    rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
+    return BlockEntity((x, y, z), str(nbt.get("id", "")), rest)
+
+
+def _entity(nbt: Mapping[str, Any], start: np.ndarray) -> Entity:
+    dx, dy, dz = start.tolist()
+    x, y, z = (float(value) for value in nbt["Pos"])
+    place = (x + dx, y + dy, z + dz)
+    rest = attached(nbt, place, (dx, dy, dz))
+    return Entity(place, str(nbt["id"]), {k: rest[k] for k in rest if k not in ("id", "Pos")})
+
+
+def _tell(root: Mapping[str, Any], losses: Losses) -> None:
+    """Count what is in the file and has no place in a volume."""
+    for region in root["Regions"].values():
+        for key in ("PendingBlockTicks", "PendingFluidTicks"):
+            losses.add("scheduled ticks", len(region.get(key, [])))
+    losses.add("preview pictures", int("PreviewImageData" in root.get("Metadata", {})))

@@ -1,0 +1,155 @@
+"""Schematics from before 1.13, ``.schematic``: MCEdit, WorldEdit 6 and Schematica.
+
+A block was a number and a data value of four bits; block (x, y, z) of a schematic of width W and
+length L is number (y * L + z) * W + x of the arrays. What the two do not say, such as the colour
+of a bed, stood in its block entity or came from its neighbours, and is put into the state here.
+"""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.files import read_bytes
+from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, unpack
+from world2minecraft.minecraft.packing import read_keys
+from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.schematics.legacy_blocks import legacy_state
+from world2minecraft.minecraft.schematics.legacy_entities import (
+    block_entity_of,
+    entity_of,
+    state_with,
+)
+from world2minecraft.minecraft.schematics.legacy_halves import join_halves
+from world2minecraft.minecraft.schematics.unlabelled import (
+    MAX_FILE_BYTES,
+    MISSHAPEN,
+    check_size,
+    palette_of,
+    unlabelled,
+)
+from world2minecraft.types import AIR, BlockEntity, BlockVolume
+
+LIMITS = NbtLimits()
+MAX_JOINED_CELLS = 8 << 20  # Looking at all neighbours takes several times a volume's memory.
+Corner = tuple[int, int, int]
+
+
+def read_schematic(path: str | Path, losses: Losses | None = None) -> BlockVolume:
+    """Read a schematic of numbered blocks.
+
+    Numbers that no vanilla game had come back as ``legacy:NUMBER_VALUE``, or by the name that the
+    file gives them.
+
+    Args:
+        path: the file.
+        losses: told of blocks without a name of today, and of what else a volume cannot hold.
+
+    Raises:
+        InputError: there is no file, or one of another game. DamagedFileError: it is no
+            schematic. LimitError: it is larger than the program reads.
+    """
+    source = Path(path)
+    raw = unpack(read_bytes(source, MAX_FILE_BYTES), source, LIMITS.bytes)
+    _, root = read_nbt(raw, source, LIMITS)
+    del raw
+    try:
+        return _volume_of(root, source, Losses() if losses is None else losses)
+    except MISSHAPEN as error:
+        missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
+        raise DamagedFileError(source, f"is no schematic of numbered blocks{missing}") from error
+
+
+def _volume_of(root: dict[str, Any], source: Path, losses: Losses) -> BlockVolume:
+    kind = root.get("Materials", "Alpha")
+    if kind != "Alpha":
+        raise InputError(source, f"is a schematic for {str(kind)[:40]!r}; 'Alpha' is read (Java)")
+    sides = (int(root[key]) & 0xFFFF for key in ("Width", "Height", "Length"))
+    size = check_size(sides, source)
+    states, palette = _blocks(root, size, source, losses)
+    corner = _corner(root)
+    held = [block_entity_of(nbt, corner) for nbt in root.get("TileEntities", [])]
+    states, palette = _with_entities(states, palette, held, corner)
+    if states.size <= MAX_JOINED_CELLS:
+        states, palette = _used(*connected(*join_halves(states, palette)), palette)
+    else:
+        losses.add("connections of blocks, for the schematic is too large to compute them")
+    losses.add("biomes", int("Biomes" in root))
+    kept = [entity for entity in held if entity.id]
+    entities = [entity_of(nbt, corner) for nbt in root.get("Entities", [])]
+    return unlabelled(states, palette, corner, kept, entities)
+
+
+def _blocks(
+    root: dict[str, Any], size: Corner, source: Path, losses: Losses
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Return the states by number and data value alone, and their palette."""
+    count = math.prod(size)
+    # Taken out of the tree, so that their memory is free when the blocks are made.
+    numbers, values = root.pop("Blocks").view(np.uint8), root.pop("Data").view(np.uint8)
+    more = root.pop("AddBlocks", np.zeros(0, np.int8)).view(np.uint8)
+    if len(numbers) < count or len(values) < count or 0 < 2 * len(more) < count - 1:
+        raise DamagedFileError(source, f"says {count:,} blocks and holds fewer")
+    states = np.empty(size, np.uint16)
+    counts = np.zeros(1 << 16, np.int64)
+    read_keys(numbers, values, more, states.transpose(1, 2, 0), counts)
+    names = _names(root)
+    text_of: dict[int, str] = {}
+    for key in np.flatnonzero(counts).tolist():
+        text_of[key], is_known = legacy_state(key >> 4, key & 15, names)
+        if not is_known:
+            losses.add("blocks of mods, kept by their old number or name", int(counts[key]))
+    palette, number_of = palette_of(text_of.values(), source)
+    lookup = np.zeros(1 << 16, np.uint16)
+    for key, text in text_of.items():
+        lookup[key] = number_of[text]
+    for layer in states:
+        layer[:] = lookup[layer]
+    return states, palette
+
+
+def _names(root: Mapping[str, Any]) -> dict[int, str]:
+    """What the file itself calls its numbers, as Schematica and MCEdit 2 write it."""
+    names = {int(number): str(name) for name, number in root.get("SchematicaMapping", {}).items()}
+    return names | {int(number): str(name) for number, name in root.get("BlockIDs", {}).items()}
+
+
+def _corner(root: Mapping[str, Any]) -> Corner:
+    """Where WorldEdit copied it from; where it does not say, the world's origin."""
+    x, y, z = (int(root.get(f"WEOrigin{axis}", 0)) for axis in "XYZ")
+    return x, y, z
+
+
+def _with_entities(
+    states: np.ndarray, palette: tuple[str, ...], held: list[BlockEntity], corner: Corner
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Put into the states what their block entities say, such as the colour of a bed."""
+    texts = list(palette)
+    number_of = {text: number for number, text in enumerate(palette)}
+    for entity in held:
+        cell = tuple(a - b for a, b in zip(entity.block_pos, corner, strict=True))
+        if not all(0 <= at < side for at, side in zip(cell, states.shape, strict=True)):
+            continue
+        text = state_with(texts[states[cell]], entity)
+        if text not in number_of:
+            number_of[text] = len(texts)
+            texts.append(text)
+        states[cell] = number_of[text]
+    return states, tuple(texts)
+
+
+def _used(
+    states: np.ndarray, palette: tuple[str, ...], before: tuple[str, ...]
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Leave out the states that no block has any more, and sort the others."""
+    if palette == before == (AIR, *sorted(before[1:])):
+        return states, palette
+    used = np.flatnonzero(np.bincount(states.ravel(), minlength=len(palette)))
+    kept = (AIR, *sorted({palette[number] for number in used.tolist()} - {AIR}))
+    number_of = {text: number for number, text in enumerate(kept)}
+    lookup = np.array([number_of.get(text, 0) for text in palette], np.uint16)
+    return lookup[states], kept

@@ -1,0 +1,174 @@
+"""Region files: 32 x 32 chunks in sectors of 4 KiB, with oversized chunks in files of their own."""
+
+import os
+import struct
+import zlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.files import read_bytes
+from world2minecraft.minecraft.nbt import pack_gzip, unpack
+from world2minecraft.minecraft.worlds.lz4_blocks import pack_lz4, unpack_lz4
+
+SECTOR = 4096
+MAX_REGION_BYTES = 512 << 20
+MAX_CHUNK_BYTES = 16 << 20  # Unpacked; a chunk of 4,096 kinds of blocks in 24 sections has 4 MB.
+GZIP, ZLIB, PLAIN, LZ4, CUSTOM = 1, 2, 3, 4, 127
+EXTERNAL = 128
+COMPRESSIONS = {"gzip": GZIP, "zlib": ZLIB, "none": PLAIN, "lz4": LZ4}
+_HEAD = struct.Struct(">IB")
+
+
+def pack_region(
+    chunks: Mapping[tuple[int, int], bytes], level: int = 1, compression: str = "zlib"
+) -> tuple[bytes, dict[str, bytes]]:
+    """Pack the chunks of one region.
+
+    Args:
+        chunks: NBT bytes by chunk position (x, z) in the world, all of the same region.
+        level: zlib level; 1 costs a third of the time of 6 and a room is mostly sector padding.
+        compression: gzip, zlib (which every game reads), none, or lz4 (1.20.5 and later).
+
+    Returns:
+        The bytes of the ``.mca``, and those of each ``.mcc`` by file name: a chunk of more than
+        255 sectors lies in one.
+
+    Raises:
+        UsageError: the compression is another.
+    """
+    if compression not in COMPRESSIONS:
+        known = ", ".join(COMPRESSIONS)
+        raise UsageError(f"no compression of chunks is named {compression!r}; known: {known}")
+    stated = COMPRESSIONS[compression]
+    table = np.zeros((2, 1024), ">u4")
+    body: list[bytes] = []
+    outside: dict[str, bytes] = {}
+    sector = 2
+    for (x, z), data in sorted(chunks.items(), key=lambda item: item[0][::-1]):
+        packed, kind = pack_chunk(data, stated, level), stated
+        if len(packed) + _HEAD.size > 255 * SECTOR:
+            outside[f"c.{x}.{z}.mcc"] = packed
+            packed, kind = b"", stated | EXTERNAL
+        record = _HEAD.pack(len(packed) + 1, kind) + packed
+        record += bytes(-len(record) % SECTOR)
+        count = len(record) // SECTOR
+        table[0, (x & 31) + (z & 31) * 32] = sector << 8 | count
+        body.append(record)
+        sector += count
+    return b"".join([table.tobytes(), *body]), outside
+
+
+def pack_chunk(data: bytes, kind: int = ZLIB, level: int = 1) -> bytes:
+    """Return a chunk's NBT packed in the way ``kind``: ``GZIP``, ``ZLIB``, ``PLAIN`` or ``LZ4``."""
+    if kind == PLAIN:
+        return data
+    if kind == LZ4:
+        return pack_lz4(data)
+    return pack_gzip(data, level) if kind == GZIP else zlib.compress(data, level)
+
+
+def read_region(path: Path) -> Iterator[tuple[tuple[int, int], bytes]]:
+    """Read the chunks of a region file: the position of each in the world and its NBT bytes.
+
+    One chunk is held at a time, however large the file is.
+
+    Raises:
+        InputError: the file cannot be read. DamagedFileError: it is no region file.
+        LimitError: it or a chunk of it is too large.
+    """
+    region_x, region_z = region_position(path)
+    try:
+        with path.open("rb") as stream:
+            size = os.fstat(stream.fileno()).st_size
+            for slot, sectors in _slots(stream.read(2 * SECTOR), size, path):
+                position = (region_x * 32 + slot % 32, region_z * 32 + slot // 32)
+                yield position, _read_chunk(path, stream, position, sectors)
+    except OSError as error:
+        raise InputError(path, f"cannot be read: {error.strerror or error}") from error
+
+
+def _slots(head: bytes, size: int, path: Path) -> Iterator[tuple[int, range]]:
+    """Return the chunks that a file's head names: the number of each and its sectors."""
+    if size > MAX_REGION_BYTES:
+        raise LimitError(path, f"has {size:,} bytes; at most {MAX_REGION_BYTES:,} are read")
+    if not head:
+        return  # The game leaves empty files where it never wrote a chunk.
+    if len(head) < 2 * SECTOR:
+        raise DamagedFileError(path, f"is no region file: it has {len(head)} bytes, no whole head")
+    taken: set[int] = set()
+    for slot, location in enumerate(np.frombuffer(head, ">u4", 1024).tolist()):
+        if location:
+            sectors = range(location >> 8, (location >> 8) + (location & 255))
+            if sectors.start < 2 or not sectors or not taken.isdisjoint(sectors):
+                raise DamagedFileError(path, f"chunk {slot} lies on the head or on another chunk")
+            taken.update(sectors)
+            yield slot, sectors
+
+
+def region_position(path: Path) -> tuple[int, int]:
+    """Return the x and z of a region file named ``r.X.Z.mca``.
+
+    Raises:
+        DamagedFileError: the name is another.
+    """
+    parts = path.name.split(".")
+    try:
+        if len(parts) != 4 or parts[0] != "r" or parts[3] != "mca":
+            raise ValueError
+        return int(parts[1]), int(parts[2])
+    except ValueError:
+        raise DamagedFileError(path, "is not named like a region file, r.X.Z.mca") from None
+
+
+def _read_chunk(path: Path, stream: BinaryIO, position: tuple[int, int], sectors: range) -> bytes:
+    stream.seek(sectors.start * SECTOR)
+    record = stream.read(len(sectors) * SECTOR)
+    if len(record) < _HEAD.size:
+        raise DamagedFileError(path, f"ends before its chunk {position}")
+    length, kind = _HEAD.unpack_from(record)
+    packed = record[_HEAD.size : 4 + length]
+    if not 1 <= length <= len(sectors) * SECTOR - 4 or len(packed) != length - 1:
+        raise DamagedFileError(path, f"chunk {position} says {length:,} bytes and holds fewer")
+    source = path
+    if kind & EXTERNAL:
+        source = path.parent / f"c.{position[0]}.{position[1]}.mcc"
+        packed = read_bytes(source, MAX_CHUNK_BYTES)
+    return unpack_chunk(packed, kind & ~EXTERNAL, source, position)
+
+
+def unpack_chunk(packed: bytes, kind: int, source: Path, position: tuple[int, int]) -> bytes:
+    """Return a chunk's NBT.
+
+    Args:
+        packed: the bytes after the one that says how they are packed.
+        kind: that byte, without the bit of a chunk in a file of its own.
+        source: the file that errors name.
+        position: the chunk's place in the world, for the same.
+
+    Raises:
+        DamagedFileError: it is not packed as it says. LimitError: it is too large.
+        InputError: it is packed in a way of a mod, or of a game to come.
+    """
+    if kind == LZ4:
+        return unpack_lz4(packed, source, MAX_CHUNK_BYTES)
+    if kind not in (GZIP, ZLIB, PLAIN):
+        reason = f"chunk {position} is packed in {_way(packed, kind)}, which is not read"
+        raise InputError(source, f"{reason}; open the world once with deflate and save it")
+    if kind == PLAIN:
+        return packed
+    result = unpack(packed, source, MAX_CHUNK_BYTES)
+    if result is packed:
+        raise DamagedFileError(source, f"chunk {position} is not packed as it says")
+    return result
+
+
+def _way(packed: bytes, kind: int) -> str:
+    """How a chunk is packed: a way of one's own comes with a name, as the game's texts do."""
+    if kind == CUSTOM and len(packed) > 2:
+        name = packed[2 : 2 + int.from_bytes(packed[:2], "big")][:80]
+        return f"the server's own way {name.decode('ascii', 'replace')!r}"
+    return f"way {kind}"
