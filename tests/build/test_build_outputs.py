@@ -68,3 +68,11 @@ def test_a_damaged_scene_is_named(folder, tmp_path):
     (tmp_path / "scene.json").write_text('{"corner": [0, 0]}')
     with pytest.raises(DamagedFileError, match=r"scene\.json: is no scene"):
         read_scene(tmp_path)
+
+
+def test_an_old_game_gets_a_world_and_no_data_pack(volume, tmp_path):
+    write_build(tmp_path / "build", volume)
+    write_build(tmp_path / "build", volume, mc_version="1.16.5")
+    assert not (tmp_path / "build" / "datapack.zip").exists()
+    assert len(named(read_world(tmp_path / "build" / "world"))) == len(named(volume))
+    assert read_scene(tmp_path / "build").data_version == 2586

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from world2minecraft.build.spawn import find_spawn
 from world2minecraft.exchange.scene import scene_of, write_scene
-from world2minecraft.minecraft.commands.datapack import write_datapack
+from world2minecraft.minecraft.commands.datapack import has_packs, write_datapack
 from world2minecraft.minecraft.displays import check_displays
 from world2minecraft.minecraft.schematics.schem import write_schem
 from world2minecraft.minecraft.signs import signs_for
@@ -23,6 +23,8 @@ def write_build(
     name: str = WORLD_NAME,
 ) -> None:
     """Write ``world/``, ``room.schem``, ``datapack.zip``, ``scene.json`` and ``scene.npz``.
+
+    The data pack is left out for games before 1.20.
 
     Args:
         folder: where to write; made when it is not there.
@@ -48,7 +50,10 @@ def write_build(
         version=version,
     )
     write_schem(volume, target / "room.schem", version=version)
-    write_datapack(volume, target / "datapack.zip", version=version, name="room")
+    if has_packs(version):
+        write_datapack(volume, target / "datapack.zip", version=version, name="room")
+    else:
+        (target / "datapack.zip").unlink(missing_ok=True)
     scene = scene_of(
         volume,
         mc_version=version.name,

@@ -31,7 +31,10 @@ def say_how_to_play(build: Path) -> None:
     """Print how to open the world in the game, and what the further forms left out."""
     print(f"  play   w2m install {build.parent}      puts the world into your game")
     print(f"  or     copy {build / 'world'} into the game's saves folder")
-    print(f"         {build / 'room.schem'} for WorldEdit, {build / 'datapack.zip'} for a server")
+    pack = build / "datapack.zip"
+    print(
+        f"         {build / 'room.schem'} for WorldEdit" + f", {pack} for a server" * pack.is_file()
+    )
     say_forms(build)
 
 

@@ -58,12 +58,17 @@ def write_datapack(
     write_bytes(path, pack_zip(datapack_files(volume, version or game_version(), name)))
 
 
+def has_packs(version: GameVersion) -> bool:
+    """Whether data packs are written for a version of the game."""
+    return version in game_versions()
+
+
 def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict[str, str]:
     """Return the pack's files by path. Raises what ``write_datapack`` raises."""
     if not _NAMESPACE.fullmatch(name) or name == "minecraft":
         raise UsageError(f"data pack name {name!r} must be lower case letters, digits, _ . or -")
     check_displays(volume, version)
-    if version not in game_versions():
+    if not has_packs(version):
         first = game_versions()[0].name
         raise UsageError(f"data packs are written for {first} and later, not {version.name}")
     files = {"pack.mcmeta": pack_mcmeta(f"Builds {name}", version)}
