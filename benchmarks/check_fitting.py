@@ -34,7 +34,7 @@ from world2minecraft.rooms import generate_room
 
 THRESHOLDS = (0.1, 0.3, 0.5, None)
 EXACT = 12.5
-# What issue and reference ask for: IoU from 2 cm, from 8 cm, thin recall, IoU of an object.
+# What was asked for: IoU from 2 cm, from 8 cm, thin recall, IoU of an object.
 TARGETS = {
     1.0: (0.37, 0.36, 0.12, 0.19),
     2.0: (0.54, 0.52, 0.30, 0.35),
