@@ -12,6 +12,7 @@ from world2minecraft.cli.build_options import (
     Settings,
     Style,
     Version,
+    style_note,
     with_build_options,
 )
 from world2minecraft.errors import UsageError
@@ -109,6 +110,7 @@ def run(
 
     chosen = Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version)
     chosen = with_settings(with_build_options(chosen, style, palette, formats), settings or [])
+    style_note(chosen)
     if out is not None:
         into_folder(source, out, chosen)
     if into is not None and at is not None:

@@ -8,6 +8,8 @@ import typer
 if TYPE_CHECKING:
     from world2minecraft.parameters import Parameters
 
+SKETCHES_UNDER = 1.5  # Blocks per metre.
+
 Scale = Annotated[
     float,
     typer.Option(
@@ -45,6 +47,12 @@ def with_build_options(
     chosen = {"style": style, "palette": _whole(palette)}
     settings = [f"build.{key}={value}" for key, value in chosen.items() if value is not None]
     return with_settings(parameters, settings + ([f"formats={formats}"] if formats else []))
+
+
+def style_note(parameters: "Parameters") -> None:
+    """Say, where blocks are as large as furniture, which style shows it all the same."""
+    if parameters.blocks_per_metre < SKETCHES_UNDER and parameters.build.style != "display":
+        print("At this scale furniture of blocks is a sketch; --style display shows it as it is.")
 
 
 def _whole(palette: str | None) -> str | None:

@@ -10,6 +10,7 @@ from world2minecraft.cli.build_options import (
     PaletteName,
     Scale,
     Style,
+    style_note,
     with_build_options,
 )
 
@@ -58,14 +59,15 @@ def run(
     from world2minecraft.run_folder import check_writable
 
     check_writable(out)
+    plaque = BuildParameters(plaque=f"A {kind} room")
+    chosen = Parameters(blocks_per_metre=blocks_per_metre, build=plaque)
+    chosen = with_build_options(chosen, style, palette, formats)
+    style_note(chosen)
     compiling_note()
     with shown() as progress:
         progress("room", 0, 1)
         room = generate_room(seed, kind=kind)
         progress("room", 1, 1, f"a {kind} room, seed {seed}")
         scan_room(room, out / "capture", frames=frames, seed=seed, progress=progress)
-        plaque = BuildParameters(plaque=f"A {kind} room")
-        chosen = Parameters(blocks_per_metre=blocks_per_metre, build=plaque)
-        chosen = with_build_options(chosen, style, palette, formats)
         facts = make(out / "capture", out, chosen, None, None, progress)
     say_where(out, facts)

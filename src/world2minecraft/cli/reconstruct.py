@@ -12,6 +12,7 @@ from world2minecraft.cli.build_options import (
     Settings,
     Style,
     Version,
+    style_note,
     with_build_options,
 )
 
@@ -96,6 +97,7 @@ def run(
     chosen = with_settings(chosen, settings or [])
     if follow and start is not None:
         raise UsageError("--follow reads a whole capture; leave out --from")
+    style_note(chosen)
     compiling_note()
     with shown() as progress:
         if follow:
