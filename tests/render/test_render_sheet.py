@@ -52,8 +52,10 @@ def test_a_page_has_room_for_all_cards():
 
 def test_letters_that_the_font_lacks_become_plain_ones():
     volumes = {"1": cube((0, 0, 0), (2, 2, 2))}
-    accented = contact_sheet({"X": [Card("Caf\N{LATIN SMALL LETTER E WITH ACUTE}", "", volumes)]})
-    assert np.array_equal(accented, contact_sheet({"X": [Card("Cafe", "", volumes)]}))
+    accented = contact_sheet(
+        {"X": [Card("Chaise \N{LATIN SMALL LETTER E WITH ACUTE}", "", volumes)]}
+    )
+    assert np.array_equal(accented, contact_sheet({"X": [Card("Chaise e", "", volumes)]}))
 
 
 def test_an_empty_sheet_is_refused():
