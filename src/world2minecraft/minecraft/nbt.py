@@ -127,6 +127,8 @@ class NbtReader:
     """A place in the bytes, and how much the tree has asked for; ``read_nbt`` is its use."""
 
     must_end = True  # Whether bytes after the tree are refused.
+    dialect, encoding = "NBT", "modified UTF-8"  # As errors name them.
+    numbers, arrays, uint16, int32 = _NUMBERS, _ARRAYS, _UINT16, _INT32
 
     def __init__(self, data: bytes, path: str | Path, limits: NbtLimits):
         self.data, self.path, self.limits = data, path, limits
@@ -152,12 +154,14 @@ class NbtReader:
 
     def damaged(self, reason: str) -> DamagedFileError:
         """Return the error to raise at this place."""
-        return DamagedFileError(self.path, f"is no valid NBT: at byte {self.at} it {reason}")
+        return DamagedFileError(
+            self.path, f"is no valid {self.dialect}: at byte {self.at} it {reason}"
+        )
 
     def string(self) -> str:
         """Read a text."""
         start = self.at + 2
-        end = start + _UINT16.unpack_from(self.data, self.at)[0]
+        end = start + self.uint16.unpack_from(self.data, self.at)[0]
         if end > len(self.data):
             raise self.damaged("ends too early")
         self.at = end
@@ -167,21 +171,25 @@ class NbtReader:
             raise LimitError(self.path, f"{reason}; at most that is read")
         raw = self.data[start:end]
         try:
-            return raw.decode("ascii") if raw.isascii() else _decode(raw)
+            return raw.decode("ascii") if raw.isascii() else self.decoded(raw)
         except UnicodeError as error:
-            raise self.damaged("has a string that is no modified UTF-8") from error
+            raise self.damaged(f"has a string that is no {self.encoding}") from error
+
+    def decoded(self, raw: bytes) -> str:
+        """Return a text that is not plain ASCII."""
+        return _decode(raw)
 
     def value(self, tag: int, depth: int) -> Any:
         """Read a value of the kind ``tag``."""
-        if tag in _NUMBERS:
-            layout, kind = _NUMBERS[tag]
+        if tag in self.numbers:
+            layout, kind = self.numbers[tag]
             number = layout.unpack_from(self.data, self.at)[0]
             self.at += layout.size
             return number if kind is int or kind is float else kind(number)
         if tag == STRING:
             return self.string()
-        if tag in _ARRAYS:
-            return self._array(_ARRAYS[tag])
+        if tag in self.arrays:
+            return self.array(self.arrays[tag])
         if depth > self.limits.depth:
             reason = f"nests deeper than {self.limits.depth} tags; at most that is read"
             raise LimitError(self.path, reason)
@@ -208,7 +216,7 @@ class NbtReader:
     def items(self, depth: int) -> list[Any]:
         """Read a list."""
         tag = self.data[self.at]
-        count = _INT32.unpack_from(self.data, self.at + 1)[0]
+        count = self.int32.unpack_from(self.data, self.at + 1)[0]
         self.at += 5
         if tag > LONGS or (tag == END and count > 0):
             raise self.damaged(f"has a list of {count} tags of kind {tag}")
@@ -222,8 +230,9 @@ class NbtReader:
         """Read the values of a list, after its head."""
         return [self.value(tag, depth + 1) for _ in range(count)]
 
-    def _array(self, dtype: np.dtype) -> np.ndarray:
-        count = _INT32.unpack_from(self.data, self.at)[0]
+    def array(self, dtype: np.dtype) -> np.ndarray:
+        """Read an array, its count before it."""
+        count = self.int32.unpack_from(self.data, self.at)[0]
         self.at += 4
         self._hold(count, dtype.itemsize)
         raw = np.frombuffer(self.data, dtype, count, self.at)

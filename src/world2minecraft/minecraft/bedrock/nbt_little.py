@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, LimitError, UsageError
+from world2minecraft.errors import UsageError
 from world2minecraft.minecraft.nbt import (
     BYTE,
     BYTES,
@@ -32,6 +32,7 @@ from world2minecraft.minecraft.nbt import (
     Float,
     Long,
     NbtLimits,
+    NbtReader,
     Short,
 )
 
@@ -80,105 +81,25 @@ def read_little(
     Raises:
         DamagedFileError: the bytes are no NBT. LimitError: they ask for too much.
     """
-    reader = _Reader(data, path, limits)
-    try:
-        if not data or data[0] != COMPOUND:
-            raise reader.damaged("does not begin with a compound tag")
-        reader.at = 1
-        reader.string()
-        root = reader.compound(1)
-    except (struct.error, IndexError) as error:
-        raise reader.damaged("ends too early") from error
-    if reader.at != len(data):
-        raise reader.damaged(f"has {len(data) - reader.at} bytes after its end")
-    return root
+    return _LittleReader(data, path, limits).root()[1]
 
 
-class _Reader:
-    """A place in the bytes, and how many values the tree may still have."""
+class _LittleReader(NbtReader):
+    """Numbers the other way round, plain texts, and lists of Int as arrays."""
 
-    def __init__(self, data: bytes, path: str | Path, limits: NbtLimits):
-        self.data, self.path, self.limits = data, path, limits
-        self.at = 0
-        self.values_left = limits.values
+    dialect, encoding = "little-endian NBT", "UTF-8"
+    numbers, arrays, uint16, int32 = _NUMBERS, _ARRAYS, _UINT16, _INT32
 
-    def damaged(self, reason: str) -> DamagedFileError:
-        return DamagedFileError(
-            self.path, f"is no valid little-endian NBT: at byte {self.at} it {reason}"
-        )
-
-    def string(self) -> str:
-        size = _UINT16.unpack_from(self.data, self.at)[0]
-        start, end = self.at + 2, self.at + 2 + size
-        if end > len(self.data):
-            raise self.damaged("ends too early")
-        self.at = end
-        try:
-            return self.data[start:end].decode("utf-8")
-        except UnicodeError as error:
-            raise self.damaged("has a string that is no UTF-8") from error
-
-    def value(self, tag: int, depth: int) -> Any:
-        if depth > self.limits.depth:
-            reason = f"nests deeper than {self.limits.depth} tags; at most that is read"
-            raise LimitError(self.path, reason)
-        if tag in _NUMBERS:
-            layout, kind = _NUMBERS[tag]
-            number = layout.unpack_from(self.data, self.at)[0]
-            self.at += layout.size
-            return kind(number)
-        if tag == STRING:
-            return self.string()
-        if tag in _ARRAYS:
-            return self.array(_ARRAYS[tag], self.count())
-        if tag == COMPOUND:
-            return self.compound(depth)
-        if tag == LIST:
-            return self.items(depth)
-        raise self.damaged(f"has a tag of kind {tag}")
-
-    def compound(self, depth: int) -> dict[str, Any]:
-        result: dict[str, Any] = {}
-        while (tag := self.data[self.at]) != END:
-            self.at += 1
-            self.take(1)
-            name = self.string()
-            if name in result:
-                raise self.damaged(f"names {name[:40]!r} twice")
-            result[name] = self.value(tag, depth + 1)
-        self.at += 1
-        return result
+    def decoded(self, raw: bytes) -> str:
+        """Return a text that is not plain ASCII."""
+        return raw.decode("utf-8")
 
     def items(self, depth: int) -> Any:
-        tag = self.data[self.at]
+        """Read a list."""
+        if self.data[self.at] != INT:
+            return super().items(depth)
         self.at += 1
-        count = self.count()
-        if tag == INT:
-            return self.array(_ARRAYS[INTS], count)
-        if tag == END and count > 0:
-            raise self.damaged(f"has a list of {count} tags of no kind")
-        self.take(count)
-        return [self.value(tag, depth + 1) for _ in range(count)]
-
-    def count(self) -> int:
-        count = _INT32.unpack_from(self.data, self.at)[0]
-        self.at += 4
-        if count > len(self.data) - self.at:
-            raise self.damaged(f"says {count:,} values and holds fewer")
-        return max(count, 0)
-
-    def array(self, kind: np.dtype, count: int) -> np.ndarray:
-        if count * kind.itemsize > len(self.data) - self.at:
-            raise self.damaged(f"says {count:,} values and holds fewer")
-        values = np.frombuffer(self.data, kind, count, self.at)
-        self.at += values.nbytes
-        return values
-
-    def take(self, count: int) -> None:
-        self.values_left -= count
-        if self.values_left < 0:
-            reason = f"holds more than {self.limits.values:,} values; at most that is read"
-            raise LimitError(self.path, reason)
+        return self.array(_ARRAYS[INTS])
 
 
 def _tag_of(value: Any) -> int:
