@@ -4,10 +4,9 @@
 // start, in which direction to walk for how long, and the file for the answer.
 
 const fs = require('fs')
-const path = require('path')
 const { Vec3 } = require('vec3')
-const { createMCServer } = require('flying-squid')
 const mineflayer = require('mineflayer')
+const startServer = require('./server.js')
 
 const plan = JSON.parse(fs.readFileSync(process.argv[2], 'utf8'))
 const wait = (milliseconds) => new Promise(resolve => setTimeout(resolve, milliseconds))
@@ -20,28 +19,6 @@ process.on('unhandledRejection', fail)
 process.on('uncaughtException', fail)
 setTimeout(() => fail('the walk took longer than its limit'), plan.limit_s * 1000)
 
-function startServer () {
-  return createMCServer({
-    host: '127.0.0.1',
-    port: plan.port,
-    'online-mode': false,
-    'max-players': 2,
-    logging: false,
-    gameMode: 1,
-    difficulty: 0,
-    worldFolder: plan.world,
-    generation: { name: path.join(__dirname, 'void.js'), options: {} },
-    kickTimeout: 10000,
-    plugins: {},
-    modpe: false,
-    'view-distance': 3,
-    'player-list-text': { header: { text: '' }, footer: { text: '' } },
-    'everybody-op': true,
-    'max-entities': 10,
-    version: plan.version
-  })
-}
-
 function stateOf (block) {
   if (!block) return null
   const properties = block.getProperties()
@@ -51,7 +28,7 @@ function stateOf (block) {
 }
 
 async function main () {
-  const server = startServer()
+  const server = startServer(plan)
   await server.waitForReady(20000)
   // The server looks for ground from layer 81 down, for ever in a void: it is told the spawn.
   server.getSpawnPoint = async () => new Vec3(...plan.start)

@@ -10,6 +10,7 @@ from typing import Literal
 
 from world2minecraft.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.exchange.labelled import labelled, place_of_blocks
+from world2minecraft.minecraft.file_format import FileFormat
 from world2minecraft.minecraft.formats import (
     FORMATS,
     LABELS,
@@ -31,17 +32,11 @@ FORMS = Registry(
 )
 
 
-class GltfFormat:
+class GltfFormat(FileFormat):
     """Binary glTF; read only where this program wrote it."""
 
     suffix = ".glb"
-    can_read = True
-    can_write = True
     keeps_labels = True
-
-    def is_at(self, path: Path) -> bool:
-        """Whether the name ends so."""
-        return path.is_file() and path.suffix.lower() == self.suffix
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read the blocks that lie beside the meshes."""

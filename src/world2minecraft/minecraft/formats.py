@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Literal, Protocol
 
 from world2minecraft.errors import InputError, UsageError
+from world2minecraft.minecraft.file_format import FileFormat
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.registry import Registry
 from world2minecraft.types import BlockVolume
@@ -172,17 +173,10 @@ class WorldFormat:
         )
 
 
-class SchemFormat:
+class SchemFormat(FileFormat):
     """A Sponge schematic."""
 
     suffix = ".schem"
-    can_read = True
-    can_write = True
-    keeps_labels = False
-
-    def is_at(self, path: Path) -> bool:
-        """Whether the name ends so."""
-        return path.is_file() and path.suffix.lower() == self.suffix
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read version 1, 2 or 3."""

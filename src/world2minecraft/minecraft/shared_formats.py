@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from world2minecraft.errors import UsageError
+from world2minecraft.minecraft.file_format import FileFormat
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.types import BlockVolume
 
@@ -11,17 +12,10 @@ if TYPE_CHECKING:
     from world2minecraft.minecraft.formats import WriteOptions
 
 
-class LitematicFormat:
+class LitematicFormat(FileFormat):
     """A Litematica file."""
 
     suffix = ".litematic"
-    can_read = True
-    can_write = True
-    keeps_labels = False
-
-    def is_at(self, path: Path) -> bool:
-        """Whether the name ends so."""
-        return path.is_file() and path.suffix.lower() == self.suffix
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read version 4 to 7, its regions joined."""
@@ -42,17 +36,10 @@ class LitematicFormat:
         write_litematic(volume, path, name=options.name, version=version)
 
 
-class StructureFormat:
+class StructureFormat(FileFormat):
     """A structure file of the game."""
 
     suffix = ".nbt"
-    can_read = True
-    can_write = True
-    keeps_labels = False
-
-    def is_at(self, path: Path) -> bool:
-        """Whether the name ends so."""
-        return path.is_file() and path.suffix.lower() == self.suffix
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read the structure, of several palettes the first."""
@@ -81,17 +68,11 @@ class StructureFormat:
             write_structure_pack(volume, pack, name=options.name, version=version)
 
 
-class LegacySchematicFormat:
+class LegacySchematicFormat(FileFormat):
     """A schematic of MCEdit, WorldEdit or Schematica from before 1.13; it is read only."""
 
     suffix = ".schematic"
-    can_read = True
     can_write = False
-    keeps_labels = False
-
-    def is_at(self, path: Path) -> bool:
-        """Whether the name ends so."""
-        return path.is_file() and path.suffix.lower() == self.suffix
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read it, its numbers as today's states."""

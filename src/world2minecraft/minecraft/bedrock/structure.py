@@ -23,6 +23,7 @@ from world2minecraft.minecraft.bedrock.block_data import (
 )
 from world2minecraft.minecraft.bedrock.nbt_little import read_little, write_little
 from world2minecraft.minecraft.bedrock.states import bedrock_of_java, is_kept, java_of_bedrock
+from world2minecraft.minecraft.file_format import FileFormat
 from world2minecraft.minecraft.formats import WriteOptions
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import NbtLimits
@@ -94,17 +95,10 @@ def read_mcstructure(path: str | Path, losses: Losses | None = None) -> BlockVol
         raise DamagedFileError(source, f"is no Bedrock structure{missing}") from error
 
 
-class McstructureFormat:
+class McstructureFormat(FileFormat):
     """A structure of Bedrock Edition."""
 
     suffix = ".mcstructure"
-    can_read = True
-    can_write = True
-    keeps_labels = False
-
-    def is_at(self, path: Path) -> bool:
-        """Whether the name ends so."""
-        return path.is_file() and path.suffix.lower() == self.suffix
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read it."""

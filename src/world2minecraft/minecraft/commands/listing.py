@@ -12,6 +12,7 @@ from world2minecraft.minecraft.commands.writing import (
     entity_tag,
 )
 from world2minecraft.minecraft.displays import check_displays
+from world2minecraft.minecraft.file_format import FileFormat
 from world2minecraft.minecraft.formats import WriteOptions
 from world2minecraft.minecraft.game_names import count_unknown
 from world2minecraft.minecraft.losses import Losses
@@ -50,17 +51,10 @@ def write_command_list(
     write_text(path, "\n".join([*head, *commands]) + "\n")
 
 
-class CommandListFormat:
+class CommandListFormat(FileFormat):
     """A plain list of commands."""
 
     suffix = ".mcfunction"
-    can_read = True
-    can_write = True
-    keeps_labels = False
-
-    def is_at(self, path: Path) -> bool:
-        """Whether the name ends so."""
-        return path.is_file() and path.suffix.lower() == self.suffix
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read the blocks that its commands set."""
