@@ -1,0 +1,46 @@
+"""A texture: colours, and what a path tracer and a relief light want besides."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+MOST_PX = 1024  # A side; larger ones are a mistake or a trap.
+
+
+@dataclass(frozen=True, eq=False)
+class Texture:
+    """A square picture of one face.
+
+    ``colour`` uint8 [N, N, 4] is sRGB and alpha (0 a hole, 255 solid). The rest may be None:
+    ``normal`` uint8 [N, N, 3] in tangent space, x along u, y along v (down), z outward, 128 for 0;
+    ``roughness``, ``metal`` and ``emission`` uint8 [N, N], 0 to 255 for 0 to 1 (perceptual
+    roughness). ``translucent`` says that alpha mixes with what lies behind, as in stained glass;
+    else alpha under 128 is a hole.
+    """
+
+    colour: np.ndarray
+    normal: np.ndarray | None = None
+    roughness: np.ndarray | None = None
+    metal: np.ndarray | None = None
+    emission: np.ndarray | None = None
+    translucent: bool = False
+
+    def __post_init__(self):
+        shape = self.colour.shape
+        if self.colour.dtype != np.uint8 or len(shape) != 3 or shape[2] != 4:
+            raise ValueError(f"colour must be uint8 [N, N, 4], not {self.colour.dtype} {shape}")
+        if shape[0] != shape[1] or not 1 <= shape[0] <= MOST_PX:
+            raise ValueError(f"a texture must be square, 1 to {MOST_PX} px, not {shape[:2]}")
+        for name, depth in (("normal", (3,)), ("roughness", ()), ("metal", ()), ("emission", ())):
+            value = getattr(self, name)
+            if value is None:
+                continue
+            if value.dtype != np.uint8 or value.shape != (*shape[:2], *depth):
+                raise ValueError(
+                    f"{name} must be uint8 {[*shape[:2], *depth]}, not {value.dtype} {value.shape}"
+                )
+
+    @property
+    def has_holes(self) -> bool:
+        """Whether rays may pass: it has holes, or is translucent."""
+        return self.translucent or bool((self.colour[..., 3] < 128).any())
