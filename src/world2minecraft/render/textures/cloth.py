@@ -1,0 +1,115 @@
+"""Cloth: wool, carpet, leather, a bed's cover."""
+
+import numpy as np
+
+from world2minecraft.render.textures.canvas import (
+    SIDE,
+    Canvas,
+    fractal,
+    noise,
+    pick,
+    relief,
+    smooth,
+)
+from world2minecraft.render.textures.layout import stones
+from world2minecraft.render.textures.recipe import Recipe
+from world2minecraft.render.textures.surface import Surface
+
+
+def weave(canvas: Canvas, threads: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return height, 0 to 1, and identity of threads over and under each other."""
+    step = SIDE / threads
+    column, row = np.floor(canvas.x / step), np.floor(canvas.y / step)
+    over = (column + row) % 2 == 0
+    x, y = (canvas.x / step) % 1 - 0.5, (canvas.y / step) % 1 - 0.5
+    along, across = np.where(over, x, y), np.where(over, y, x)
+    round_thread = np.clip(1 - 3.2 * across * across, 0, 1) * (1 - 1.6 * along * along)
+    identity = np.where(over, row * threads, column + threads * threads)
+    return round_thread, identity.astype(np.int64)
+
+
+def wool(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Wool: a knit of soft, short loops."""
+    tufts = noise(canvas, 8, 8, 1) + 0.7 * noise(canvas, 16, 16, 2)
+    row = np.floor(canvas.y / 2)
+    loops = np.where((np.floor(canvas.x) + row) % 4 < 2, 1.0, -1.0)
+    tone = 0.055 * tufts + 0.035 * loops
+    height = 0.2 * tufts
+    if canvas.fineness:
+        body, _ = _loops(canvas)
+        tone = tone - 0.035 * loops + canvas.fineness * 0.17 * (body - 0.6)
+        tone = tone + 0.05 * fractal(canvas, 32, 32, 3)
+        height = height + 0.45 * body
+    return Surface(tone, height, roughness=1.0)
+
+
+def _loops(canvas: Canvas) -> tuple[np.ndarray, np.ndarray]:
+    """Return height, 0 to 1, and identity of stitches that lean left and right in turn."""
+    column = np.floor(canvas.x)
+    inside = canvas.x - column - 0.5
+    lean = np.where(column % 2 == 0, 1.0, -1.0)
+    place = (canvas.y + lean * inside * 1.2) % SIDE
+    row = np.floor(place)
+    part = place - row - 0.5
+    body = np.clip(1 - 2.6 * part * part, 0, 1) * np.clip(1 - 2.2 * inside * inside, 0, 1)
+    return body, (row * 16 + column).astype(np.int64)
+
+
+def carpet(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Carpet: short, even pile; a border in the accent where asked for."""
+    pile = fractal(canvas, 16, 16, 1, 0.75)
+    slow = noise(canvas, 4, 4, 2)
+    tone = 0.07 * pile + 0.025 * slow
+    return Surface(tone, 0.3 * pile, roughness=1.0)
+
+
+def leather(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Leather: a net of fine creases; buttons where asked for."""
+    cells = stones(canvas, 8, 1, 0.9)
+    crease = 1 - smooth(cells.edge, 0.05, 0.5)
+    tone = 0.06 * noise(canvas, 4, 4, 3) - 0.12 * crease + 0.03 * pick(canvas, cells.identity, 4)
+    height = -0.15 * crease
+    if recipe.word("buttons") == "1":
+        x, y = canvas.x % 8 - 4, canvas.y % 8 - 4
+        away = np.sqrt(x * x + y * y)
+        fold = np.minimum(np.abs(np.abs(x) - np.abs(y)), 9.0)
+        tone = tone - 0.14 * (1 - smooth(fold, 0.0, 1.0)) - 0.2 * (1 - smooth(away, 0.6, 1.2))
+        height = height + 0.6 * smooth(fold, 0.0, 3.0)
+        tone = tone + 0.05 * relief(canvas, 0.6 * smooth(fold, 0.0, 3.0))
+    return Surface(tone, height, roughness=0.5 + 0.15 * crease)
+
+
+def bed_top(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A bed from above, v to its foot: a quilted cover; at the head a pillow, the accent."""
+    x, y = canvas.x, canvas.y
+    diamond = np.minimum((x + y) % 8, 8 - (x + y) % 8), np.minimum((x - y) % 8, 8 - (x - y) % 8)
+    seam = 1 - smooth(np.minimum(*diamond), 0.15, 0.3 + 0.6 * (1 - canvas.fineness))
+    cloth = 0.03 * fractal(canvas, 16, 16, 1)
+    side = 1 - smooth(np.minimum(x, SIDE - x), 0.6, 1.6)
+    cover = cloth - 0.07 * seam - 0.14 * side
+    puff = 0.5 * smooth(np.minimum(*diamond), 0.0, 3.0)
+    if recipe.word("part") == "foot":
+        end = 1 - smooth(SIDE - y, 0.6, 1.6)
+        return Surface(cover - 0.1 * end * (1 - side), puff, roughness=0.95)
+    pillow = np.minimum.reduce([x - 1.0, 15.0 - x, y - 1.0, 7.0 - y])
+    linen = (y < 9.0).astype(np.float64)
+    fold = ((y >= 7.9) & (y < 9.0)).astype(np.float64)
+    soft = smooth(pillow, 0.0, 2.5)
+    tone = np.where(linen > 0, cloth - 0.14 + 0.1 * fold, cover)
+    on_pillow = pillow > 0
+    tone = np.where(on_pillow, 0.06 * soft + cloth, tone)
+    tone = tone - 0.1 * ((y >= 9.0) & (y < 10.0))
+    height = np.where(on_pillow, 1.6 * soft, puff * (1 - linen))
+    return Surface(tone, height, ((recipe.ink(1), linen),), roughness=0.95)
+
+
+def bale(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Straw: stalks along v, tied by a band of the accent; thatch without one."""
+    stalks = noise(canvas, 16, 2, 1) + 0.6 * noise(canvas, 16, 4, 2)
+    if canvas.fineness:
+        stalks = stalks + 0.5 * canvas.fineness * fractal(canvas, 32, 4, 3)
+    band = np.zeros(canvas.x.shape)
+    if recipe.word("band") == "1":
+        band = ((np.abs(canvas.y - 3.5) < 1) | (np.abs(canvas.y - 12.5) < 1)).astype(np.float64)
+    tone = 0.15 * stalks * (1 - 0.6 * band)
+    return Surface(tone, 0.4 * stalks + 0.3 * band, ((recipe.ink(1), band),), roughness=0.95)

@@ -1,0 +1,149 @@
+"""Recipes: the names of our own textures, which say how each is painted.
+
+``own:GENERATOR#rrggbb[,#rrggbb...][?key=value&key=value]``: the first colour is the mean of the
+texture, further ones are its accents, and the options are those of the generator.
+"""
+
+import hashlib
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.errors import UnknownNameError, UsageError
+
+PREFIX = "own:"
+MOST_LETTERS = 400  # A longer recipe is a mistake or a trap.
+COLOUR = re.compile("#[0-9a-f]{6}")
+EXAMPLE = "own:planks#a2824e?boards=4"
+
+
+@dataclass(frozen=True)
+class Number:
+    """An option that is a number from ``low`` to ``high``."""
+
+    default: float
+    low: float
+    high: float
+
+    def read(self, text: str) -> float:
+        """Return the number that a text says; ValueError tells what was expected."""
+        try:
+            value = float(text)
+        except ValueError:
+            value = float("nan")
+        if not self.low <= value <= self.high:
+            raise ValueError(f"a number from {self.low:g} to {self.high:g}")
+        return value
+
+    def __str__(self) -> str:
+        return f"{self.low:g} to {self.high:g} ({self.default:g})"
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An option that is one of several words; the first is the default."""
+
+    words: tuple[str, ...]
+
+    @property
+    def default(self) -> str:
+        """The first word."""
+        return self.words[0]
+
+    def read(self, text: str) -> str:
+        """Return the word; ValueError tells what was expected."""
+        if text not in self.words:
+            raise ValueError(f"one of {', '.join(self.words)}")
+        return text
+
+    def __str__(self) -> str:
+        return ", ".join(self.words)
+
+
+Option = Number | Choice
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """A recipe that was read: all accents and options are there, given or by default.
+
+    ``colours`` are sRGB, 0 to 255, the first is the mean; ``text`` is the canonical name.
+    """
+
+    generator: str
+    colours: tuple[tuple[int, int, int], ...]
+    options: Mapping[str, float | str]
+    text: str
+
+    @property
+    def seed(self) -> int:
+        """64 bits of the SHA-256 of the name."""
+        return int.from_bytes(hashlib.sha256(self.text.encode()).digest()[:8], "little")
+
+    def ink(self, index: int) -> np.ndarray:
+        """Return a colour, float64 [3]: 0 the mean, then the accents."""
+        return np.array(self.colours[index], np.float64)
+
+    def number(self, key: str) -> float:
+        """Return an option that is a number, or a word of digits."""
+        return float(self.options[key])
+
+    def word(self, key: str) -> str:
+        """Return an option that is a word."""
+        return str(self.options[key])
+
+
+def split_recipe(text: str) -> tuple[str, tuple[str, ...], dict[str, str]]:
+    """Return a recipe's generator, its colours and its options as they are written.
+
+    Raises:
+        UsageError: the text is no recipe.
+    """
+    if len(text) > MOST_LETTERS or not text.startswith(PREFIX):
+        raise UsageError(f"no recipe of a texture: {text[:60]!r}; write one such as {EXAMPLE}")
+    head, mark, tail = text[len(PREFIX) :].partition("?")
+    generator, hash_mark, colours = head.partition("#")
+    inks = tuple((hash_mark + colours).lower().split(","))
+    bad = next((ink for ink in inks if not COLOUR.fullmatch(ink)), None)
+    if bad is not None:
+        raise UsageError(f"{text}: {bad!r} is no colour; write #rrggbb, as in {EXAMPLE}")
+    options: dict[str, str] = {}
+    for part in tail.split("&") if mark else ():
+        key, equals, value = part.partition("=")
+        if not (key and equals and value) or key in options:
+            raise UsageError(f"{text}: {part!r} is no option; write key=value once a key")
+        options[key] = value
+    return generator, inks, options
+
+
+def join_recipe(generator: str, colours: tuple[str, ...], options: Mapping[str, str]) -> str:
+    """Return the canonical text: colours in lower case, keys in order."""
+    tail = "&".join(f"{key}={options[key]}" for key in sorted(options))
+    return PREFIX + generator + ",".join(colours).lower() + ("?" + tail if tail else "")
+
+
+def read_options(
+    text: str, generator: str, given: Mapping[str, str], known: Mapping[str, Option]
+) -> dict[str, float | str]:
+    """Return all options of a generator, those that are given and the defaults of the rest.
+
+    Raises:
+        UnknownNameError: the generator has no such option.
+        UsageError: a value that the option does not take.
+    """
+    values: dict[str, float | str] = {key: option.default for key, option in known.items()}
+    for key, value in given.items():
+        if key not in known:
+            raise UnknownNameError(f"option of texture {generator!r}", key, known)
+        try:
+            values[key] = known[key].read(value)
+        except ValueError as fault:
+            raise UsageError(f"{text}: {key} must be {fault}, not {value!r}") from None
+    return values
+
+
+def rgb_of(colour: str) -> tuple[int, int, int]:
+    """Return the sRGB values of ``#rrggbb``."""
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
