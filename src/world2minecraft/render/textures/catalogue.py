@@ -101,7 +101,7 @@ CLOTHS = {
         {"part": Choice(("head", "foot"))},
         tiles=False,
     ),
-    "bale": Generator(cloth.bale, "#a68b26", (Accent("band", "#9a3a2a"),), {"band": YES_NO}),
+    "straw": Generator(cloth.straw, "#a68b26", (Accent("band", "#9a3a2a"),), {"band": YES_NO}),
 }
 FITTINGS = {
     "metal": Generator(fittings.metal, "#c4c6c8", options={"frame": NO_YES}),

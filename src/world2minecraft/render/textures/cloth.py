@@ -103,7 +103,7 @@ def bed_top(canvas: Canvas, recipe: Recipe) -> Surface:
     return Surface(tone, height, ((recipe.ink(1), linen),), roughness=0.95)
 
 
-def bale(canvas: Canvas, recipe: Recipe) -> Surface:
+def straw(canvas: Canvas, recipe: Recipe) -> Surface:
     """Straw: stalks along v, tied by a band of the accent; thatch without one."""
     stalks = noise(canvas, 16, 2, 1) + 0.6 * noise(canvas, 16, 4, 2)
     if canvas.fineness:
