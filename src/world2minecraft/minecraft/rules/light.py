@@ -10,7 +10,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.minecraft.rules.flood import SHUT, spread, steps_of, with_margin
 from world2minecraft.minecraft.rules.tables import pattern_of
 from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.minecraft.states import complete, parse_state
@@ -63,10 +63,12 @@ def spread_light(sources: np.ndarray, clear: np.ndarray) -> np.ndarray:
         sources: uint8 [X, Y, Z], the light that a block gives itself, 0 to 15.
         clear: bool [X, Y, Z], where light goes through.
     """
-    light = np.ascontiguousarray(sources).astype(np.uint8, copy=True)
-    if light.size:
-        _spread(light, np.ascontiguousarray(clear))
-    return light
+    light = with_margin(sources.astype(np.uint8, copy=False), 0)
+    shut = with_margin(~clear, True).reshape(-1).view(np.uint8)
+    words = np.array([0, SHUT], np.uint32)
+    seeds = np.flatnonzero(light)
+    spread(light.reshape(-1), shut, words, steps_of(light.shape), seeds)
+    return np.ascontiguousarray(light[1:-1, 1:-1, 1:-1])
 
 
 def block_light(volume: BlockVolume) -> np.ndarray:
@@ -74,35 +76,6 @@ def block_light(volume: BlockVolume) -> np.ndarray:
     gives = np.array([light_of(state) for state in volume.palette], np.uint8)
     clear = np.array([lets_light_through(state) for state in volume.palette], bool)
     return spread_light(gives[volume.states], clear[volume.states])
-
-
-@njit
-def _spread(light, clear):  # pragma: no cover
-    """Spread light in place: a queue for each level, from the brightest down."""
-    size_x, size_y, size_z = light.shape
-    for level in range(BRIGHTEST, 1, -1):
-        queue = np.empty(((light == level).sum(), 3), np.int32)
-        count = 0
-        for x in range(size_x):
-            for y in range(size_y):
-                for z in range(size_z):
-                    if light[x, y, z] == level:
-                        queue[count, 0], queue[count, 1], queue[count, 2] = x, y, z
-                        count += 1
-        for i in range(count):
-            for axis in range(3):
-                for step in (-1, 1):
-                    x, y, z = queue[i, 0], queue[i, 1], queue[i, 2]
-                    if axis == 0:
-                        x += step
-                    elif axis == 1:
-                        y += step
-                    else:
-                        z += step
-                    if x < 0 or y < 0 or z < 0 or x >= size_x or y >= size_y or z >= size_z:
-                        continue
-                    if clear[x, y, z] and light[x, y, z] < level - 1:
-                        light[x, y, z] = level - 1
 
 
 @cache

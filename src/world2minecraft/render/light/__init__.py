@@ -1,0 +1,46 @@
+"""Light: of the sky, of lamps, of the hour; and from light to the screen.
+
+A scene keeps a ``LightField`` (``light_field(states, palette, reach)``), whose ``lattice`` the
+kernel reads, and ``edit_light`` keeps it true where cells change. A ``LookLight`` says how a
+picture is lit; it gives the kernel
+
+- ``parameters(exposure) -> LitParameters``, floats alone,
+- ``background(exposure) -> Background``, the sky,
+- ``tone -> Tone``, the tables ``decode`` (texel to light) and ``encode`` (light to screen).
+
+Per pixel, all inlined by numba:
+
+- ``sky, block, occluders = lattice_light(light, side, i, j, k, layer_step, p, q)``
+- ``shade = direction_shade(nx, ny, nz, cosine, params)``
+- ``r, g, b = lit_colour(sky, block, occluders, shade, sun, params)``, the multipliers of the linear
+  texel; ``glow_light(emission, params)`` is the least of them for what shines by itself
+- ``r, g, b = background_light(dx, dy, dz, background)`` where a ray meets nothing
+- ``finish(r, g, b, tone)``, three uint8
+"""
+
+from world2minecraft.render.light.background import Background, background_light
+from world2minecraft.render.light.field import LightField, light_field
+from world2minecraft.render.light.lit import (
+    LitParameters,
+    direction_shade,
+    glow_light,
+    lattice_light,
+    lit_colour,
+)
+from world2minecraft.render.light.look import LookLight
+from world2minecraft.render.light.tone import Tone, finish
+
+__all__ = [
+    "Background",
+    "LightField",
+    "LitParameters",
+    "LookLight",
+    "Tone",
+    "background_light",
+    "direction_shade",
+    "finish",
+    "glow_light",
+    "lattice_light",
+    "light_field",
+    "lit_colour",
+]

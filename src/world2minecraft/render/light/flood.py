@@ -1,0 +1,120 @@
+"""Sky light and block light of a volume, as the game spreads them.
+
+Sky light is 15 where nothing is above; glass lets it fall on, water and leaves dim it; from there
+it loses 1 a step. The volume stands in open air: light comes in from above and from the sides.
+Block light starts at what a state gives. Slabs and stairs hold light back by the faces that they
+cover. A *reach* of r blocks a level keeps r finer units for each level, so that light goes r times
+as far: in a room of 4 blocks per metre a lamp then lights more than its own corner.
+"""
+
+import numpy as np
+
+from world2minecraft.jit import njit
+from world2minecraft.minecraft.rules.flood import DIMS, SHUT, spread, steps_of
+
+BRIGHTEST = 15
+MOST_REACH = 16.0  # 15 * 16 units just fit a byte.
+
+
+def flood_sky(kinds: np.ndarray, words: np.ndarray, reach: float = 1.0) -> np.ndarray:
+    """Return sky light with its margin, uint8 [X + 2, Y + 2, Z + 2], in 1 / ``reach`` levels.
+
+    Args:
+        kinds: uint16 [X + 2, Y + 2, Z + 2], rows of ``words``; the margin has row 0.
+        words: uint32 [K], see ``minecraft.rules.flood``.
+        reach: blocks a level, from ``whole_reach``; 1 is the game's.
+    """
+    top = units(BRIGHTEST, reach)
+    sky = np.full(kinds.shape, top, np.uint8)
+    sky[1:-1, 1:-1, 1:-1] = 0
+    steps = steps_of(kinds.shape)
+    if sky[1:-1, 1:-1, 1:-1].size:
+        _fall(sky, kinds, words, top)
+        flat = sky.reshape(-1)
+        seeds = _edges(sky, flat, kinds.reshape(-1), words, steps, top)
+        spread(flat, kinds.reshape(-1), words, steps, seeds)
+    return sky
+
+
+def flood_block(
+    kinds: np.ndarray, words: np.ndarray, gives: np.ndarray, reach: float = 1.0
+) -> np.ndarray:
+    """Return block light with its margin (dark), uint8 [X + 2, Y + 2, Z + 2].
+
+    Args: as ``flood_sky``; ``gives`` uint8 [K], the levels that states give.
+    """
+    unit = np.array([units(level, reach) for level in range(BRIGHTEST + 1)], np.uint8)
+    light = unit[gives][kinds]
+    flat = light.reshape(-1)
+    spread(flat, kinds.reshape(-1), words, steps_of(kinds.shape), np.flatnonzero(flat))
+    return light
+
+
+def whole_reach(reach: float) -> float:
+    """Return the nearest reach in which full light is a whole number of units.
+
+    Raises:
+        ValueError: the reach is out of range.
+    """
+    if not 1 <= reach <= MOST_REACH:
+        raise ValueError(f"reach may be 1 to {MOST_REACH:g} blocks a light level, not {reach}")
+    return round(BRIGHTEST * reach) / BRIGHTEST
+
+
+def units(level: int, reach: float) -> int:
+    """Return a light level in the units of a reach."""
+    return int(level * reach + 0.5)
+
+
+@njit
+def falls_into(words, above, cell):
+    """Tell whether the full light of the sky goes straight down from a kind into another."""
+    upper, lower = words[above], words[cell]
+    if upper & SHUT == SHUT:  # The margin: it holds nothing back.
+        upper = upper ^ SHUT
+    return lower & DIMS == 0 and ((upper >> 8) | (lower >> 12)) & 15 != 15
+
+
+@njit
+def _fall(sky, kinds, words, top):
+    """Set the cells that the sky lights straight from above to ``top``."""
+    size_x, size_y, size_z = sky.shape
+    for x in range(1, size_x - 1):
+        for y in range(size_y - 2, 0, -1):
+            for z in range(1, size_z - 1):
+                if sky[x, y + 1, z] == top and falls_into(
+                    words, kinds[x, y + 1, z], kinds[x, y, z]
+                ):
+                    sky[x, y, z] = top
+
+
+@njit
+def enters(words, kind, side):
+    """Tell whether light comes into a kind of cell from open air at one of its sides."""
+    return (words[kind] >> (4 * side)) & 15 != 15
+
+
+@njit
+def _edges(sky, flat, kinds, words, steps, top):
+    """Light what the open air at the sides lights; return the cells to spread from, int64 [N]."""
+    size_x, size_y, size_z = sky.shape
+    seeds, count = np.empty(1024, np.int64), 0
+    for x in range(1, size_x - 1):
+        for y in range(1, size_y - 1):
+            for z in range(1, size_z - 1):
+                cell = (x * size_y + y) * size_z + z
+                seed = False
+                for side in range(6):
+                    near = cell + steps[side]
+                    if flat[cell] == top:
+                        dark = flat[near] < top - 1
+                        seed |= dark and words[kinds[near]] & SHUT != SHUT
+                    elif kinds[near] == 0 and side != 2 and enters(words, kinds[cell], side):
+                        flat[cell] = top - 1
+                        seed = True
+                if seed:
+                    if count == len(seeds):
+                        seeds = np.concatenate((seeds, np.empty(count, np.int64)))
+                    seeds[count] = cell
+                    count += 1
+    return seeds[:count]

@@ -1,0 +1,71 @@
+"""The light of the sky by the hour: colours of the sky, the sun and the background.
+
+A table of moments, and what lies between them mixed. Colours are linear; their strengths are to
+each other as they please, not as a photometer says: a night of true darkness shows nothing.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+SUN_TILT_DEG = 30.0  # How far south of straight overhead the sun passes: shadows want a direction.
+LEAST_HEIGHT = 0.10  # The sine of the lowest sun, so that shadows end somewhere.
+
+
+@dataclass(frozen=True)
+class Sky:
+    """The sky at an hour. Colours are linear."""
+
+    light: tuple[float, float, float]  # what full sky light is where nothing casts a shadow
+    shade: tuple[float, float, float]  # what is left of it in the sun's shadow
+    sun: tuple[float, float, float]  # what the sun, or the moon, adds where it is straight ahead
+    zenith: tuple[float, float, float]
+    horizon: tuple[float, float, float]
+    sun_direction: tuple[float, float, float]  # unit, block axes: x east, y up, z south
+
+
+# hour: light, shade, sun, zenith, horizon
+_NIGHT = ((0.050, 0.066, 0.115), (0.040, 0.053, 0.095), (0.030, 0.040, 0.065),
+          (0.006, 0.010, 0.026), (0.020, 0.030, 0.062))  # fmt: skip
+_DAWN = ((0.500, 0.420, 0.420), (0.300, 0.280, 0.360), (0.900, 0.420, 0.180),
+         (0.120, 0.180, 0.380), (0.980, 0.480, 0.260))  # fmt: skip
+_DUSK = ((0.520, 0.400, 0.390), (0.300, 0.270, 0.350), (0.980, 0.400, 0.140),
+         (0.110, 0.150, 0.360), (1.000, 0.400, 0.180))  # fmt: skip
+_DAY = ((1.000, 0.980, 0.950), (0.460, 0.520, 0.620), (0.980, 0.900, 0.760),
+        (0.140, 0.330, 0.780), (0.560, 0.740, 0.940))  # fmt: skip
+_MOMENTS = (
+    (0.0, _NIGHT), (5.0, _NIGHT), (6.4, _DAWN), (8.5, _DAY), (15.5, _DAY), (17.6, _DUSK),
+    (19.2, _NIGHT), (24.0, _NIGHT),
+)  # fmt: skip
+
+
+def sky_at(hour: float) -> Sky:
+    """Return the sky at an hour of the day, 0 to 24; the sun rises in the east at 6.
+
+    Raises:
+        ValueError: the hour is out of range.
+    """
+    if not 0 <= hour <= 24:
+        raise ValueError(f"hour may be 0 to 24, not {hour}")
+    hours = [moment for moment, _ in _MOMENTS]
+    table = np.array([colours for _, colours in _MOMENTS])
+    rows = []
+    for row in range(5):
+        r, g, b = (float(np.interp(hour, hours, table[:, row, n])) for n in range(3))
+        rows.append((r, g, b))
+    return Sky(rows[0], rows[1], rows[2], rows[3], rows[4], sun_direction(hour))
+
+
+def sun_direction(hour: float) -> tuple[float, float, float]:
+    """Return the unit vector towards the sun, or the moon by night, in block axes.
+
+    Example:
+        >>> tuple(round(value, 2) for value in sun_direction(12))
+        (0.0, 0.87, 0.5)
+    """
+    angle = np.pi * ((hour - 6) % 12) / 12
+    tilt = np.deg2rad(SUN_TILT_DEG)
+    height = max(float(np.sin(angle) * np.cos(tilt)), LEAST_HEIGHT)
+    towards = np.array([np.cos(angle), height, np.sin(angle) * np.sin(tilt)])
+    x, y, z = towards / np.linalg.norm(towards)
+    return float(x), float(y), float(z)
