@@ -1,0 +1,88 @@
+"""Values of a pack's JSON files, checked one by one: a wrong one is a ValueError that says it.
+
+Whoever reads a file of a pack turns such an error into a line of ``problems`` and goes on.
+"""
+
+import math
+import re
+from typing import Any
+
+_NAMESPACE = re.compile(r"[a-z0-9_.-]+")
+_PATH = re.compile(r"[a-z0-9_./-]+")
+MOST_NAME = 200  # Letters of a resource's name; the game's longest has about 60.
+
+
+def mapping(value: Any, what: str) -> dict[str, Any]:
+    """Return ``value`` if it is a JSON object, else raise ValueError."""
+    if not isinstance(value, dict):
+        raise ValueError(f"{what} must be an object, not {shown(value)}")
+    return value
+
+
+def listing(value: Any, what: str, most: int) -> list[Any]:
+    """Return ``value`` if it is a JSON list of at most ``most`` items, else raise ValueError."""
+    if not isinstance(value, list):
+        raise ValueError(f"{what} must be a list, not {shown(value)}")
+    if len(value) > most:
+        raise ValueError(f"{what} has {len(value):,} items; at most {most:,} are read")
+    return value
+
+
+def number(value: Any, what: str, low: float = -1e6, high: float = 1e6) -> float:
+    """Return ``value`` as a float if it is a number from ``low`` to ``high``."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise ValueError(f"{what} must be a number, not {shown(value)}")
+    if not (math.isfinite(value) if isinstance(value, float) else abs(value) < 1e9):
+        raise ValueError(f"{what} must be a finite number")
+    if not low <= value <= high:
+        raise ValueError(f"{what} must be {low:g} to {high:g}, not {value:g}")
+    return float(value)
+
+
+def numbers(value: Any, what: str, count: int, low: float = -1e6, high: float = 1e6) -> list[float]:
+    """Return a list of ``count`` numbers from ``low`` to ``high``."""
+    items = listing(value, what, most=count)
+    if len(items) != count:
+        raise ValueError(f"{what} must have {count} numbers, not {len(items)}")
+    return [number(item, what, low, high) for item in items]
+
+
+def quarter(value: Any, what: str) -> int:
+    """Return ``value`` if it is a multiple of 90, as 0, 90, 180 or 270."""
+    angle = number(value, what)
+    if angle % 90:
+        raise ValueError(f"{what} must be a multiple of 90, not {angle:g}")
+    return int(angle) % 360
+
+
+def text(value: Any, what: str) -> str:
+    """Return ``value`` if it is a text."""
+    if not isinstance(value, str):
+        raise ValueError(f"{what} must be a text, not {shown(value)}")
+    return value
+
+
+def resource(name: str, what: str) -> tuple[str, str]:
+    """Return (namespace, path) of a resource's name such as ``minecraft:block/stone``.
+
+    Raises:
+        ValueError: it is no name, or its path leads out of the pack.
+
+    Example:
+        >>> resource("block/stone", "the model")
+        ('minecraft', 'block/stone')
+    """
+    space, colon, path = name.rpartition(":")
+    space = space if colon and space else "minecraft"
+    right = len(name) <= MOST_NAME and _NAMESPACE.fullmatch(space) and _PATH.fullmatch(path)
+    if not right or any(part in ("", ".", "..") for part in (space, *path.split("/"))):
+        raise ValueError(f"{what} {shown(name)} is no name such as minecraft:block/stone")
+    return space, path
+
+
+def shown(value: Any) -> str:
+    """Return a short text of any value, for a message."""
+    if isinstance(value, (dict, list)):
+        return "an object" if isinstance(value, dict) else "a list"
+    words = repr(value[:50] if isinstance(value, str) else value)
+    return words if len(words) <= 60 else words[:57] + "..."

@@ -1,0 +1,56 @@
+"""Elements that fill the same box become one, their textures laid one over another.
+
+A grass block is a cube of earth with a second, tinted cube at the very same place. One box with
+joined textures leaves no doubt which of the two is seen, and a full cube stays a full cube.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.render.elements import Element, FaceLook
+
+OVER, TIMES = "+", "*"  # In names of joined textures: a*rrggbb+b; no resource's name has them.
+
+
+def merged(elements: Sequence[Element]) -> tuple[Element, ...]:
+    """Return the elements with those of one box joined where their faces can be."""
+    done: list[Element] = []
+    for element in elements:
+        for at, earlier in enumerate(done):
+            if _same_box(earlier, element) and _can_join(earlier, element):
+                faces = zip(earlier.faces, element.faces, strict=True)
+                done[at] = replace(earlier, faces=tuple(_joined(a, b) for a, b in faces))
+                break
+        else:
+            done.append(element)
+    return tuple(done)
+
+
+def _same_box(a: Element, b: Element) -> bool:
+    if (a.low, a.high, a.shade, a.emission) != (b.low, b.high, b.shade, b.emission):
+        return False
+    if a.turn is None or b.turn is None:
+        return a.turn is b.turn
+    return np.allclose(a.turn, b.turn)
+
+
+def _can_join(a: Element, b: Element) -> bool:
+    """Return whether where both have a face, their textures lie alike."""
+    return all(
+        x is None or y is None or np.allclose(x.uv, y.uv)
+        for x, y in zip(a.faces, b.faces, strict=True)
+    )
+
+
+def _joined(below: FaceLook | None, above: FaceLook | None) -> FaceLook | None:
+    if below is None or above is None:
+        return below or above
+    return FaceLook(_tinted(below) + OVER + _tinted(above), below.uv)
+
+
+def _tinted(face: FaceLook) -> str:
+    if face.tint is None:
+        return face.texture
+    return face.texture + TIMES + "".join(f"{value:02x}" for value in face.tint)

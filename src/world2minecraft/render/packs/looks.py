@@ -1,0 +1,134 @@
+"""``PackLooks``: a user's resource packs and client jars as a source of looks.
+
+A state becomes its blockstates file's parts, each part its model, each model its elements, turned.
+What cannot be read is noted and left to the next source.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+
+from world2minecraft.errors import UsageError
+from world2minecraft.minecraft.states import BlockState, complete, parse_state
+from world2minecraft.minecraft.versions import name_in_version, new_names
+from world2minecraft.render.elements import BlockModel, Element
+from world2minecraft.render.packs.blockstates import Part, parts_of
+from world2minecraft.render.packs.fluids import FLUIDS, fluid_model
+from world2minecraft.render.packs.layering import merged
+from world2minecraft.render.packs.model_files import MOST_ELEMENTS, flatten, texture_of
+from world2minecraft.render.packs.resources import Resources
+from world2minecraft.render.packs.shapes import element_of
+from world2minecraft.render.packs.textures import CLEAR, PackTextures, is_clear
+from world2minecraft.render.packs.tints import Colour, checked_tints, tint_rule
+from world2minecraft.render.packs.turning import carry, quarter_turn
+from world2minecraft.render.texture import Texture
+
+TEXTURE_PX = 128  # The largest side of the renderer's textures; larger ones of packs are reduced.
+
+
+class PackLooks:
+    """The looks of a stack of resource packs, client jars and mods' jars.
+
+    ``problems`` holds one short sentence for each file that could not be read, the first of them;
+    ``problem_count`` counts all.
+
+    Args:
+        paths: folders, zips and jars; the last wins over those before it, as in the game.
+        tints: colours in place of those of plains; see ``tints.PLAINS`` for the names.
+        most_px: the largest side of a texture; larger ones are reduced to it.
+
+    Raises:
+        InputError: a pack is missing or is none. UsageError: a tint or ``most_px`` is wrong.
+    """
+
+    def __init__(
+        self,
+        paths: Sequence[str | Path],
+        *,
+        tints: Mapping[str, Colour] | None = None,
+        most_px: int = TEXTURE_PX,
+    ):
+        if most_px < 1 or most_px & (most_px - 1):
+            raise UsageError(f"most_px must be a power of two such as 64, not {most_px}")
+        self._resources = Resources(paths)
+        self._textures = PackTextures(self._resources, most_px)
+        self._tints = checked_tints(tints, self._textures.map_colour)
+        self._models: dict[str, BlockModel | None] = {}
+
+    @property
+    def problems(self) -> list[str]:
+        """What could not be read so far, short sentences, at most some dozens."""
+        return list(self._resources.problems)
+
+    @property
+    def problem_count(self) -> int:
+        """How many things could not be read so far."""
+        return self._resources.problem_count
+
+    def model(self, state: str) -> BlockModel | None:
+        """Return the model of a state's text; None where no pack has one that can be read."""
+        if state not in self._models:
+            self._models[state] = self._made(state)
+        return self._models[state]
+
+    def texture(self, name: str) -> Texture | None:
+        """Return the texture of a name that ``model`` uses, or None."""
+        return None if name.startswith("own:") else self._textures.get(name)
+
+    def _made(self, text: str) -> BlockModel | None:
+        try:
+            state = complete(parse_state(text))
+        except UsageError:
+            return None
+        if state.name in FLUIDS:
+            tint = self._tints["water"]
+            return fluid_model(state, lambda name: self.texture(name) is not None, tint)
+        space, block = state.name.split(":")
+        for name in (block, *_other_names(state.name)):
+            file = f"assets/{space}/blockstates/{name}.json"
+            root = self._resources.object(file)
+            if root is not None:
+                try:
+                    return self._drawn(state, parts_of(root, dict(state.properties)))
+                except ValueError as error:
+                    self._resources.note(f"{state.name}: {error}")
+                    return None
+        return None
+
+    def _drawn(self, state: BlockState, parts: tuple[Part, ...]) -> BlockModel | None:
+        """Return the parts' elements as one model; None where the game draws a part in code."""
+        tint_of = tint_rule(state, self._tints)
+        ending = CLEAR if is_clear(state.name) else ""
+        elements: list[Element] = []
+        occlusion = True
+        for part in parts:
+            flat = flatten(part.model, self._resources)
+            turn = quarter_turn(part.x_deg, part.y_deg, part.z_deg)
+            named = partial(_texture_name, textures=flat.textures, ending=ending)
+            for raw in flat.elements:
+                elements.append(carry(element_of(raw, named, tint_of), turn, part.uv_lock))
+            occlusion = occlusion and flat.ambient_occlusion
+        if len(elements) > MOST_ELEMENTS:
+            raise ValueError(f"has {len(elements):,} elements; at most {MOST_ELEMENTS:,} are read")
+        self._check_textures(elements)
+        return BlockModel(merged(elements), occlusion) if elements else None
+
+    def _check_textures(self, elements: Sequence[Element]) -> None:
+        """Raise ValueError where a face's texture cannot be read."""
+        for name in {face.texture for one in elements for face in one.faces if face is not None}:
+            if self.texture(name) is None:
+                plain = name.removesuffix(CLEAR)
+                raise ValueError(f"texture {plain} is in none of the packs, or cannot be read")
+
+
+def _texture_name(face: str, textures: Mapping[str, object], ending: str) -> str:
+    """Return the name of a face's texture, marked where the block is of clear stuff."""
+    name = texture_of(face, textures)
+    return name if not ending or is_clear(name) else name + ending
+
+
+def _other_names(name: str) -> list[str]:
+    """Return what older and newer games call a block, without the namespace."""
+    newest = name_in_version(name, 1 << 30)
+    others = [newest, new_names().get(newest, newest)]
+    return [other.partition(":")[2] for other in others if other != name]
