@@ -28,6 +28,7 @@ from world2minecraft.render.light.lit import (
     lit_colour,
 )
 from world2minecraft.render.light.look import LookLight
+from world2minecraft.render.light.relight import edit_light
 from world2minecraft.render.light.tone import Tone, finish
 
 __all__ = [
@@ -38,6 +39,7 @@ __all__ = [
     "Tone",
     "background_light",
     "direction_shade",
+    "edit_light",
     "finish",
     "glow_light",
     "lattice_light",
