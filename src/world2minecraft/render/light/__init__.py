@@ -2,7 +2,8 @@
 
 A scene keeps a ``LightField`` (``light_field(states, palette, reach)``), whose ``lattice`` the
 kernel reads, and ``edit_light`` keeps it true where cells change. A ``LookLight`` says how a
-picture is lit; it gives the kernel
+picture is lit, ``scene_exposure(field, look, eyes)`` how far that is opened up; the look gives the
+kernel
 
 - ``parameters(exposure) -> LitParameters``, floats alone,
 - ``background(exposure) -> Background``, the sky,
@@ -19,6 +20,7 @@ Per pixel, all inlined by numba:
 """
 
 from world2minecraft.render.light.background import Background, background_light
+from world2minecraft.render.light.exposure import scene_exposure
 from world2minecraft.render.light.field import LightField, light_field
 from world2minecraft.render.light.lit import (
     LitParameters,
@@ -45,4 +47,5 @@ __all__ = [
     "lattice_light",
     "light_field",
     "lit_colour",
+    "scene_exposure",
 ]
