@@ -239,6 +239,21 @@ def test_too_many_elements(tmp_path):
     assert said == "minecraft:thing: elements has 2,049 items; at most 2,048 are read"
 
 
+def test_parts_and_blocks_without_end(tmp_path, monkeypatch):
+    model = {**CUBE, "elements": CUBE["elements"] * 900, "textures": {"all": "block/thing"}}
+    parts = {"multipart": [{"apply": {"model": "block/thing"}}] * 3}
+    files = block_files("thing", parts, model, thing=RED)
+    assert problem(tmp_path / "a", files) == (
+        "minecraft:thing: its models have more than 2,048 elements together"
+    )
+    monkeypatch.setattr("world2minecraft.render.packs.looks.MOST_ELEMENTS_OF_ALL", 0)
+    assert problem(tmp_path / "b", cube_files("thing", RED)) == (
+        "minecraft:thing: comes after 0 elements of other blocks"
+    )
+    monkeypatch.setattr(resources, "MOST_JSON_BYTES_OF_ALL", 9)
+    assert "more than 9 bytes of JSON" in problem(tmp_path / "c", cube_files("thing", RED))
+
+
 def test_problems_are_counted_and_only_some_are_kept(tmp_path):
     files = {BLOCK.format(f"thing_{index}"): b"no" for index in range(70)}
     looks = PackLooks([folder_pack(tmp_path / "pack", files)])

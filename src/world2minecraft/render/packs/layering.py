@@ -17,23 +17,21 @@ OVER, TIMES = "+", "*"  # In names of joined textures: a*rrggbb+b; no resource's
 def merged(elements: Sequence[Element]) -> tuple[Element, ...]:
     """Return the elements with those of one box joined where their faces can be."""
     done: list[Element] = []
+    places: dict[tuple, int] = {}  # Of each box, the last element that fills it.
     for element in elements:
-        for at, earlier in enumerate(done):
-            if _same_box(earlier, element) and _can_join(earlier, element):
-                faces = zip(earlier.faces, element.faces, strict=True)
-                done[at] = replace(earlier, faces=tuple(_joined(a, b) for a, b in faces))
-                break
-        else:
+        at = places.get(_box_of(element))
+        if at is None or not _can_join(done[at], element):
+            places[_box_of(element)] = len(done)
             done.append(element)
+        else:
+            faces = zip(done[at].faces, element.faces, strict=True)
+            done[at] = replace(done[at], faces=tuple(_joined(a, b) for a, b in faces))
     return tuple(done)
 
 
-def _same_box(a: Element, b: Element) -> bool:
-    if (a.low, a.high, a.shade, a.emission) != (b.low, b.high, b.shade, b.emission):
-        return False
-    if a.turn is None or b.turn is None:
-        return a.turn is b.turn
-    return np.allclose(a.turn, b.turn)
+def _box_of(element: Element) -> tuple:
+    turn = None if element.turn is None else element.turn.tobytes()
+    return element.low, element.high, element.shade, element.emission, turn
 
 
 def _can_join(a: Element, b: Element) -> bool:

@@ -14,6 +14,7 @@ from world2minecraft.minecraft.versions import name_in_version, new_names
 from world2minecraft.render.elements import BlockModel, Element
 from world2minecraft.render.packs.blockstates import Part, parts_of
 from world2minecraft.render.packs.fluids import FLUIDS, fluid_model
+from world2minecraft.render.packs.implied import implied_model
 from world2minecraft.render.packs.layering import merged
 from world2minecraft.render.packs.model_files import MOST_ELEMENTS, flatten, texture_of
 from world2minecraft.render.packs.resources import Resources
@@ -24,6 +25,8 @@ from world2minecraft.render.packs.turning import carry, quarter_turn
 from world2minecraft.render.texture import Texture
 
 TEXTURE_PX = 128  # The largest side of the renderer's textures; larger ones of packs are reduced.
+
+MOST_ELEMENTS_OF_ALL = 200_000  # A thousand states of the game have about 5,000.
 
 
 class PackLooks:
@@ -53,6 +56,7 @@ class PackLooks:
         self._resources = Resources(paths)
         self._textures = PackTextures(self._resources, most_px)
         self._tints = checked_tints(tints, self._textures.map_colour)
+        self._element_count = 0
         self._models: dict[str, BlockModel | None] = {}
 
     @property
@@ -81,19 +85,30 @@ class PackLooks:
         except UsageError:
             return None
         if state.name in FLUIDS:
-            tint = self._tints["water"]
-            return fluid_model(state, lambda name: self.texture(name) is not None, tint)
+            return fluid_model(state, self._has_texture, self._tints["water"])
+        model, is_read = self._read(state)
+        if model is None and not is_read:
+            model = implied_model(state, self._has_texture, tint_rule(state, self._tints))
+        return model
+
+    def _has_texture(self, name: str) -> bool:
+        space, _, path = name.partition(":")
+        file = f"assets/{space}/textures/{path}.png"
+        return self._resources.has(file) and self.texture(name) is not None
+
+    def _read(self, state: BlockState) -> tuple[BlockModel | None, bool]:
+        """Return the model that the packs' files say, and whether they say one (or none)."""
         space, block = state.name.split(":")
         for name in (block, *_other_names(state.name)):
             file = f"assets/{space}/blockstates/{name}.json"
             root = self._resources.object(file)
             if root is not None:
                 try:
-                    return self._drawn(state, parts_of(root, dict(state.properties)))
+                    return self._drawn(state, parts_of(root, dict(state.properties))), True
                 except ValueError as error:
                     self._resources.note(f"{state.name}: {error}")
-                    return None
-        return None
+                    break
+        return None, False
 
     def _drawn(self, state: BlockState, parts: tuple[Part, ...]) -> BlockModel | None:
         """Return the parts' elements as one model; None where the game draws a part in code."""
@@ -108,8 +123,11 @@ class PackLooks:
             for raw in flat.elements:
                 elements.append(carry(element_of(raw, named, tint_of), turn, part.uv_lock))
             occlusion = occlusion and flat.ambient_occlusion
-        if len(elements) > MOST_ELEMENTS:
-            raise ValueError(f"has {len(elements):,} elements; at most {MOST_ELEMENTS:,} are read")
+            if len(elements) > MOST_ELEMENTS:
+                raise ValueError(f"its models have more than {MOST_ELEMENTS:,} elements together")
+        self._element_count += len(elements)
+        if self._element_count > MOST_ELEMENTS_OF_ALL:
+            raise ValueError(f"comes after {MOST_ELEMENTS_OF_ALL:,} elements of other blocks")
         self._check_textures(elements)
         return BlockModel(merged(elements), occlusion) if elements else None
 

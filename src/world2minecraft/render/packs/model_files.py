@@ -66,8 +66,8 @@ def _chain(name: str, resources: Resources) -> list[dict[str, Any]]:
         seen.add((space, path))
         model = resources.object(f"assets/{space}/models/{path}.json")
         if model is None:
-            is_child = f"its parent {space}:{path} is" if chain else "is"
-            raise ValueError(f"model {name}: {is_child} in none of the packs; {_CURE}")
+            which = f"{name}: its parent {space}:{path}" if chain else f"{space}:{path}"
+            raise ValueError(f"model {which} is in none of the packs, or cannot be read; {_CURE}")
         chain.append(model)
         at = None if model.get("parent") is None else text(model["parent"], "parent")
     return chain

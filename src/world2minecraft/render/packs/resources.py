@@ -13,6 +13,7 @@ from world2minecraft.render.packs.archive import PackFiles, open_pack
 from world2minecraft.render.packs.checks import number, resource
 
 MOST_JSON_BYTES = 4 << 20  # The largest models of mods have some hundred kilobytes.
+MOST_JSON_BYTES_OF_ALL = 256 << 20  # The game's models and blockstates have 10 MB together.
 MOST_PROBLEMS = 48  # What one can still read; the rest is counted.
 # The format of resource packs whose rules are followed, that of 1.21.11: it chooses overlays.
 RESOURCE_FORMAT = 75
@@ -27,6 +28,7 @@ class Resources:
         self.problem_count = 0
         self._known: set[str] = set()
         self._json: dict[str, Any] = {}
+        self._json_bytes = 0
         self._layers: list[tuple[PackFiles, str]] = []  # Each pack and a folder in it, top first.
         for pack in reversed([open_pack(path) for path in paths]):
             self._layers += [(pack, folder) for folder in (*self._overlays(pack), "")]
@@ -67,6 +69,10 @@ class Resources:
                 self._known.add(problem)
 
     def _parsed(self, where: str, data: bytes) -> dict[str, Any] | None:
+        self._json_bytes += len(data)
+        if self._json_bytes > MOST_JSON_BYTES_OF_ALL:
+            self.note(f"more than {MOST_JSON_BYTES_OF_ALL:,} bytes of JSON; the rest is left out")
+            return None
         try:
             value = json.loads(data.decode("utf-8-sig"))
         except (ValueError, RecursionError) as error:

@@ -1,6 +1,7 @@
 """One element of a model's file becomes an ``Element``: a box, its faces, its own rotation."""
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -58,9 +59,17 @@ def _face(side: int, raw: Any, box, texture_of, tint_of) -> FaceLook:
     index = int(number(face.get("tintindex", -1), "tintindex"))
     return FaceLook(
         texture_of(text(face.get("texture"), "texture of a face")),
-        face_uv(side, box[0], box[1], rect, rotation),
+        _uv(side, box[0], box[1], rect, rotation),
         tint_of(index) if index >= 0 else None,
     )
+
+
+@lru_cache(maxsize=1 << 14)
+def _uv(side: int, low, high, rect, rotation: int) -> np.ndarray:
+    """Return ``face_uv``; few boxes are those of thousands of blocks."""
+    uv = face_uv(side, low, high, rect, rotation)
+    uv.flags.writeable = False
+    return uv
 
 
 def _rotation(raw: Any) -> np.ndarray | None:

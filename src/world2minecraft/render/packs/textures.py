@@ -15,7 +15,7 @@ from world2minecraft.render.packs.resources import Resources
 from world2minecraft.render.texture import Texture
 
 MOST_PNG_BYTES = 32 << 20
-MOST_TEXTURES = 16_384  # Of one run; the game has about 1,500 of blocks.
+MOST_TEXTURES = 8192  # Of one run; the game has about 1,500 of blocks.
 CLEAR = "~clear"  # Ends the name of a texture that a block of clear stuff uses.
 _CLEAR_WORDS = re.compile(r"glass|(?<![a-z])ice(?![a-z])|slime|honey_block|water|portal|jelly")
 # A texture of clear stuff mixes with what is behind it where this share is neither hole nor solid.

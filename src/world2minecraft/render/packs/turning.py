@@ -98,18 +98,27 @@ def side_after(side: int, matrix: np.ndarray) -> int:
 
 
 def _locked(side: int, face: FaceLook | None, matrix: np.ndarray) -> FaceLook | None:
-    """Return a face whose texture stays as the world lies while the face is turned.
+    """Return a face whose texture stays as the world lies while the face is turned."""
+    if face is None:
+        return None
+    lock = _lock(side, matrix.tobytes())
+    uv = lock[:, :2] @ face.uv
+    uv[:, 3] += lock[:, 2]
+    return replace(face, uv=uv)
+
+
+@lru_cache(maxsize=1024)
+def _lock(side: int, matrix_bytes: bytes) -> np.ndarray:
+    """Return float64 [2, 3] from a texture point (u, v, 1) to that of a locked texture.
 
     A texture point goes to the place on the block's side that has it by default, with the turn to
     another side, and there to the texture point of that place.
     """
-    if face is None:
-        return None
+    matrix = np.frombuffer(matrix_bytes, np.float64).reshape(4, 4)
     before, after = face_uv(side, *_BLOCK), face_uv(side_after(side, matrix), *_BLOCK)
     axes = np.array(FACE_AXES[side], np.float64)
     to_block = np.zeros((4, 3))  # From (u, v, 1) to a point of the side.
     to_block[:3, :2] = axes.T
     to_block[:3, 2] = -(axes.T @ before[:, 3])
     to_block[3, 2] = 1
-    lock = after @ matrix @ to_block
-    return replace(face, uv=lock @ np.vstack([face.uv, [0, 0, 0, 1]]))
+    return after @ matrix @ to_block
