@@ -1,7 +1,7 @@
 """numba with the project's settings: compiled once, kept in the user's cache folder.
 
-Import ``njit`` from here and never from numba, so that every kernel is cached, releases the GIL
-and computes the same bits on every run (no fast-math).
+Import ``njit``, ``lean`` and ``inlined`` from here and never from numba, so that every kernel is
+cached, releases the GIL and computes the same bits on every run (no fast-math).
 """
 
 import hashlib
@@ -32,7 +32,7 @@ def kernel_sources_digest() -> str:
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parent.rglob("*.py")):
         source = path.read_bytes()
-        if b"import njit" in source:
+        if b"world2minecraft.jit import" in source:
             digest.update(path.name.encode() + source)
     return digest.hexdigest()[:16]
 
@@ -58,3 +58,8 @@ os.environ.setdefault("NUMBA_CACHE_DIR", str(KERNEL_CACHE))
 import numba  # noqa: E402  # The cache folder must be named before numba is loaded.
 
 njit = numba.njit(cache=True, nogil=True)
+# For kernels that allocate nothing: without counting references to arrays, which at every call
+# inside takes as long as a ray. Such a kernel calls only its like. Division by 0 gives infinity.
+lean = numba.njit(cache=True, nogil=True, _nrt=False, error_model="numpy")
+# The same for small functions that a kernel calls for every ray: a call costs more than they do.
+inlined = numba.njit(cache=True, nogil=True, _nrt=False, error_model="numpy", forceinline=True)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.coordinates import block_to_room, look_at
-from world2minecraft.render.appearance import visible_boxes
+from world2minecraft.render.plain_looks import visible_boxes
 from world2minecraft.types import BlockVolume, Camera
 
 PALETTE = (

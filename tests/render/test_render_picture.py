@@ -7,7 +7,7 @@ from scenes import CAMERA, PALETTE, random_pose, random_volume, volume_of
 from world2minecraft.coordinates import apply, look_at
 from world2minecraft.minecraft.turn import turn_volume
 from world2minecraft.render import cast_voxels, prepare_scene, render_volume
-from world2minecraft.render.appearance import INVISIBLE, visible_boxes
+from world2minecraft.render.plain_looks import INVISIBLE, visible_boxes
 from world2minecraft.types import Camera
 
 
@@ -105,13 +105,16 @@ def test_only_what_is_asked_for_is_made():
 
 
 def test_an_unknown_output_is_refused():
-    with pytest.raises(ValueError, match="^outputs may be colour, depth, semantic, instance, not"):
+    with pytest.raises(
+        ValueError,
+        match="^outputs may be colour, depth, semantic, instance, opaque, normal, free, not",
+    ):
         render_volume(closed_room(), CAMERA, np.eye(4), outputs=("normals",))
 
 
 def test_an_enormous_picture_is_refused_before_memory_is_taken():
     camera = Camera(20_000, 20_000, 100.0, 100.0, 1.0, 1.0)
-    with pytest.raises(ValueError, match="a picture may have 64,000,000 pixels"):
+    with pytest.raises(ValueError, match="a picture may have 64,000,000 samples"):
         render_volume(closed_room(), camera, np.eye(4))
 
 

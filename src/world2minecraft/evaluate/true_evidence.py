@@ -15,9 +15,8 @@ from world2minecraft.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.coordinates import apply
 from world2minecraft.evaluate.reach import PUSH_M, RAYS_WIDE, pinhole
 from world2minecraft.evaluate.score import TrueRoom
-from world2minecraft.render.scene import RayScene
-from world2minecraft.render.trace import FACE_NORMALS
-from world2minecraft.render.voxels import cast_voxels, prepare_voxels
+from world2minecraft.render.tables import FACE_NORMALS
+from world2minecraft.render.voxels import VoxelScene, cast_voxels, prepare_voxels
 from world2minecraft.types import Camera, FusedEvidence, View
 
 SURE_LOG_ODDS = 6.0  # The fusion's own limit.
@@ -74,7 +73,7 @@ def true_evidence(room: TrueRoom, views: Iterable[View], scan_to_room: np.ndarra
 def _add_view(
     sums: _Sums,
     room: TrueRoom,
-    scene: RayScene,
+    scene: VoxelScene,
     view: View,
     stated: Camera,
     camera_to_truth: np.ndarray,

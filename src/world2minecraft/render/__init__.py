@@ -5,15 +5,21 @@ a whole room, ``cast_voxels`` scans a fine grid. Whoever takes many pictures of 
 its scene once, with ``prepare_scene`` or ``prepare_voxels``.
 """
 
+from world2minecraft.render.lamps import DAY, NEUTRAL
+from world2minecraft.render.light import LookLight
 from world2minecraft.render.picture import Picture, render_parallel, render_volume
 from world2minecraft.render.preview import plan_view, preview
-from world2minecraft.render.scene import RayScene, prepare_scene
-from world2minecraft.render.voxels import VoxelHits, cast_voxels, prepare_voxels
+from world2minecraft.render.scene import BlockScene, prepare_scene
+from world2minecraft.render.voxels import VoxelHits, VoxelScene, cast_voxels, prepare_voxels
 
 __all__ = [
+    "DAY",
+    "NEUTRAL",
+    "BlockScene",
+    "LookLight",
     "Picture",
-    "RayScene",
     "VoxelHits",
+    "VoxelScene",
     "cast_voxels",
     "plan_view",
     "prepare_scene",

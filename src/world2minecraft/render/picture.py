@@ -1,50 +1,66 @@
-"""Pictures of block volumes, through a camera of the room."""
+"""A picture of a block volume through a camera of the room."""
 
-from collections.abc import Callable, Collection
-from dataclasses import dataclass
-from itertools import pairwise
-from multiprocessing.pool import ThreadPool
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.render.cubes import draw_cubes, pixel_bounds
-from world2minecraft.render.scene import RayScene, prepare_scene
-from world2minecraft.render.shade import TILE, draw_rows
+from world2minecraft.render.arrays import PixelArrays, draw_into, pixel_arrays
+from world2minecraft.render.free import crossed_air
+from world2minecraft.render.lamps import DAY, Background, lamp_of
+from world2minecraft.render.light import LookLight
+from world2minecraft.render.scene import BlockScene, prepare_scene
 from world2minecraft.types import BlockVolume, Camera
 
-OUTPUTS = ("colour", "depth", "semantic", "instance")
-# A quiet, warm light grey, a little darker towards the bottom.
-BACKGROUND = ((238, 238, 236), (214, 214, 212))
+OUTPUTS = ("colour", "depth", "semantic", "instance", "opaque", "normal", "free")
+DEFAULT_OUTPUTS = ("colour", "depth", "semantic", "instance")
 MAX_PIXELS = 64_000_000  # Two gigabytes of outputs.
+MOST_SAMPLES = 8
 
 
 @dataclass(frozen=True, eq=False)
 class Picture:
     """What one look at a volume gives; arrays that were not asked for are None.
 
-    Where a ray meets nothing, depth and range are 0, ``block_index`` is -1, ``face`` is 255,
-    ``semantic`` and ``instance`` are 0. Where it meets a display entity ``block_index`` is -1 too,
-    ``cube_index`` is 0 or more, and ``face`` the one of a block that looks most like it.
+    The first surface counts, be it glass; a hole in a texture is none. Where a ray meets nothing,
+    depth and range are 0, ``block_index`` is -1, ``face`` is 255, ``semantic`` and ``instance``
+    are 0. Where it meets a display entity ``block_index`` is -1 too, ``cube_index`` is 0 or more,
+    and ``face`` the one of a block that looks most like it. The ``opaque_*`` arrays say the same
+    of what lies behind all glass.
     """
 
     depth_m: np.ndarray  # float32 [H, W], z-depth
     range_m: np.ndarray  # float32 [H, W], along the ray
     block_index: np.ndarray  # int32 [H, W], C-order index into volume.states
     face: np.ndarray  # uint8 [H, W], of block axes: -x +x -y +y -z +z
+    cube_index: np.ndarray  # int32 [H, W], into the scene's things; -1 for none
     colour: np.ndarray | None = None  # uint8 [H, W, 3]
     semantic: np.ndarray | None = None  # uint8 [H, W]
     instance: np.ndarray | None = None  # uint16 [H, W]
-    cube_index: np.ndarray | None = None  # int32 [H, W], into the scene's cubes; -1 for none
+    opaque_depth_m: np.ndarray | None = None  # float32 [H, W]
+    opaque_index: np.ndarray | None = None  # int32 [H, W]
+    opaque_cube_index: np.ndarray | None = None  # int32 [H, W]
+    normal: np.ndarray | None = None  # float32 [H, W, 3], outward, of block axes
+    free: np.ndarray | None = None  # bool [X, Y, Z]: air that some ray has crossed
+
+    @property
+    def glass_index(self) -> np.ndarray:
+        """The first glass that a ray meets before what is opaque, int32 [H, W], else -1."""
+        if self.opaque_index is None or self.opaque_depth_m is None:
+            raise ValueError("glass is told apart only where the outputs name 'opaque'")
+        return np.where(self.opaque_depth_m == self.depth_m, -1, self.block_index)
 
 
 def render_volume(
-    volume: BlockVolume | RayScene,
+    volume: BlockVolume | BlockScene,
     camera: Camera,
     camera_to_room: np.ndarray,
     *,
-    outputs: Collection[str] = OUTPUTS,
+    outputs: Collection[str] = DEFAULT_OUTPUTS,
+    light: LookLight = DAY,
+    samples: int = 1,
     threads: int = 1,
-    background: tuple[tuple[int, int, int], tuple[int, int, int]] = BACKGROUND,
+    background: Background | None = None,
 ) -> Picture:
     """Take a picture of a volume.
 
@@ -53,100 +69,110 @@ def render_volume(
         camera: intrinsics; its distortion is ignored.
         camera_to_room: 4x4, OpenCV axes, metres.
         outputs: which of ``OUTPUTS`` to make; depth, range, block and face always come.
+        light: the hour, the exposure and the like.
+        samples: a pixel's colour is the mean of so many by so many; all else is of its middle.
         threads: how many bands of rows are drawn at a time; the result is the same for any.
-        background: colours of the sky's first and last row.
+        background: sRGB colours of the first and last row behind all; None for the sky.
 
     Raises:
         ValueError: an output is not known, or the image has over 64 million pixels.
     """
     rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
     size = (camera.height_px, camera.width_px)
-    return _draw(volume, rays, 1.0, camera_to_room, size, outputs, threads, background)
+    return _draw(
+        volume, rays, 1.0, camera_to_room, size, outputs, light, samples, threads, background
+    )
 
 
 def render_parallel(
-    volume: BlockVolume | RayScene,
+    volume: BlockVolume | BlockScene,
     px_per_metre: float,
     size: tuple[int, int],
     camera_to_room: np.ndarray,
     *,
-    outputs: Collection[str] = OUTPUTS,
+    outputs: Collection[str] = DEFAULT_OUTPUTS,
+    light: LookLight = DAY,
+    samples: int = 1,
     threads: int = 1,
-    background: tuple[tuple[int, int, int], tuple[int, int, int]] = BACKGROUND,
+    background: Background | None = None,
 ) -> Picture:
     """Take a picture by parallel rays along the camera's z, its middle at the camera's place.
 
     Args: as ``render_volume``, with ``size`` (height, width) in pixels.
     """
     rays = np.array([px_per_metre, px_per_metre, size[1] / 2, size[0] / 2])
-    return _draw(volume, rays, 0.0, camera_to_room, size, outputs, threads, background)
-
-
-def _draw(volume, rays, spread, camera_to_room, size, outputs, threads, background) -> Picture:
-    unknown = sorted(set(outputs) - set(OUTPUTS))
-    if unknown:
-        raise ValueError(f"outputs may be {', '.join(OUTPUTS)}, not {unknown[0]!r}")
-    if size[0] * size[1] > MAX_PIXELS:
-        raise ValueError(f"a picture may have {MAX_PIXELS:,} pixels, not {size[1]}x{size[0]}")
-    scene = prepare_scene(volume) if isinstance(volume, BlockVolume) else volume
-    pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
-    sky = np.array(background, np.float32)
-    depth, distance = np.empty(size, np.float32), np.empty(size, np.float32)
-    index, face = np.empty(size, np.int32), np.empty(size, np.uint8)
-    with_colour = "colour" in outputs
-    colour = np.empty((*size, 3) if with_colour else (1, 1, 3), np.uint8)
-
-    cubes = scene.cubes
-    cube = np.full(size, -1, np.int32)
-    bounds = pixel_bounds(cubes, pose, rays, spread, size)
-    to_cube, normals = cubes.from_camera(pose), cubes.normals
-
-    def band(rows: tuple[int, int]) -> None:
-        draw_rows(
-            scene.cells, scene.states, scene.box_start, scene.boxes, scene.colours, pose, rays,
-            spread, rows[0], rows[1], with_colour, sky, depth, distance, index, face, colour,
-        )  # fmt: skip
-        if len(cubes):
-            draw_cubes(
-                to_cube, normals, cubes.sides, cubes.colours, bounds, pose, rays, spread,
-                rows[0], rows[1], with_colour, depth, distance, index, face, colour, cube,
-            )  # fmt: skip
-
-    run_bands(band, size[0], threads)
-    return Picture(
-        depth_m=depth,
-        range_m=distance,
-        block_index=index,
-        face=face,
-        colour=colour if with_colour else None,
-        semantic=_labels(scene.semantic, index, cubes.semantic, cube)
-        if "semantic" in outputs
-        else None,
-        instance=_labels(scene.instance, index, cubes.instance, cube)
-        if "instance" in outputs
-        else None,
-        cube_index=cube,
+    return _draw(
+        volume, rays, 0.0, camera_to_room, size, outputs, light, samples, threads, background
     )
 
 
-def run_bands(band: Callable[[tuple[int, int]], None], rows: int, threads: int) -> None:
-    """Call ``band((first, last))`` for bands that cover ``rows``, on ``threads`` threads."""
-    if threads <= 1:
-        band((0, rows))
-        return
-    tiles = -(-rows // TILE)  # Bands begin with a tile, so that bundles do not depend on them.
-    edges = [min(rows, TILE * (tiles * n // threads)) for n in range(threads)] + [rows]
-    with ThreadPool(threads) as pool:
-        pool.map(band, pairwise(edges))
+def _draw(
+    volume, rays, spread, camera_to_room, size, outputs, light, samples, threads, background
+) -> Picture:
+    _check(outputs, size, samples)
+    scene = prepare_scene(volume) if isinstance(volume, BlockVolume) else volume
+    pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
+    lamp = lamp_of(light, scene, background)
+    fine = "colour" in outputs and samples > 1
+    arrays = pixel_arrays(size, [name for name in outputs if not (fine and name == "colour")])
+    draw_into(arrays, scene, pose, rays, spread, lamp, threads)
+    if fine:
+        many = pixel_arrays((size[0] * samples, size[1] * samples), ("colour",))
+        draw_into(many, scene, pose, rays * samples, spread, lamp, threads)
+        arrays = arrays._replace(colour=_mean_of_squares(many.colour, samples))
+    picture = picture_of(scene, arrays, outputs)
+    if "free" in outputs:
+        picture = replace(picture, free=crossed_air(scene.tables, pose, rays, spread, arrays.depth))
+    return picture
 
 
-def _labels(
-    values: np.ndarray, index: np.ndarray, cube_values: np.ndarray, cube: np.ndarray
-) -> np.ndarray:
-    """Return the values of the cells and boxes of a picture, 0 where there is neither."""
-    found = values.reshape(-1)[np.maximum(index, 0)]
-    found[index < 0] = 0
-    if len(cube_values):
-        shown = cube >= 0
-        found[shown] = cube_values[cube[shown]]
+def _check(outputs: Collection[str], size: tuple[int, int], samples: int) -> None:
+    unknown = sorted(set(outputs) - set(OUTPUTS))
+    if unknown:
+        raise ValueError(f"outputs may be {', '.join(OUTPUTS)}, not {unknown[0]!r}")
+    if not 1 <= samples <= MOST_SAMPLES:
+        raise ValueError(f"samples may be 1 to {MOST_SAMPLES}, not {samples}")
+    if size[0] * size[1] * samples**2 > MAX_PIXELS:
+        raise ValueError(f"a picture may have {MAX_PIXELS:,} samples, not {size[1]}x{size[0]}")
+
+
+def picture_of(scene: BlockScene, arrays: PixelArrays, outputs: Collection[str]) -> Picture:
+    """Return what drawn arrays show; the picture shares their memory."""
+    opaque = "opaque" in outputs
+    things = scene.things
+    return Picture(
+        depth_m=arrays.depth,
+        range_m=arrays.distance,
+        block_index=arrays.index,
+        face=arrays.face,
+        cube_index=arrays.thing,
+        colour=arrays.colour if "colour" in outputs else None,
+        semantic=_labels(scene.semantic, things.semantic, arrays)
+        if "semantic" in outputs
+        else None,
+        instance=_labels(scene.instance, things.instance, arrays)
+        if "instance" in outputs
+        else None,
+        opaque_depth_m=arrays.opaque_depth if opaque else None,
+        opaque_index=arrays.opaque_index if opaque else None,
+        opaque_cube_index=arrays.opaque_thing if opaque else None,
+        normal=arrays.normal if "normal" in outputs else None,
+    )
+
+
+def _labels(values: np.ndarray, thing_values: np.ndarray, arrays: PixelArrays) -> np.ndarray:
+    """Return the values of the cells and things of a picture, 0 where there is neither."""
+    found = values.reshape(-1)[np.maximum(arrays.index, 0)]
+    found[arrays.index < 0] = 0
+    if len(thing_values):
+        shown = arrays.thing >= 0
+        found[shown] = thing_values[arrays.thing[shown]]
     return found
+
+
+def _mean_of_squares(colour: np.ndarray, samples: int) -> np.ndarray:
+    """Return the mean of every samples x samples of pixels."""
+    height, width = colour.shape[0] // samples, colour.shape[1] // samples
+    squares = colour.reshape(height, samples, width, samples, 3).astype(np.uint16)
+    count = samples * samples
+    return ((squares.sum(axis=(1, 3)) + count // 2) // count).astype(np.uint8)

@@ -10,7 +10,9 @@ from world2minecraft.render.cutaway import (
     without_near_walls,
     without_partitions,
 )
-from world2minecraft.render.picture import BACKGROUND, MAX_PIXELS, render_parallel, render_volume
+from world2minecraft.render.lamps import NEUTRAL, PAPER
+from world2minecraft.render.picture import MAX_PIXELS, Picture, render_parallel, render_volume
+from world2minecraft.render.plain_looks import PlainLooks
 from world2minecraft.render.scene import prepare_scene
 from world2minecraft.types import BlockVolume, Camera
 
@@ -36,22 +38,24 @@ def preview(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> 
     Raises:
         ValueError: the picture would be too large.
     """
-    _check_size(width_px * SUPERSAMPLE, height_px * SUPERSAMPLE)
+    _check_size(width_px, height_px)
     opened = [without_partitions(without_ceiling(one)) for one in storeys_of(volume)]
     sides = ((-1, 1), (1, 1), (1, -1), (-1, -1))
     best = max(range(4), key=lambda n: sum(_furniture_seen(one, *sides[n]) for one in opened))
     cut = side_by_side([without_near_walls(one, *sides[best]) for one in opened])
-    size = (width_px * SUPERSAMPLE, height_px * SUPERSAMPLE)
-    camera, pose = dollhouse_camera(cut, *sides[best], *size)
-    picture = render_volume(cut, camera, pose, outputs=("colour",))
-    return _halved(picture.colour)
+    camera, pose = dollhouse_camera(cut, *sides[best], width_px, height_px)
+    picture = render_volume(
+        cut, camera, pose, outputs=("colour",), light=NEUTRAL, samples=SUPERSAMPLE
+    )
+    return _colour_of(picture)
 
 
 def _furniture_seen(opened: BlockVolume, near_x: int, near_z: int) -> float:
     """Return how many pixels show objects, counted by the root of each object's own number."""
     cut = without_near_walls(opened, near_x, near_z)
     camera, pose = dollhouse_camera(cut, near_x, near_z, SCOUT_PX, SCOUT_PX * 3 // 4)
-    picture = render_volume(cut, camera, pose, outputs=("semantic", "instance"))
+    scene = prepare_scene(cut, PlainLooks())
+    picture = render_volume(scene, camera, pose, outputs=("semantic", "instance"))
     if picture.instance is None or picture.semantic is None:
         return 0.0
     shown = np.bincount(picture.instance[picture.semantic >= 5].astype(np.int64))
@@ -128,7 +132,7 @@ def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
         raise ValueError(f"px_per_block must be 1 or more, not {px_per_block}")
     opened = side_by_side([without_ceiling(one) for one in storeys_of(volume)])
     x_blocks, _, z_blocks = opened.states.shape
-    size = (z_blocks * px_per_block * SUPERSAMPLE, x_blocks * px_per_block * SUPERSAMPLE)
+    size = (z_blocks * px_per_block, x_blocks * px_per_block)
     _check_size(size[1], size[0])
     middle = np.array(opened.corner) + np.array(opened.states.shape) / 2
     middle[1] = opened.corner[1] + opened.states.shape[1] + 1
@@ -136,24 +140,24 @@ def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
     down[:3, 3] = apply(volume.block_to_room, middle)
     picture = render_parallel(
         prepare_scene(opened),
-        px_per_block * SUPERSAMPLE * volume.blocks_per_metre,
+        px_per_block * volume.blocks_per_metre,
         size,
         down,
         outputs=("colour",),
-        background=(BACKGROUND[0], BACKGROUND[0]),
+        samples=SUPERSAMPLE,
+        light=NEUTRAL,
+        background=(PAPER[0], PAPER[0]),
     )
-    return _halved(picture.colour)
+    return _colour_of(picture)
 
 
 def _check_size(width_px: int, height_px: int) -> None:
-    if width_px < SUPERSAMPLE or height_px < SUPERSAMPLE or width_px * height_px > MAX_PIXELS:
-        raise ValueError(f"the picture's size is out of range: {width_px}x{height_px} samples")
+    samples = width_px * height_px * SUPERSAMPLE**2
+    if width_px < 1 or height_px < 1 or samples > MAX_PIXELS:
+        raise ValueError(f"the picture's size is out of range: {width_px}x{height_px} pixels")
 
 
-def _halved(colour: np.ndarray | None) -> np.ndarray:
-    """Return the mean of every 2x2 samples."""
-    if colour is None:
+def _colour_of(picture: Picture) -> np.ndarray:
+    if picture.colour is None:
         raise ValueError("the picture has no colour")
-    height, width, _ = colour.shape
-    blocks = colour.reshape(height // 2, 2, width // 2, 2, 3).astype(np.uint16)
-    return ((blocks.sum(axis=(1, 3)) + 2) // 4).astype(np.uint8)
+    return picture.colour

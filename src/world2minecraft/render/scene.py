@@ -1,61 +1,129 @@
-"""A block volume made ready for rays: one byte a cell, tables of boxes, colours by state.
+"""A block volume made ready for rays: the arrays of ``SceneTables``, and what its cells are.
 
 Making it costs one sweep over the volume; whoever takes many pictures of one volume makes the
 scene once and passes it in the volume's place.
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.render.appearance import palette_colours, visible_boxes
-from world2minecraft.render.cubes import CubeTable, cube_table
-from world2minecraft.render.trace import BOXES, FULL, NEAR_AIR, fill_distances
+from world2minecraft.render.bake import AIR, Baker, ElementTable, joins, kind_of, models_of
+from world2minecraft.render.elements import BlockModel, LookSource
+from world2minecraft.render.empties import empty_boxes
+from world2minecraft.render.light import light_field
+from world2minecraft.render.plain_looks import PlainLooks
+from world2minecraft.render.standing_boxes import (
+    StandingThings,
+    margin_of,
+    overhanging,
+    place_guests,
+    standing_things,
+)
+from world2minecraft.render.tables import BOXES, JOINS, SceneTables
 from world2minecraft.types import BlockVolume
-
-_UNIT_BOX = np.array([[0, 0, 0, 1, 1, 1]], np.float32)
 
 
 @dataclass(frozen=True, eq=False)
-class RayScene:
-    """What the kernels read. ``cells`` is explained in ``render.trace``."""
+class BlockScene:
+    """What pictures of a volume are taken of."""
 
-    cells: np.ndarray  # uint8 [X, Y, Z]
-    states: np.ndarray  # uint16 [X, Y, Z]
-    box_start: np.ndarray  # int32 [P + 1]
-    boxes: np.ndarray  # float32 [N, 6]
-    colours: np.ndarray  # float32 [P, 4]: sRGB 0 to 255, glow
+    tables: SceneTables
+    material: np.ndarray  # uint8 [L, M, 5], see render.atlas
+    side_px: int  # of a texture
     semantic: np.ndarray  # uint8 [X, Y, Z]
     instance: np.ndarray  # uint16 [X, Y, Z]
+    things: StandingThings
     room_to_grid: np.ndarray  # float64 [4, 4]: room metres to cells of this grid
     cells_per_metre: float
-    cubes: CubeTable = field(default_factory=lambda: cube_table((), (0, 0, 0)))
+    exposure: float = 1.0  # what makes its light a good picture
 
 
-def prepare_scene(volume: BlockVolume) -> RayScene:
-    """Return the scene of a volume."""
-    shapes = [visible_boxes(state) for state in volume.palette]
-    kinds = np.array([_kind(boxes) for boxes in shapes], np.uint8)
-    cells = kinds[volume.states]
-    fill_distances(cells)
-    counts = [len(boxes) for boxes in shapes]
+def prepare_scene(
+    volume: BlockVolume, looks: LookSource | None = None, *, texture_px: int = 16
+) -> BlockScene:
+    """Return the scene of a volume.
+
+    Args:
+        volume: the blocks, with display entities.
+        looks: where models and textures come from; our own set where None.
+        texture_px: the side of a texture, 16, 32, 64 or 128.
+    """
+    looks = looks or PlainLooks()
+    baker = Baker(looks, texture_px)
+    models, guests = overhanging(models_of(volume.palette, looks), volume.states)
+    things, more = standing_things(volume, looks)
+    guests += more
+    margin = margin_of(guests, volume.states.shape)
+    states = np.pad(volume.states, margin.T) if margin.any() else volume.states
+    start, refs = _lists_of(volume.palette, models, baker)
+    cell_looks = states.astype(np.int32)
+    start, refs, cells = place_guests(
+        [guest.moved(margin[0]) for guest in guests], cell_looks, start, refs, baker
+    )
+    kinds = np.array([kind_of(model, looks) for model in models], np.int8)[states]
+    hosts = tuple(cells[kinds[tuple(cells.T)] == AIR].T)
+    kinds[hosts] = BOXES
     grid_to_world = np.eye(4)
-    grid_to_world[:3, 3] = volume.corner
-    return RayScene(
-        cells=cells,
-        states=volume.states,
-        box_start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
-        boxes=np.concatenate([np.empty((0, 6), np.float32), *shapes]),
-        colours=palette_colours(volume.palette),
+    grid_to_world[:3, 3] = volume.corner - margin[0]
+    table = baker.table()
+    return BlockScene(
+        tables=_tables(table, *empty_boxes(kinds), cell_looks, start, refs)._replace(
+            light=light_field(states, volume.palette).lattice,
+            window=np.array([margin[0], volume.states.shape], np.int64),
+        ),
+        material=table.atlas.material,
+        side_px=texture_px,
         semantic=volume.semantic,
         instance=volume.instance,
+        things=things,
         room_to_grid=np.linalg.inv(volume.block_to_room @ grid_to_world),
         cells_per_metre=volume.blocks_per_metre,
-        cubes=cube_table(volume.entities, volume.corner),
     )
 
 
-def _kind(boxes: np.ndarray) -> int:
-    if not len(boxes):
-        return NEAR_AIR
-    return FULL if np.array_equal(boxes, _UNIT_BOX) else BOXES
+def _lists_of(
+    palette: Sequence[str], models: Sequence[BlockModel], baker: Baker
+) -> tuple[np.ndarray, np.ndarray]:
+    """Bake the models of a palette; return ``look_start`` and ``refs``."""
+    refs, counts = [], []
+    for state, model in zip(palette, models, strict=True):
+        flags = JOINS * joins(state, model)
+        refs += [
+            baker.add(element, flags, even=not model.ambient_occlusion)
+            for element in model.elements
+        ]
+        counts.append(len(model.elements))
+    start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
+    return start, np.array(refs, np.int32)
+
+
+def _tables(
+    table: ElementTable,
+    space: np.ndarray,
+    bounds: np.ndarray,
+    looks: np.ndarray,
+    start: np.ndarray,
+    refs: np.ndarray,
+) -> SceneTables:
+    """Return the tables, without light and window."""
+    return SceneTables(
+        space=space,
+        bounds=bounds,
+        looks=looks,
+        look_start=start,
+        refs=refs,
+        boxes=table.boxes,
+        traits=table.traits,
+        turns=table.turns,
+        normals=table.normals,
+        layers=table.layers,
+        uv=table.uv,
+        tints=table.tints,
+        emission=table.emission,
+        texels=table.atlas.texels,
+        translucent=table.atlas.translucent,
+        light=np.empty((3, 0, 0, 0), np.uint16),
+        window=np.zeros((2, 3), np.int64),
+    )

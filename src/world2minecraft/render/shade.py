@@ -1,185 +1,226 @@
-"""The picture kernel: one pass over the pixels gives depth, range, block, face and colour.
+"""The colour of a point: its texel, times the light there, in linear light.
 
-Colour is the block's own colour times three calm factors: the face's direction, the ambient
-occlusion of the eight cells around the face, and a light that the camera carries. Blocks are told
-apart by a hash of their place (3 %) and by slightly darker edges, which fade out where a block
-covers few pixels.
+The light of a face is found at the four corners of the block's face that the point lies in, as
+colours, and is even between them; neighbouring pixels mostly share those four.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import njit
-from world2minecraft.render.trace import FULL, NO_FACE, safe_start, trace
+from world2minecraft.jit import inlined, lean
+from world2minecraft.render.light.lit import (
+    LitParameters,
+    direction_shade,
+    glow_light,
+    lit_colour,
+    to_linear,
+)
+from world2minecraft.render.light.tone import Tone, finish
+from world2minecraft.render.ray import begin, carried, first_hit, steep
+from world2minecraft.render.tables import (
+    ABSOLUTE,
+    EVEN,
+    FACE_NORMALS,
+    FLAGS,
+    NO_FACE,
+    TURN,
+    UNSHADED,
+)
 
-# In the order of the faces -x +x -y +y -z +z of block axes (y is up): the game's shades, softened.
-FACE_SHADE = np.array([0.85, 0.85, 0.70, 1.0, 0.94, 0.94], np.float32)
-TILE = 8  # Pixels a side of the bundles that share an empty way.
-HASH_SHARE = 0.03
-EDGE_BLOCKS, EDGE_SHADE = 0.035, 0.10
-EDGE_FADE_PX = 6.0  # Edges are drawn in full where a block covers four times as many pixels.
-CORNER_SHADE = 0.15  # What each solid neighbour of a corner takes; the game takes 0.2.
-HEADLIGHT = 0.14  # What a face loses that the camera sees edge-on.
-EXPOSURE = 1.10
-GLOW = 1.12
-MEMO = 10
+MEMO = 20  # Numbers; see ``find_light``.
+MOST_GLASS = 32  # Panes that one ray goes through.
+_OFF = 1e-5  # Blocks: how far before a surface a ray to the sun begins.
+_NEAR_EDGE = 1e-3  # Blocks: a face so near its cell's boundary is lit from beyond it.
 
 
-@njit
-def draw_rows(
-    cells, states, box_start, boxes, colours, pose, rays, spread, first, last, with_colour,
-    background, depth, distance, index, face, colour,
+class Lamp(NamedTuple):
+    """What the kernels know of light and of how it becomes sRGB."""
+
+    lit: LitParameters
+    tone: Tone
+    sky: (
+        np.ndarray
+    )  # float64 [2, 3]: linear colours straight up and level, or of first and last row
+    by_row: bool  # the sky goes with the picture's rows, not with the ray's direction
+
+
+@inlined
+def shade_hit(
+    tables, side_px, lamp, memo, rays, spread, t, i, j, k, side, element,
+    ox, oy, oz, dx, dy, dz, length,
 ):  # fmt: skip
-    """Fill the rows ``first`` to ``last`` (past the end) of the outputs.
-
-    In: the first five are those of ``RayScene``. ``pose`` float64 [3, 4] carries the camera (z
-    forward, metres) to the grid; ``rays`` float64 [4] is fx, fy, cx, cy in pixels, or pixels a
-    metre for parallel rays; ``spread`` is 1 for a pinhole camera, 0 for parallel rays;
-    ``background`` float32 [2, 3] holds the colours of the first and the last row.
-
-    Out: ``depth`` and ``distance`` float32 [H, W] in metres, 0 where there is nothing; ``index``
-    int32 [H, W], the cell's C-order index or -1; ``face`` uint8 [H, W] or ``NO_FACE``; and, where
-    ``with_colour`` says so, ``colour`` uint8 [H, W, 3].
-    """
-    width = depth.shape[1]
-    ny, nz = cells.shape[1], cells.shape[2]
-    cell_m = 1.0 / np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)
-    per_x, per_y = 1.0 / rays[0], 1.0 / rays[1]
-    memo = np.full(MEMO, -1.0)
-    for v_tile in range(first, last, TILE):
-        for u_tile in range(0, width, TILE):
-            start = bundle_start(cells, pose, rays, spread, u_tile, v_tile)
-            for v in range(v_tile, min(v_tile + TILE, last)):
-                for u in range(u_tile, min(u_tile + TILE, width)):
-                    x, y = (u + 0.5 - rays[2]) * per_x, (v + 0.5 - rays[3]) * per_y
-                    ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x, y, spread)
-                    t, i, j, k, side = trace(
-                        cells, states, box_start, boxes, ox, oy, oz, dx, dy, dz, start
-                    )
-                    face[v, u] = side
-                    if side == NO_FACE:
-                        depth[v, u], distance[v, u], index[v, u] = 0.0, 0.0, -1
-                        if with_colour:
-                            _draw_sky(background, colour, v, u)
-                        continue
-                    length = np.sqrt((x * x + y * y) * spread + 1.0)
-                    depth[v, u], distance[v, u] = t, t * length
-                    index[v, u] = (i * ny + j) * nz + k
-                    if with_colour:
-                        row = states[i, j, k]
-                        light = GLOW
-                        if colours[row, 3] == 0:
-                            along = dx if side < 2 else (dy if side < 4 else dz)
-                            cosine = abs(along) * cell_m / length
-                            cell_px = cell_m * rays[0] / (t * spread + 1 - spread)
-                            light = _light(
-                                cells, memo, i, j, k, side,
-                                ox + t * dx - i, oy + t * dy - j, oz + t * dz - k, cosine, cell_px,
-                            )  # fmt: skip
-                        for n in range(3):
-                            colour[v, u, n] = np.uint8(min(255.0, colours[row, n] * light + 0.5))
+    """Return ``(red, green, blue, alpha)`` of what ``first_hit`` gave, linear."""
+    gx, gy, gz = ox + t * dx, oy + t * dy, oz + t * dz
+    n = element
+    if element < 0:
+        n = tables.refs[tables.look_start[tables.looks[i, j, k]]]
+    flags, turn = tables.traits[n, FLAGS], tables.traits[n, TURN]
+    ex, ey, ez = gx - i, gy - j, gz - k
+    if flags & ABSOLUTE:
+        ex, ey, ez = gx, gy, gz
+    if turn >= 0:
+        ex, ey, ez = carried(tables.turns, turn, ex, ey, ez, 1.0)
+    nx, ny, nz = normal_of(tables, turn, side)
+    face = main_face(nx, ny, nz)
+    speed = np.sqrt(dx * dx + dy * dy + dz * dz)
+    cosine = abs(nx * dx + ny * dy + nz * dz) / speed
+    cell_px = rays[0] * length / (speed * (t * spread + 1 - spread))
+    r, g, b, alpha = texel_colour(tables, side_px, lamp.tone, n, side, ex, ey, ez, cell_px, cosine)
+    find_light(tables.light, lamp.lit, memo, i, j, k, face, flags & EVEN, gx - i, gy - j, gz - k)
+    p, q = (gy - j if face < 2 else gx - i), (gy - j if face >= 4 else gz - k)
+    p, q = min(max(p, 0.0), 1.0), min(max(q, 0.0), 1.0)
+    shade = 1.0
+    if not flags & UNSHADED:
+        shade = direction_shade(nx, ny, nz, cosine, lamp.lit)
+        if lamp.lit.screen > 0:
+            shade = to_linear(shade)
+    red = shade * between(memo, 8, p, q)
+    green = shade * between(memo, 12, p, q)
+    blue = shade * between(memo, 16, p, q)
+    if lamp.lit.sun_r > 0:
+        sun = nx * lamp.lit.sun_x + ny * lamp.lit.sun_y + nz * lamp.lit.sun_z
+        if sun > 0 and sun_reaches(
+            tables, side_px, lamp.lit, gx + _OFF * nx, gy + _OFF * ny, gz + _OFF * nz
+        ):
+            red, green, blue = (
+                red + sun * lamp.lit.sun_r,
+                green + sun * lamp.lit.sun_g,
+                blue + sun * lamp.lit.sun_b,
+            )
+    if tables.emission[n] > 0:
+        own = glow_light(15.0 * tables.emission[n], lamp.lit)
+        red, green, blue = max(own, red), max(own, green), max(own, blue)
+    return r * red, g * green, b * blue, alpha
 
 
-@njit
-def ray_of_pixel(pose, x, y, spread):
-    """Return origin and direction, in the grid, of the ray through (x, y) at z = 1."""
-    sx, sy = x * (1 - spread), y * (1 - spread)
-    x, y = x * spread, y * spread
-    return (
-        pose[0, 0] * sx + pose[0, 1] * sy + pose[0, 3],
-        pose[1, 0] * sx + pose[1, 1] * sy + pose[1, 3],
-        pose[2, 0] * sx + pose[2, 1] * sy + pose[2, 3],
-        pose[0, 0] * x + pose[0, 1] * y + pose[0, 2],
-        pose[1, 0] * x + pose[1, 1] * y + pose[1, 2],
-        pose[2, 0] * x + pose[2, 1] * y + pose[2, 2],
+@inlined
+def normal_of(tables, turn, side):
+    """Return the outward unit normal, in the grid, of a face of an element."""
+    if turn < 0:
+        return (
+            float(FACE_NORMALS[side, 0]),
+            float(FACE_NORMALS[side, 1]),
+            float(FACE_NORMALS[side, 2]),
+        )
+    sign = 1.0 if side % 2 else -1.0
+    row = tables.normals[turn, side // 2]
+    return sign * row[0], sign * row[1], sign * row[2]
+
+
+@inlined
+def main_face(nx, ny, nz):
+    """Return the face of a block that looks most like a normal."""
+    x, y, z = abs(nx), abs(ny), abs(nz)
+    if x >= y and x >= z:
+        return 1 if nx > 0 else 0
+    if y >= z:
+        return 3 if ny > 0 else 2
+    return 5 if nz > 0 else 4
+
+
+@inlined
+def between(memo, at, p, q):
+    """Return the value at (p, q) between four corners."""
+    return (1 - p) * ((1 - q) * memo[at] + q * memo[at + 1]) + p * (
+        (1 - q) * memo[at + 2] + q * memo[at + 3]
     )
 
 
-@njit
-def _draw_sky(background, colour, v, u):
-    share = v / max(colour.shape[0] - 1, 1)
-    for n in range(3):
-        colour[v, u, n] = np.uint8(background[0, n] * (1 - share) + background[1, n] * share)
+@inlined
+def texel_colour(tables, side_px, tone, n, side, x, y, z, cell_px, cosine):
+    """Return linear red, green, blue and alpha of the texture at a point of an element.
 
-
-@njit
-def _light(cells, memo, i, j, k, side, fx, fy, fz, cosine, cell_px):
-    """Return the light at the point (fx, fy, fz) of a cell's face.
-
-    ``memo`` holds what belongs to the whole face that was lit last (cell, side, layer, tone, the
-    light of its four corners), because neighbouring pixels mostly meet the same face.
+    ``cell_px`` is how many pixels a block would cover there, seen straight on.
     """
-    axis = side // 2
-    along = fx if axis == 0 else (fy if axis == 1 else fz)
-    p, q = (fy if axis == 0 else fx), (fy if axis == 2 else fz)
-    step = 0  # A face inside its cell is shaded by the cell's own layer.
-    if side % 2 == 1 and along > 0.999:
+    m = tables.uv[n, side]
+    u = m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3]
+    v = m[1, 0] * x + m[1, 1] * y + m[1, 2] * z + m[1, 3]
+    size, start = side_px, 0
+    fine = side_px / (cell_px * np.sqrt(max(cosine, 0.04)))  # Texels a pixel.
+    while fine > 1.5 and size > 1:
+        start += size * size
+        size //= 2
+        fine *= 0.5
+    column, row = int((u - np.floor(u)) * size), int((v - np.floor(v)) * size)
+    at = start + min(row, size - 1) * size + min(column, size - 1)
+    texel = tables.texels[tables.layers[n, side], at]
+    tint = tables.tints[n, side]
+    return (
+        tone.decode[texel[0]] * tint[0],
+        tone.decode[texel[1]] * tint[1],
+        tone.decode[texel[2]] * tint[2],
+        texel[3] / 255.0,
+    )
+
+
+@inlined
+def find_light(light, lit, memo, i, j, k, face, even, px, py, pz):
+    """Fill the memo with the light at the corners of a block's face, unless it has them.
+
+    ``memo``: the cell, face and layer that it belongs to, then red at four corners from 8 on,
+    green from 12, blue from 16. ``even`` leaves out what corners darken.
+    """
+    along = px if face < 2 else (py if face < 4 else pz)
+    step = 0  # A face inside its cell is lit by the cell's own layer.
+    if face % 2 == 1 and along > 1 - _NEAR_EDGE:
         step = 1
-    elif side % 2 == 0 and along < 0.001:
+    elif face % 2 == 0 and along < _NEAR_EDGE:
         step = -1
-    if memo[0] != i or memo[1] != j or memo[2] != k or memo[3] != side or memo[4] != step:
-        memo[0], memo[1], memo[2], memo[3], memo[4] = i, j, k, side, step
-        memo[5] = 1 + HASH_SHARE * (2 * _hash(i, j, k) - 1)
-        _corner_light(cells, i, j, k, axis, step, memo[6:])
-    light = EXPOSURE * FACE_SHADE[side] * (1 - HEADLIGHT * (1 - cosine)) * memo[5]
-    light *= (1 - p) * ((1 - q) * memo[6] + q * memo[7]) + p * ((1 - q) * memo[8] + q * memo[9])
-    return light * _edge(p, q, cell_px * max(cosine, 0.2))
+    way = face + 8 * step + (64 if even else 0)
+    if memo[0] == i and memo[1] == j and memo[2] == k and memo[3] == way:
+        return
+    memo[0], memo[1], memo[2], memo[3] = i, j, k, way
+    for corner in range(4):
+        a, b = corner // 2, corner % 2
+        if face < 2:
+            word = int(light[0, i + step + 1, j + a, k + b])
+        elif face < 4:
+            word = int(light[1, i + a, j + step + 1, k + b])
+        else:
+            word = int(light[2, i + a, j + b, k + step + 1])
+        dark = 0.0 if even else float(word >> 12)
+        memo[8 + corner], memo[12 + corner], memo[16 + corner] = lit_colour(
+            (word & 63) * 0.25, (word >> 6 & 63) * 0.25, dark, 1.0, 0.0, lit
+        )
 
 
-@njit
-def bundle_start(cells, pose, rays, spread, u, v):
-    """Return ``safe_start`` for the pixels of the tile whose first pixel is (u, v)."""
-    x, y = (u + TILE / 2 - rays[2]) / rays[0], (v + TILE / 2 - rays[3]) / rays[1]
-    half_x, half_y = TILE / 2 / rays[0], TILE / 2 / rays[1]
-    off = 0.0
-    for axis in range(3):
-        off = max(off, abs(pose[axis, 0]) * half_x + abs(pose[axis, 1]) * half_y)
-    ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x, y, spread)
-    return safe_start(cells, ox, oy, oz, dx, dy, dz, off * (1 - spread), off * spread)
+@lean
+def sun_reaches(tables, side_px, lit, ox, oy, oz):
+    """Tell whether nothing but glass lies between a point and the sun."""
+    dx, dy, dz = steep(lit.sun_x), steep(lit.sun_y), steep(lit.sun_z)
+    rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
+    t, i, j, k, face = begin(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+    if i < 0:
+        return True
+    for _ in range(MOST_GLASS):
+        t, i, j, k, face, element = first_hit(
+            tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face, t
+        )
+        if face == NO_FACE:
+            return True
+        if element < 0 or not tables.translucent[tables.layers[element, face]]:
+            return False
+        face = NO_FACE
+    return False
 
 
-@njit
-def _edge(p, q, block_px):
-    """Return the darkness of a block's edges at (p, q) of its face."""
-    strength = min(1.0, max(0.0, (block_px - EDGE_FADE_PX) / (3 * EDGE_FADE_PX)))
-    inside = max(min(p, 1 - p, q, 1 - q), 0.0)
-    width = max(EDGE_BLOCKS, 0.7 / max(block_px, 1e-6))
-    if inside >= width:
-        return 1.0
-    return 1 - EDGE_SHADE * strength * (1 - inside / width)
+@inlined
+def write_pixel(lamp, colour, v, u, red, green, blue):
+    """Write a linear colour as sRGB."""
+    colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = finish(red, green, blue, lamp.tone)
 
 
-@njit
-def _corner_light(cells, i, j, k, axis, step, corners):
-    """Fill ``corners`` with the light at a face's four corners, each dimmed by three neighbours."""
-    for a in range(2):
-        for b in range(2):
-            side_a = _solid(cells, i, j, k, axis, step, 2 * a - 1, 0)
-            side_b = _solid(cells, i, j, k, axis, step, 0, 2 * b - 1)
-            count = 3
-            if side_a + side_b < 2:
-                diagonal = _solid(cells, i, j, k, axis, step, 2 * a - 1, 2 * b - 1)
-                count = side_a + side_b + diagonal
-            corners[2 * a + b] = 1 - CORNER_SHADE * count
-
-
-@njit
-def _solid(cells, i, j, k, axis, step, dp, dq):
-    """Tell (1 or 0) whether a neighbour in the layer before the face is a full cube."""
-    if axis == 0:
-        i, j, k = i + step, j + dp, k + dq
-    elif axis == 1:
-        i, j, k = i + dp, j + step, k + dq
-    else:
-        i, j, k = i + dp, j + dq, k + step
-    nx, ny, nz = cells.shape
-    if i < 0 or j < 0 or k < 0 or i >= nx or j >= ny or k >= nz:
-        return 0
-    return 1 if cells[i, j, k] == FULL else 0
-
-
-@njit
-def _hash(i, j, k):
-    """Return a number from 0 to 1 that belongs to a cell."""
-    mixed = (i * 73856093) ^ (j * 19349663) ^ (k * 83492791)
-    mixed = ((mixed ^ (mixed >> 13)) * 1274126177) & 0x7FFFFFFF
-    return ((mixed ^ (mixed >> 16)) & 0xFFFF) / 65535.0
+@inlined
+def write_sky(lamp, colour, v, u, dx, dy, dz, red, green, blue, clear):
+    """Write the sky, seen through what lies before it."""
+    share = v / max(colour.shape[0] - 1, 1)
+    if not lamp.by_row:
+        up = max(dy / np.sqrt(dx * dx + dy * dy + dz * dz), 0.0)
+        share = (1 - up) ** 3
+    write_pixel(
+        lamp, colour, v, u,
+        red + clear * (lamp.sky[0, 0] * (1 - share) + lamp.sky[1, 0] * share),
+        green + clear * (lamp.sky[0, 1] * (1 - share) + lamp.sky[1, 1] * share),
+        blue + clear * (lamp.sky[0, 2] * (1 - share) + lamp.sky[1, 2] * share),
+    )  # fmt: skip

@@ -12,6 +12,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from world2minecraft.coordinates import apply, look_at
+from world2minecraft.render.lamps import NEUTRAL
 from world2minecraft.render.picture import render_parallel
 from world2minecraft.render.scene import prepare_scene
 from world2minecraft.types import BlockVolume
@@ -118,19 +119,19 @@ def thing_picture(volume: BlockVolume, side_px: int = TILE_PX) -> np.ndarray:
     middle = (flat.min(axis=0) + flat.max(axis=0)) / 2
     seen = axes.T @ middle + toward * (toward @ _corners(volume).mean(axis=0))
     pose = look_at(seen + toward * 50.0, seen)
-    side = side_px * SUPERSAMPLE
     picture = render_parallel(
         prepare_scene(volume),
-        px_per_metre * SUPERSAMPLE,
-        (side, side),
+        px_per_metre,
+        (side_px, side_px),
         pose,
         outputs=("colour",),
+        samples=SUPERSAMPLE,
+        light=NEUTRAL,
         background=(CARD, CARD),
     )
     if picture.colour is None:
         raise ValueError("the picture has no colour")
-    fine = picture.colour.reshape(side_px, SUPERSAMPLE, side_px, SUPERSAMPLE, 3)
-    return (fine.astype(np.uint32).mean(axis=(1, 3)) + 0.5).astype(np.uint8)
+    return picture.colour
 
 
 def sheet_png(page: np.ndarray) -> bytes:

@@ -1,12 +1,15 @@
 """Virtual scans: what a camera meets in a fine grid of full cubes, such as a 2 cm room."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.render.picture import render_volume
-from world2minecraft.render.scene import RayScene
-from world2minecraft.render.trace import FULL, NEAR_AIR, fill_distances
+from world2minecraft.jit import lean
+from world2minecraft.render.arrays import run_bands
+from world2minecraft.render.ray import ray_of_pixel
+from world2minecraft.render.tables import NO_FACE
+from world2minecraft.render.trace import CUBE, NEAR_AIR, TILE, bundle_start, fill_distances, trace
 from world2minecraft.types import Camera
 
 
@@ -18,7 +21,17 @@ class VoxelHits(NamedTuple):
     face: np.ndarray  # uint8 [H, W], of grid axes: -x +x -y +y -z +z; 255 where nothing
 
 
-def prepare_voxels(labels: np.ndarray, voxel_m: float, origin_m: np.ndarray) -> RayScene:
+@dataclass(frozen=True, eq=False)
+class VoxelScene:
+    """A grid of cubes made ready for rays."""
+
+    cells: np.ndarray  # uint8 [X, Y, Z], see render.trace
+    semantic: np.ndarray  # uint8 [X, Y, Z]
+    room_to_grid: np.ndarray  # float64 [4, 4]: room metres to cells
+    cells_per_metre: float
+
+
+def prepare_voxels(labels: np.ndarray, voxel_m: float, origin_m: np.ndarray) -> VoxelScene:
     """Return the scene of a grid: every cell that is neither 0 nor 255 is a full cube.
 
     Args:
@@ -27,26 +40,16 @@ def prepare_voxels(labels: np.ndarray, voxel_m: float, origin_m: np.ndarray) -> 
         origin_m: float64 [3], the minimum corner of cell (0, 0, 0) in the room.
     """
     filled = (labels != 0) & (labels != 255)
-    cells = np.where(filled, np.uint8(FULL), np.uint8(NEAR_AIR))
+    cells = np.where(filled, np.uint8(CUBE), np.uint8(NEAR_AIR))
     fill_distances(cells)
     room_to_grid = np.eye(4) / voxel_m
     room_to_grid[:3, 3] = -np.asarray(origin_m, np.float64) / voxel_m
     room_to_grid[3, 3] = 1
-    return RayScene(
-        cells=cells,
-        states=np.zeros((1, 1, 1), np.uint16),
-        box_start=np.zeros(2, np.int32),
-        boxes=np.empty((0, 6), np.float32),
-        colours=np.zeros((1, 4), np.float32),
-        semantic=labels,
-        instance=np.zeros((1, 1, 1), np.uint16),
-        room_to_grid=room_to_grid,
-        cells_per_metre=1 / voxel_m,
-    )
+    return VoxelScene(cells, labels, room_to_grid, 1 / voxel_m)
 
 
 def cast_voxels(
-    labels: np.ndarray | RayScene,
+    labels: np.ndarray | VoxelScene,
     camera: Camera,
     camera_to_room: np.ndarray,
     *,
@@ -67,8 +70,27 @@ def cast_voxels(
     """
     scene = (
         labels
-        if isinstance(labels, RayScene)
+        if isinstance(labels, VoxelScene)
         else prepare_voxels(labels, voxel_m, np.array(origin_m))
     )
-    picture = render_volume(scene, camera, camera_to_room, outputs=(), threads=threads)
-    return VoxelHits(picture.depth_m, picture.block_index, picture.face)
+    pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
+    rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
+    size = (camera.height_px, camera.width_px)
+    hits = VoxelHits(np.empty(size, np.float32), np.empty(size, np.int32), np.empty(size, np.uint8))
+    run_bands(lambda rows: _cast_rows(scene.cells, pose, rays, *rows, *hits), size[0], threads)
+    return hits
+
+
+@lean
+def _cast_rows(cells, pose, rays, first, last, depth, index, face):
+    ny, nz = cells.shape[1], cells.shape[2]
+    for v_tile in range(first, last, TILE):
+        for u_tile in range(0, depth.shape[1], TILE):
+            start = bundle_start(cells, pose, rays, 1.0, u_tile, v_tile)
+            for v in range(v_tile, min(v_tile + TILE, last)):
+                for u in range(u_tile, min(u_tile + TILE, depth.shape[1])):
+                    x, y = (u + 0.5 - rays[2]) / rays[0], (v + 0.5 - rays[3]) / rays[1]
+                    ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x, y, 1.0)
+                    t, i, j, k, side = trace(cells, ox, oy, oz, dx, dy, dz, start)
+                    depth[v, u], face[v, u] = t, side
+                    index[v, u] = (i * ny + j) * nz + k if side != NO_FACE else -1

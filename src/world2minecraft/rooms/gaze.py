@@ -8,8 +8,9 @@ import numpy as np
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.jit import njit
-from world2minecraft.render.scene import RayScene
-from world2minecraft.render.trace import NO_FACE, trace
+from world2minecraft.render.tables import NO_FACE
+from world2minecraft.render.trace import trace
+from world2minecraft.render.voxels import VoxelScene
 from world2minecraft.types import Camera
 
 RAY_DEG = 4.0
@@ -35,7 +36,7 @@ CLASS_WORTH[5:] = 2.0  # Furniture and things.
 class Gaze:
     """The memory of what was seen. One object follows one walk."""
 
-    def __init__(self, scene: RayScene, camera: Camera, pace_m: float):
+    def __init__(self, scene: VoxelScene, camera: Camera, pace_m: float):
         """Begin with nothing seen.
 
         Args:
@@ -75,10 +76,7 @@ class Gaze:
         ahead = np.stack([np.cos(yaw) * cosine, np.sin(yaw) * cosine, np.sin(pitch)], axis=-1)
         per_m = self._scene.cells_per_metre
         eye = self._scene.room_to_grid[:3, :3] @ eye_m + self._scene.room_to_grid[:3, 3]
-        index, far, square = _cast(
-            self._scene.cells, self._scene.states, self._scene.box_start, self._scene.boxes,
-            eye, ahead.reshape(-1, 3),
-        )  # fmt: skip
+        index, far, square = _cast(self._scene.cells, eye, ahead.reshape(-1, 3))
         far_m = (far / per_m).reshape(pitch.shape)
         label = self._scene.semantic.reshape(-1)[np.maximum(index, 0)]
         cells = np.unravel_index(np.maximum(index, 0), self._scene.cells.shape)
@@ -126,7 +124,7 @@ class Gaze:
 
 
 @njit
-def _cast(cells, states, box_start, boxes, eye, ahead):
+def _cast(cells, eye, ahead):
     """Return the cell, the distance in cells and the cosine of what each direction meets."""
     ny, nz = cells.shape[1], cells.shape[2]
     count = ahead.shape[0]
@@ -134,9 +132,7 @@ def _cast(cells, states, box_start, boxes, eye, ahead):
     far, square = np.zeros(count), np.zeros(count)
     for n in range(count):
         dx, dy, dz = ahead[n, 0], ahead[n, 1], ahead[n, 2]
-        t, i, j, k, face = trace(
-            cells, states, box_start, boxes, eye[0], eye[1], eye[2], dx, dy, dz, 0.0
-        )
+        t, i, j, k, face = trace(cells, eye[0], eye[1], eye[2], dx, dy, dz, 0.0)
         if face == NO_FACE:
             continue
         index[n], far[n] = (i * ny + j) * nz + k, t

@@ -13,9 +13,9 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.jit import njit
-from world2minecraft.render import RayScene, prepare_voxels
-from world2minecraft.render.shade import TILE, bundle_start
-from world2minecraft.render.trace import NO_FACE, trace
+from world2minecraft.render import VoxelScene, prepare_voxels
+from world2minecraft.render.tables import NO_FACE
+from world2minecraft.render.trace import TILE, bundle_start, trace
 from world2minecraft.rooms.lamps import hang_lamps, nearest_lamps
 from world2minecraft.rooms.room import Room
 from world2minecraft.types import Camera
@@ -38,7 +38,7 @@ class Photo(NamedTuple):
 class PhotoScene:
     """A room made ready for photos."""
 
-    scene: RayScene
+    scene: VoxelScene
     colour: np.ndarray  # uint8 [X, Y, Z, 3]
     solid: np.ndarray  # float32, the blurred share of solid voxels
     lamps: np.ndarray  # float64 [L, 3], in voxels, one a layout
@@ -72,18 +72,15 @@ def take_photo(scene: PhotoScene, camera: Camera, camera_to_room: np.ndarray) ->
     )
     pose = np.ascontiguousarray((scene.scene.room_to_grid @ camera_to_room)[:3])
     rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
-    ray_scene = scene.scene
     _expose(
-        ray_scene.cells, ray_scene.states, ray_scene.box_start, ray_scene.boxes, scene.colour,
-        scene.solid, scene.lamps, scene.lamp_of, pose, rays, *photo,
-    )  # fmt: skip
+        scene.scene.cells, scene.colour, scene.solid, scene.lamps, scene.lamp_of, pose, rays, *photo
+    )
     return photo
 
 
 @njit
 def _expose(
-    cells, states, box_start, boxes, colours, solid, lamps, lamp_of, pose, rays,
-    image, depth, index, cosine,
+    cells, colours, solid, lamps, lamp_of, pose, rays, image, depth, index, cosine
 ):  # fmt: skip
     height, width = depth.shape
     ny, nz = cells.shape[1], cells.shape[2]
@@ -98,9 +95,8 @@ def _expose(
                     dy = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]
                     dz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]
                     t, i, j, k, face = trace(
-                        cells, states, box_start, boxes,
-                        pose[0, 3], pose[1, 3], pose[2, 3], dx, dy, dz, start,
-                    )  # fmt: skip
+                        cells, pose[0, 3], pose[1, 3], pose[2, 3], dx, dy, dz, start
+                    )
                     if face == NO_FACE:
                         index[v, u] = -1
                         continue

@@ -6,7 +6,7 @@
 import numpy as np
 
 from world2minecraft.coordinates import look_at
-from world2minecraft.render.scene import RayScene
+from world2minecraft.render.voxels import VoxelScene
 from world2minecraft.rooms.gaze import Gaze
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.walk import plan_walk
@@ -19,7 +19,7 @@ YAW_SPREAD, PITCH_SPREAD = np.radians(3.5), np.radians(2.3)
 
 
 def plan_tour(
-    room: Room, scene: RayScene, camera: Camera, frames: int, rng: np.random.Generator
+    room: Room, scene: VoxelScene, camera: Camera, frames: int, rng: np.random.Generator
 ) -> np.ndarray:
     """Return the poses of a tour, float64 [frames, 4, 4], ``camera_to_room``.
 

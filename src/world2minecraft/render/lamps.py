@@ -1,0 +1,32 @@
+"""What the kernels read of a light, made from what a user chose and what a scene is like."""
+
+import numpy as np
+
+from world2minecraft.render.light import LookLight
+from world2minecraft.render.scene import BlockScene
+from world2minecraft.render.shade import Lamp
+
+Background = tuple[tuple[int, int, int], tuple[int, int, int]]
+
+DAY = LookLight()
+NEUTRAL = LookLight(preset="neutral")
+# A quiet, warm light grey, a little darker towards the bottom.
+PAPER: Background = ((238, 238, 236), (214, 214, 212))
+
+
+def lamp_of(light: LookLight, scene: BlockScene, background: Background | None = None) -> Lamp:
+    """Return a light as the kernels read it.
+
+    Args:
+        light: what the user chose.
+        scene: its exposure counts where the light names none.
+        background: sRGB colours of the first and last row; None for the sky of the hour, or for
+            paper where the light knows no hour.
+    """
+    parameters, tone = light.parameters(scene.exposure), light.tone
+    if background is None and light.preset == "neutral":
+        background = PAPER
+    if background is None:
+        sky = np.array([light.sky.zenith, light.sky.horizon], np.float64)
+        return Lamp(parameters, tone, sky, False)
+    return Lamp(parameters, tone, tone.decode[np.array(background)].astype(np.float64), True)
