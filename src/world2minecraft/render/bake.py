@@ -112,11 +112,12 @@ class ElementTable:
 
 def kind_of(model: BlockModel, looks: LookSource) -> int:
     """Return ``FULL`` for one opaque cube, ``BOXES`` for other elements, ``AIR`` for none."""
-    if not model.elements:
+    if len(model.elements) == 0:
         return AIR
-    if len(model.elements) > 1 or not is_unit_cube(model.elements[0]):
+    (first, *more) = model.elements
+    if more or not is_unit_cube(first):
         return BOXES
-    for face in model.elements[0].faces:
+    for face in first.faces:
         texture = None if face is None else looks.texture(face.texture)
         if face is None or (texture is not None and texture.has_holes):
             return BOXES

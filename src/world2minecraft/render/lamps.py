@@ -6,15 +6,15 @@ from world2minecraft.render.light import LookLight
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.shade import Lamp
 
-Background = tuple[tuple[int, int, int], tuple[int, int, int]]
+Paper = tuple[tuple[int, int, int], tuple[int, int, int]]
 
 DAY = LookLight()
 NEUTRAL = LookLight(preset="neutral")
 # A quiet, warm light grey, a little darker towards the bottom.
-PAPER: Background = ((238, 238, 236), (214, 214, 212))
+PAPER: Paper = ((238, 238, 236), (214, 214, 212))
 
 
-def lamp_of(light: LookLight, scene: BlockScene, background: Background | None = None) -> Lamp:
+def lamp_of(light: LookLight, scene: BlockScene, background: Paper | None = None) -> Lamp:
     """Return a light as the kernels read it.
 
     Args:
@@ -26,7 +26,11 @@ def lamp_of(light: LookLight, scene: BlockScene, background: Background | None =
     parameters, tone = light.parameters(scene.exposure), light.tone
     if background is None and light.preset == "neutral":
         background = PAPER
-    if background is None:
-        sky = np.array([light.sky.zenith, light.sky.horizon], np.float64)
-        return Lamp(parameters, tone, sky, False)
-    return Lamp(parameters, tone, tone.decode[np.array(background)].astype(np.float64), True)
+    paper = np.array(background or PAPER)
+    return Lamp(
+        lit=parameters,
+        tone=tone,
+        background=light.background(scene.exposure),
+        paper=tone.decode[paper].astype(np.float64),
+        by_row=background is not None,
+    )

@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.render.arrays import PixelArrays, draw_into, pixel_arrays
 from world2minecraft.render.free import crossed_air
-from world2minecraft.render.lamps import DAY, Background, lamp_of
+from world2minecraft.render.lamps import DAY, Paper, lamp_of
 from world2minecraft.render.light import LookLight
 from world2minecraft.render.scene import BlockScene, prepare_scene
 from world2minecraft.types import BlockVolume, Camera
@@ -60,7 +60,7 @@ def render_volume(
     light: LookLight = DAY,
     samples: int = 1,
     threads: int = 1,
-    background: Background | None = None,
+    background: Paper | None = None,
 ) -> Picture:
     """Take a picture of a volume.
 
@@ -94,7 +94,7 @@ def render_parallel(
     light: LookLight = DAY,
     samples: int = 1,
     threads: int = 1,
-    background: Background | None = None,
+    background: Paper | None = None,
 ) -> Picture:
     """Take a picture by parallel rays along the camera's z, its middle at the camera's place.
 

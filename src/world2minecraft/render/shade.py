@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.jit import inlined, lean
+from world2minecraft.render.light.background import Background, background_light
 from world2minecraft.render.light.lit import (
     LitParameters,
     direction_shade,
@@ -214,13 +215,12 @@ def write_pixel(lamp, colour, v, u, red, green, blue):
 @inlined
 def write_sky(lamp, colour, v, u, dx, dy, dz, red, green, blue, clear):
     """Write the sky, seen through what lies before it."""
-    share = v / max(colour.shape[0] - 1, 1)
-    if not lamp.by_row:
-        up = max(dy / np.sqrt(dx * dx + dy * dy + dz * dz), 0.0)
-        share = (1 - up) ** 3
-    write_pixel(
-        lamp, colour, v, u,
-        red + clear * (lamp.sky[0, 0] * (1 - share) + lamp.sky[1, 0] * share),
-        green + clear * (lamp.sky[0, 1] * (1 - share) + lamp.sky[1, 1] * share),
-        blue + clear * (lamp.sky[0, 2] * (1 - share) + lamp.sky[1, 2] * share),
-    )  # fmt: skip
+    if lamp.by_row:
+        share = v / max(colour.shape[0] - 1, 1)
+        r = lamp.paper[0, 0] * (1 - share) + lamp.paper[1, 0] * share
+        g = lamp.paper[0, 1] * (1 - share) + lamp.paper[1, 1] * share
+        b = lamp.paper[0, 2] * (1 - share) + lamp.paper[1, 2] * share
+    else:
+        speed = np.sqrt(dx * dx + dy * dy + dz * dz)
+        r, g, b = background_light(dx / speed, dy / speed, dz / speed, lamp.background)
+    write_pixel(lamp, colour, v, u, red + clear * r, green + clear * g, blue + clear * b)

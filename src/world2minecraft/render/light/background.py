@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from world2minecraft.jit import njit
+from world2minecraft.jit import inlined
 
 HALO = 0.35  # The sun's share in the sky around it.
 DISC_COSINE = 0.9990  # 2.6 degrees: larger than the true sun, as in the game.
@@ -29,7 +29,7 @@ class Background(NamedTuple):
     sun_z: float
 
 
-@njit
+@inlined
 def background_light(dx, dy, dz, background):
     """Return the linear ``(r, g, b)`` of the sky in a direction of block axes, a unit vector."""
     if dy >= 0.0:

@@ -5,7 +5,7 @@ All colours here are linear multipliers of a surface's linear colour.
 
 from typing import NamedTuple
 
-from world2minecraft.jit import njit
+from world2minecraft.jit import inlined
 
 
 class LitParameters(NamedTuple):
@@ -37,7 +37,7 @@ class LitParameters(NamedTuple):
     screen: float  # 1: multipliers act on the screen's own values, as in the game; 0: on light
 
 
-@njit
+@inlined
 def lattice_light(light, side, i, j, k, layer_step, p, q):
     """Return ``(sky, block, occluders)`` at a place of a face, bilinear: levels, and 0 to 3.
 
@@ -70,7 +70,7 @@ def lattice_light(light, side, i, j, k, layer_step, p, q):
     return 0.25 * sky, 0.25 * block, occluders
 
 
-@njit
+@inlined
 def lit_colour(sky, block, occluders, shade, sun, params):
     """Return the multipliers ``(r, g, b)`` of a place's light.
 
@@ -94,7 +94,7 @@ def lit_colour(sky, block, occluders, shade, sun, params):
     return red, green, blue
 
 
-@njit
+@inlined
 def direction_shade(nx, ny, nz, cosine, params):
     """Return the shade of a face by its unit normal in block axes, whichever way it is turned.
 
@@ -106,14 +106,14 @@ def direction_shade(nx, ny, nz, cosine, params):
     return shade * (1.0 - params.headlight * (1.0 - cosine))
 
 
-@njit
+@inlined
 def glow_light(emission, params):
     """Return the least multiplier, grey, of a surface that shines by itself (0 to 15)."""
     light = emission * (1 / 15) * params.glow
     return to_linear(light) if params.screen > 0.0 else light
 
 
-@njit
+@inlined
 def to_linear(value):
     """Return value ** 2.2 for 0 to 1.5, within 0.6 of 255 on the screen; cheap enough a pixel."""
     square = value * value

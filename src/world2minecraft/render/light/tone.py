@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.jit import inlined
 
 SCREEN_POWER = 2.2  # Products of colours then equal products of screen values.
 ENCODE_STEPS = 4096  # The darkest step of sRGB is 0.8 of a screen value.
@@ -67,7 +67,7 @@ def tone_map(light: np.ndarray, shoulder: float = SHOULDER) -> np.ndarray:
     return scaled + (pressed - scaled) * pale
 
 
-@njit
+@inlined
 def finish(r, g, b, tone):
     """Return the screen's ``(red, green, blue)``, uint8, of a pixel's linear light."""
     peak = max(r, g, b)
