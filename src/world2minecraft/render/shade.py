@@ -40,10 +40,9 @@ class Lamp(NamedTuple):
 
     lit: LitParameters
     tone: Tone
-    sky: (
-        np.ndarray
-    )  # float64 [2, 3]: linear colours straight up and level, or of first and last row
-    by_row: bool  # the sky goes with the picture's rows, not with the ray's direction
+    background: Background
+    paper: np.ndarray  # float64 [2, 3]: linear colours of the first and last row
+    by_row: bool  # paper lies behind all, and not the sky
 
 
 @inlined
