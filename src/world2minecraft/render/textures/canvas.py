@@ -125,3 +125,11 @@ def relief(canvas: Canvas, height: np.ndarray) -> np.ndarray:
     """Return the light, -1 to 1, that a height field (sixteenths) gets from the upper left."""
     rise = 2 * height - np.roll(height, 1, axis=0) - np.roll(height, 1, axis=1)
     return np.clip(rise * (canvas.size_px / SIDE), -1.0, 1.0)
+
+
+def contour(canvas: Canvas, values: np.ndarray) -> np.ndarray:
+    """Return the way to the lines where a field is 0, in sixteenths: veins of even width."""
+    across = np.roll(values, -1, axis=1) - np.roll(values, 1, axis=1)
+    down = np.roll(values, -1, axis=0) - np.roll(values, 1, axis=0)
+    slope = np.sqrt(across * across + down * down) * (canvas.size_px / SIDE / 2)
+    return np.abs(values) / np.maximum(slope, 0.06)  # Flat places are no wide veins.

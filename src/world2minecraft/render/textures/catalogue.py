@@ -30,11 +30,11 @@ WALLS = {
         (Accent("stripes", 0.14),),
         {"stripes": Choice(("0", "1", "2", "4", "8"))},
     ),
-    "polished": Generator(wall.polished, "#a5a7a8"),
+    "polished": Generator(wall.polished, "#a5a7a8", tiles=False),
     "bricks": Generator(
         wall.brick_wall,
         "#96604f",
-        (Accent("mortar", "#a79f97"),),
+        (Accent("mortar", "#a79f97", 0.8),),
         {"rows": Choice(("4", "2", "8"))},
     ),
     "tiles": Generator(
@@ -62,15 +62,20 @@ STONES = {
         (Accent("moss", "#5d7a35"),),
         {"stones": Choice(("4", "3", "6")), "moss": Number(0.0, 0.0, 1.0)},
     ),
-    "ore": Generator(stone.ore, "#7d7a76", (Accent("nuggets", "#e0b24a"),)),
+    "ore": Generator(stone.ore, "#91856a", (Accent("nuggets", "#e0b24a"),)),
     "slate": Generator(stone.slate, "#505053"),
-    "quartz": Generator(stone.quartz, "#ebe5de", options={"form": Choice(("block", "pillar"))}),
+    "quartz": Generator(
+        stone.quartz, "#ebe5de", options={"form": Choice(("block", "pillar"))}, tiles=False
+    ),
     "obsidian": Generator(stone.obsidian, "#1a1226"),
     "netherrack": Generator(stone.netherrack, "#612626"),
     "prismarine": Generator(stone.prismarine, "#639c97", (Accent("veins", 0.35),)),
     "amethyst": Generator(stone.facets, "#8561bf"),
-    "gem": Generator(stone.gem, "#62d6ce", options={"of": Choice(("mineral", "metal"))}),
+    "gem": Generator(
+        stone.gem, "#62d6ce", options={"of": Choice(("mineral", "metal"))}, tiles=False
+    ),
     "bone": Generator(stone.bone, "#d1ceb3"),
+    "marble": Generator(stone.marble, "#dcdad6", (Accent("veins", -0.4),)),
 }
 GROUNDS = {
     "sand": Generator(ground.sand, "#dbcfa3"),
@@ -89,6 +94,10 @@ GROUNDS = {
     "coral": Generator(ground.coral, "#cf5b9f"),
     "sponge": Generator(ground.sponge, "#c4c04b"),
     "honey": Generator(ground.honey, "#f5ae35", translucent=("*",)),
+    "furrows": Generator(ground.furrows, "#6f4a2c"),
+    "fire": Generator(
+        ground.fire, "#d5802f", (Accent("heart", "#ffe27a"),), holes=("*",), tiles=False
+    ),
 }
 CLOTHS = {
     "wool": Generator(cloth.wool, "#a12722"),
@@ -97,10 +106,11 @@ CLOTHS = {
     "bed_top": Generator(
         cloth.bed_top,
         "#b4403a",
-        (Accent("pillow", "#f4f2ee", 0.6),),
+        (Accent("pillow", "#f4f2ee", 0.75),),
         {"part": Choice(("head", "foot"))},
         tiles=False,
     ),
+    "drape": Generator(cloth.drape, "#7b4a68"),
     "straw": Generator(cloth.straw, "#a68b26", (Accent("band", "#9a3a2a"),), {"band": YES_NO}),
 }
 FITTINGS = {
@@ -123,7 +133,7 @@ FITTINGS = {
         (Accent("lattice", "#5b3a22", 0.8),),
         {"lit": YES_NO, "panes": Choice(("2", "1", "4"))},
     ),
-    "glow": Generator(fittings.glow, "#ac8354"),
+    "glow": Generator(fittings.glow, "#ac8354", (Accent("crystals", "#fff2b8"),)),
     "bars": Generator(
         fittings.bars, "#8b8d8c", options={"count": Choice(("4", "2"))}, holes=("*",)
     ),
@@ -134,7 +144,7 @@ FITTINGS = {
         holes=("*",),
     ),
     "chain": Generator(fittings.chain, "#3b414e", holes=("*",)),
-    "rail": Generator(fittings.rail, "#8d8a86", (Accent("sleepers", "#7d5f3b"),), holes=("*",)),
+    "rail": Generator(fittings.rail, "#7d6f58", (Accent("sleepers", "#7d5f3b"),), holes=("*",)),
 }
 OPENINGS = {
     "glass": Generator(
@@ -172,7 +182,7 @@ PLANTS = {
     ),
     "flower": Generator(
         plants.flower,
-        "#a3453a",
+        "#874a2b",
         (STEM, Accent("heart", "#e8c33c")),
         {"shape": Choice(tuple(plants.FLOWERS))},
         holes=("*",),
@@ -187,7 +197,7 @@ PLANTS = {
         tiles=False,
     ),
     "mushroom": Generator(
-        plants.mushroom, "#b5473f", (Accent("stem", "#ddd3c3"),), holes=("*",), tiles=False
+        plants.mushroom, "#c45a4c", (Accent("stem", "#ddd3c3"),), holes=("*",), tiles=False
     ),
     "vine": Generator(plants.vine, "#3f6b24", holes=("*",)),
     "gourd": Generator(
@@ -197,6 +207,8 @@ PLANTS = {
         {"ribs": Choice(("4", "2", "8")), "thorns": NO_YES},
     ),
     "mushroom_cap": Generator(plants.mushroom_cap, "#b53a32", (Accent("spots", "#e6d9c8"),)),
+    "pad": Generator(plants.pad, "#2f7a36", holes=("*",), tiles=False),
+    "web": Generator(plants.web, "#e4e9ea", holes=("*",), tiles=False),
     "crystal": Generator(plants.crystal, "#a47fd0", holes=("*",), tiles=False),
 }
 FACES = {
@@ -221,6 +233,13 @@ FACES = {
         faces.furnace_front, "#6b6a69", (Accent("fire", "#f2a33a"),), {"lit": NO_YES}
     ),
     "face": Generator(faces.face, "#b8701f", (Accent("light", "#f6d75a"),), {"lit": NO_YES}),
+    "cake": Generator(
+        faces.cake,
+        "#ecd9cc",
+        (Accent("berries", "#c23a35"), Accent("sponge", "#b5763f")),
+        {"part": Choice(("top", "side"))},
+        tiles=False,
+    ),
     "painting": Generator(
         faces.painting,
         "#9aa7a0",

@@ -11,7 +11,7 @@ from world2minecraft.render.textures.canvas import (
     relief,
     smooth,
 )
-from world2minecraft.render.textures.layout import stones
+from world2minecraft.render.textures.layout import box, stones
 from world2minecraft.render.textures.recipe import Recipe
 from world2minecraft.render.textures.surface import Surface
 
@@ -60,7 +60,7 @@ def carpet(canvas: Canvas, recipe: Recipe) -> Surface:
     pile = fractal(canvas, 16, 16, 1, 0.75)
     slow = noise(canvas, 4, 4, 2)
     tone = 0.07 * pile + 0.025 * slow
-    return Surface(tone, 0.3 * pile, roughness=1.0)
+    return Surface(tone, 0.1 * pile, roughness=1.0)
 
 
 def leather(canvas: Canvas, recipe: Recipe) -> Surface:
@@ -82,25 +82,24 @@ def leather(canvas: Canvas, recipe: Recipe) -> Surface:
 def bed_top(canvas: Canvas, recipe: Recipe) -> Surface:
     """A bed from above, v to its foot: a quilted cover; at the head a pillow, the accent."""
     x, y = canvas.x, canvas.y
-    diamond = np.minimum((x + y) % 8, 8 - (x + y) % 8), np.minimum((x - y) % 8, 8 - (x - y) % 8)
-    seam = 1 - smooth(np.minimum(*diamond), 0.15, 0.3 + 0.6 * (1 - canvas.fineness))
+    slopes = (x + y) % 8, (x - y) % 8
+    seam_away = np.minimum.reduce([slopes[0], 8 - slopes[0], slopes[1], 8 - slopes[1]])
+    seam = 1 - smooth(seam_away, 0.15, 0.3 + 0.6 * (1 - canvas.fineness))
     cloth = 0.03 * fractal(canvas, 16, 16, 1)
     side = 1 - smooth(np.minimum(x, SIDE - x), 0.6, 1.6)
-    cover = cloth - 0.07 * seam - 0.14 * side
-    puff = 0.5 * smooth(np.minimum(*diamond), 0.0, 3.0)
+    tone, height = cloth - 0.12 * seam - 0.14 * side, 0.5 * smooth(seam_away, 0.0, 3.0)
     if recipe.word("part") == "foot":
         end = 1 - smooth(SIDE - y, 0.6, 1.6)
-        return Surface(cover - 0.1 * end * (1 - side), puff, roughness=0.95)
-    pillow = np.minimum.reduce([x - 1.0, 15.0 - x, y - 1.0, 7.0 - y])
-    linen = (y < 9.0).astype(np.float64)
-    fold = ((y >= 7.9) & (y < 9.0)).astype(np.float64)
-    soft = smooth(pillow, 0.0, 2.5)
-    tone = np.where(linen > 0, cloth - 0.14 + 0.1 * fold, cover)
-    on_pillow = pillow > 0
-    tone = np.where(on_pillow, 0.06 * soft + cloth, tone)
-    tone = tone - 0.1 * ((y >= 9.0) & (y < 10.0))
-    height = np.where(on_pillow, 1.6 * soft, puff * (1 - linen))
-    return Surface(tone, height, ((recipe.ink(1), linen),), roughness=0.95)
+        return Surface(tone - 0.12 * end * (1 - side), height, roughness=0.95)
+    fold, under = (y >= 7.0) & (y < 9.0), (y >= 9.0) & (y < 9.0 + canvas.joint)
+    sheet = y < 7.0
+    tone = np.where(sheet, cloth - 0.1, np.where(fold, cloth + 0.2, tone - 0.16 * under))
+    edge = box(canvas, 2.0, 1.0, 14.0, 6.0)
+    pillow, soft = edge > 0, smooth(edge, 0.0, 2.0)
+    shadow = (box(canvas, 2.0, 1.0, 14.0 + canvas.joint, 6.0 + canvas.joint) > 0) & ~pillow
+    tone = np.where(pillow, 0.09 * soft + 0.6 * cloth, tone - 0.2 * shadow)
+    height = np.where(pillow, 1.6 * soft, np.where(sheet, 0.0, height + 0.3 * fold))
+    return Surface(tone, height, ((recipe.ink(1), pillow * 1.0),), roughness=0.95)
 
 
 def straw(canvas: Canvas, recipe: Recipe) -> Surface:
@@ -113,3 +112,11 @@ def straw(canvas: Canvas, recipe: Recipe) -> Surface:
         band = ((np.abs(canvas.y - 3.5) < 1) | (np.abs(canvas.y - 12.5) < 1)).astype(np.float64)
     tone = 0.15 * stalks * (1 - 0.6 * band)
     return Surface(tone, 0.4 * stalks + 0.3 * band, ((recipe.ink(1), band),), roughness=0.95)
+
+
+def drape(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A curtain: soft folds along v."""
+    place = canvas.x + 0.5 * noise(canvas, 2, 2, 1)
+    folds = np.cos(place * (2 * np.pi / 4)) + 0.4 * np.cos(place * (2 * np.pi / 8) + 1.0)
+    tone = 0.13 * folds + 0.03 * fractal(canvas, 16, 16, 2)
+    return Surface(tone, 0.9 * folds, roughness=0.97)

@@ -63,7 +63,7 @@ def books(canvas: Canvas, recipe: Recipe) -> Surface:
     tone = np.where(
         board, 0.1 * fibre(canvas, canvas.x, canvas.y, 5) + 0.12 * (y < 0.5) - 0.06, tone
     )
-    which = np.floor((hashed(canvas.seed, 6, identity) + 1) * 2)
+    which = (identity * 3 + identity // 4 + recipe.seed % 4) % 4  # Never two alike side by side.
     paints = tuple(
         (recipe.ink(index + 1), (spine & (which == index)).astype(np.float64)) for index in range(4)
     )
@@ -88,17 +88,18 @@ def drawers(canvas: Canvas, recipe: Recipe) -> Surface:
     kind = recipe.word("kind")
     if kind == "barrel":
         return _barrel(canvas, recipe)
+    gap = canvas.joint
     panels = {
         "chest": ((1, 1, 15, 5), (1, 6, 15, 15)),
-        "doors": ((1, 1, 7.5, 15), (8.5, 1, 15, 15)),
-        "two": ((1, 1, 15, 7.5), (1, 8.5, 15, 15)),
+        "doors": ((1, 1, 8 - gap, 15), (8, 1, 15, 15)),
+        "two": ((1, 1, 15, 8 - gap), (1, 8, 15, 15)),
         "three": ((1, 1, 15, 5), (1, 6, 15, 10), (1, 11, 15, 15)),
     }[kind]
     knobs = {
         "chest": ((7, 4, 9, 8),),
         "doors": ((6, 7, 7, 9), (9, 7, 10, 9)),
-        "two": ((7, 3.5, 9, 5), (7, 11, 9, 12.5)),
-        "three": ((7, 2.5, 9, 3.5), (7, 7.5, 9, 8.5), (7, 12.5, 9, 13.5)),
+        "two": ((6, 4, 10, 5), (6, 11, 10, 12)),
+        "three": ((7, 2, 9, 4), (7, 7, 9, 9), (7, 12, 9, 14)),
     }[kind]
     panel = np.maximum.reduce([box(canvas, *corners) for corners in panels])
     knob = np.maximum.reduce([box(canvas, *corners) for corners in knobs]) > 0
@@ -215,3 +216,23 @@ def crate(canvas: Canvas, recipe: Recipe) -> Surface:
     tone = 0.09 * grain - 0.34 * pieces.joint * ~frame + 0.12 * relief(canvas, height)
     tone = tone - 0.16 * shadow - 0.12 * (edge < 0.5 * canvas.joint)
     return Surface(tone, height, ((recipe.ink(1), 1.0 * frame),), roughness=0.65)
+
+
+def cake(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A cake: icing with berries, the accent, from above; from the side icing over sponge."""
+    fine = fractal(canvas, 16, 16, 1)
+    if recipe.word("part") == "side":
+        drip = 5.0 + 1.6 * noise(canvas, 8, 1, 2)
+        sponge = canvas.y > drip
+        layer = np.abs(canvas.y - 11.5) < 0.6
+        tone = np.where(sponge, 0.09 * fine - 0.15 * layer, 0.03 * fine)
+        paints = ((recipe.ink(2), sponge * 1.0),)
+        return Surface(tone, 0.3 * ~sponge, paints, roughness=0.8)
+    berry, light = np.zeros(fine.shape), np.zeros(fine.shape)
+    for x, y in ((4, 4), (11, 3), (13, 9), (8, 8), (3, 11), (10, 13)):
+        across, down = canvas.x - x - 0.5, canvas.y - y - 0.5
+        near = np.sqrt(across * across + down * down) < 1.25
+        berry = np.where(near, 1.0, berry)
+        light = np.where(near, -0.12 * (across + down), light)
+    tone = 0.03 * fine + light - 0.1 * (rim(canvas) < 1) * (1 - berry)
+    return Surface(tone, 0.6 * berry, ((recipe.ink(1), berry),), roughness=0.6)

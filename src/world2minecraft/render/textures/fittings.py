@@ -2,8 +2,16 @@
 
 import numpy as np
 
-from world2minecraft.render.textures.canvas import SIDE, Canvas, fractal, noise, relief, smooth
-from world2minecraft.render.textures.layout import bevel, bricks, rim
+from world2minecraft.render.textures.canvas import (
+    SIDE,
+    Canvas,
+    fractal,
+    noise,
+    pick,
+    relief,
+    smooth,
+)
+from world2minecraft.render.textures.layout import bevel, bricks, rim, stones
 from world2minecraft.render.textures.recipe import Recipe
 from world2minecraft.render.textures.stencil import draw, paints_of
 from world2minecraft.render.textures.surface import Surface
@@ -61,7 +69,7 @@ def screen(canvas: Canvas, recipe: Recipe) -> Surface:
     frame = (edge < 1).astype(np.float64) if recipe.word("frame") == "1" else 0.0 * edge
     slant = canvas.x + canvas.y
     sheen = ((slant > 9) & (slant < 12)) * 0.5 + ((slant > 13) & (slant < 14.5)) * 0.35
-    tone = 0.9 * sheen * 0.35 * (1 - frame) + 0.1 * (1 - canvas.y / 8) * (1 - frame)
+    tone = 0.75 * sheen * (1 - frame) + 0.1 * (1 - canvas.y / 8) * (1 - frame)
     glow = np.zeros(edge.shape)
     if recipe.word("on") == "1":
         hills = 9.5 + 2 * np.sin(canvas.x * 0.7) + np.sin(canvas.x * 1.7 + 1)
@@ -88,14 +96,14 @@ def lamp(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def glow(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Glowing stone: bright crystals in a darker ground."""
-    grains = noise(canvas, 8, 8, 1) + 0.7 * noise(canvas, 16, 16, 2)
-    if canvas.fineness:
-        grains = grains + 0.4 * fractal(canvas, 32, 32, 3)
-    bright = smooth(grains, 0.1, 0.9)
-    return Surface(
-        0.16 * grains + 0.2 * bright - 0.1, 0.3 * grains, roughness=0.5, emission=0.6 + 0.4 * bright
-    )
+    """Glowing stone: bright crystals, the accent at their heart, between darker veins."""
+    pieces = stones(canvas, 5, 1, 0.95)
+    core = smooth(pieces.edge, 0.1, 1.4)
+    shade = pick(canvas, pieces.identity, 3)
+    tone = 0.16 * shade + 0.5 * core - 0.35 + 0.07 * fractal(canvas, 16, 16, 4)
+    heart = smooth(core + 0.7 * shade, 0.75, 1.4)
+    paints = ((recipe.ink(1), 0.85 * heart),)
+    return Surface(tone, 0.5 * core, paints, roughness=0.4, emission=0.45 + 0.55 * heart)
 
 
 def bars(canvas: Canvas, recipe: Recipe) -> Surface:

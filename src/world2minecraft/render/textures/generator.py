@@ -43,7 +43,7 @@ class Generator:
 
     ``sample`` is a recipe's tail, for pictures of the whole set. ``holes`` and ``translucent``
     list the values of an option ("key=value") that make it so, or ``("*",)`` for always.
-    ``tiles`` says that its left side joins its right, its top its bottom.
+    ``tiles`` says that no seam is seen where two lie side by side; False for frames and pictures.
     """
 
     paint: Callable[[Canvas, Recipe], Surface]

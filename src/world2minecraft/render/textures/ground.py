@@ -5,6 +5,7 @@ import numpy as np
 from world2minecraft.render.textures.canvas import (
     SIDE,
     Canvas,
+    contour,
     fractal,
     noise,
     pick,
@@ -20,7 +21,7 @@ def sand(canvas: Canvas, recipe: Recipe) -> Surface:
     """Fine grains with faint ripples."""
     fine = fractal(canvas, 16, 16, 1, 0.8)
     ripples = noise(canvas, 2, 8, 2)
-    return Surface(0.06 * fine + 0.03 * ripples, 0.06 * fine + 0.1 * ripples, roughness=0.95)
+    return Surface(0.06 * fine + 0.03 * ripples, 0.02 * fine + 0.1 * ripples, roughness=0.95)
 
 
 def gravel(canvas: Canvas, recipe: Recipe) -> Surface:
@@ -49,7 +50,7 @@ def grass(canvas: Canvas, recipe: Recipe) -> Surface:
         bend = canvas.x + 0.8 * noise(canvas, 8, 8, 3)
         tufts = 0.6 * tufts + canvas.fineness * 0.9 * noise(canvas, 32, 8, 4, bend)
         tufts = tufts + 0.4 * fractal(canvas, 32, 16, 5, x=bend)
-    return Surface(0.15 * tufts, 0.4 * tufts, roughness=0.95)
+    return Surface(0.15 * tufts, 0.22 * tufts, roughness=0.95)
 
 
 def grass_side(canvas: Canvas, recipe: Recipe) -> Surface:
@@ -69,14 +70,15 @@ def grass_side(canvas: Canvas, recipe: Recipe) -> Surface:
 def snow(canvas: Canvas, recipe: Recipe) -> Surface:
     """Snow: soft drifts, a little blue in the hollows."""
     drifts, fine = fractal(canvas, 4, 4, 1), fractal(canvas, 16, 16, 2)
-    return Surface(0.03 * drifts + 0.025 * fine, 0.2 * drifts + 0.05 * fine, roughness=0.75)
+    return Surface(0.03 * drifts + 0.025 * fine, 0.2 * drifts + 0.015 * fine, roughness=0.75)
 
 
 def ice(canvas: Canvas, recipe: Recipe) -> Surface:
     """Ice with white cracks; one sees through it, unless it is packed."""
     packed = recipe.word("packed") == "1"
     x, y = canvas.x + noise(canvas, 4, 4, 1), canvas.y + noise(canvas, 4, 4, 2)
-    cracks = 1 - smooth(np.abs(noise(canvas, 3, 3, 3, x, y)), 0.03, 0.14)
+    cracks = 1 - smooth(contour(canvas, noise(canvas, 3, 3, 3, x, y)), 0.1, 0.8)
+    cracks = cracks * smooth(noise(canvas, 4, 4, 5), -0.5, 0.5)
     sheen = np.sin((canvas.x + canvas.y) * (2 * np.pi / SIDE) + 1.0)
     tone = 0.16 * cracks + 0.06 * sheen + 0.03 * fractal(canvas, 8, 8, 4)
     alpha = 1.0 if packed else 0.68 + 0.12 * cracks
@@ -114,7 +116,7 @@ def moss(canvas: Canvas, recipe: Recipe) -> Surface:
     cushions = noise(canvas, 8, 8, 1)
     fine = fractal(canvas, 16, 16, 2, 0.8)
     tone = 0.1 * cushions + 0.11 * fine
-    return Surface(tone, 0.5 * cushions + 0.3 * fine, roughness=1.0)
+    return Surface(tone, 0.5 * cushions + 0.12 * fine, roughness=1.0)
 
 
 def wart(canvas: Canvas, recipe: Recipe) -> Surface:
@@ -154,3 +156,24 @@ def honey(canvas: Canvas, recipe: Recipe) -> Surface:
     frame = smooth(away, 6.6, 7.4)
     tone = 0.05 * fractal(canvas, 4, 4, 1) - 0.1 * core + 0.14 * frame
     return Surface(tone, 0.2 * core, alpha=0.72 + 0.2 * core, roughness=0.12, translucent=True)
+
+
+def furrows(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A tilled field: earth in rows along u."""
+    earth = dirt(canvas, recipe)
+    rows = np.cos(canvas.y * (2 * np.pi / 4) - 0.8)
+    return Surface(0.7 * np.asarray(earth.tone) + 0.17 * rows, 0.8 * rows, roughness=0.98)
+
+
+def fire(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Flames that stand up, bright at their heart, the accent; holes around. They glow."""
+    rise = SIDE - canvas.y
+    bend = canvas.x + 0.9 * noise(canvas, 4, 8, 1) * smooth(rise, 2, 10)
+    reach = 8.5 + 5.5 * noise(canvas, 6, 1, 2, bend) + 1.5 * noise(canvas, 16, 1, 3, bend)
+    part = rise / np.maximum(reach, 1.0)
+    gap = (noise(canvas, 8, 4, 4, bend) > 0.45) & (part > 0.35)
+    solid = (part < 1) & ~gap
+    heart = 1 - smooth(part, 0.25, 0.8)
+    tone = 0.15 - 0.45 * smooth(part, 0.55, 1.0)
+    paints = ((recipe.ink(1), 0.9 * heart),)
+    return Surface(tone, 0.0, paints, solid, roughness=1.0, emission=solid * (0.75 + 0.25 * heart))

@@ -9,12 +9,12 @@ from world2minecraft.render.textures.canvas import (
     hashed,
     noise,
     pick,
-    relief,
     smooth,
 )
 from world2minecraft.render.textures.layout import stones
 from world2minecraft.render.textures.recipe import Recipe
 from world2minecraft.render.textures.sprites import FLOWERS, MUSHROOM, SAPLINGS
+from world2minecraft.render.textures.stamps import scatter
 from world2minecraft.render.textures.stencil import draw, paints_of
 from world2minecraft.render.textures.surface import Surface
 
@@ -28,20 +28,19 @@ BLADES = {
 
 def leaves(canvas: Canvas, recipe: Recipe) -> Surface:
     """A mass of leaves of many greens with holes; blossoms in the accent where asked for."""
-    pieces = stones(canvas, 6, 1, 0.95)
-    shade = pick(canvas, pieces.identity, 3)
-    fine = noise(canvas, 16, 16, 4)
-    depth = 0.7 * pick(canvas, pieces.identity, 5) + 0.55 * fine
-    hole = depth < -0.62 if recipe.word("holes") == "1" else np.zeros(fine.shape, bool)
-    body = smooth(pieces.edge, 0.0, 1.4)
-    vein = (1 - smooth(np.abs(pieces.x - pieces.y * shade), 0.05, 0.25)) * canvas.fineness
-    tone = 0.15 * shade + 0.09 * fine + 0.15 * relief(canvas, body) - 0.14 * (1 - body)
-    tone = tone + 0.05 * vein
-    bloom = (
-        (pick(canvas, pieces.identity, 6) > 0.3) & (body > 0.3) & (recipe.word("blossom") == "1")
-    )
+    stamps = scatter(canvas, 76, 1.9, 1.05, 1)
+    identity = np.maximum(stamps.identity, 0)
+    here = stamps.identity >= 0
+    level = stamps.identity / 76.0  # Later leaves lie over earlier ones.
+    shade = pick(canvas, identity, 3)
+    tone = 0.12 * shade + 0.34 * (level - 0.6) - 0.07 * stamps.across + 0.06 * stamps.along
+    vein = (np.abs(stamps.across) < 0.16) * canvas.fineness
+    tone = np.where(here, tone - 0.1 * vein, -0.42) + 0.05 * noise(canvas, 16, 16, 4)
+    height = np.where(here, 0.4 + 0.7 * level - 0.25 * stamps.across**2, 0.0)
+    bloom = here & (pick(canvas, identity, 6) > 0.4) & (recipe.word("blossom") == "1")
     paints = ((recipe.ink(1), bloom.astype(np.float64)),)
-    return Surface(tone, 0.8 * body, paints, ~hole, roughness=0.8)
+    solid = here | (recipe.word("holes") == "0")
+    return Surface(tone, height, paints, solid, roughness=0.75)
 
 
 def blades(canvas: Canvas, recipe: Recipe) -> Surface:
@@ -57,7 +56,7 @@ def blades(canvas: Canvas, recipe: Recipe) -> Surface:
         reach = tall * (0.78 + 0.22 * length)
         part = np.clip(rise / reach, 0, 1)
         middle = foot + lean * sway * part * part
-        width = (1.0 - 0.55 * part) * (0.85 if sway > 0.5 else 1.1)
+        width = 1.1 if sway < 0.5 else 0.72 - 0.35 * part * canvas.fineness
         here = (np.abs(canvas.x - middle) < width) & (rise < reach)
         tone = np.where(here, 0.22 * shade + 0.3 * (part - 0.5) - 0.08 * (canvas.x - middle), tone)
         tip = np.where(here, part, tip)
@@ -147,3 +146,24 @@ def crystal(canvas: Canvas, recipe: Recipe) -> Surface:
         shade = np.where(away < 0, 0.25, -0.15) + 0.05 * (index - 2)
         tone, solid = np.where(here, shade, tone), solid | here
     return Surface(tone, 0.4 * solid, alpha=solid, roughness=0.15, emission=0.15 * solid)
+
+
+def pad(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A round leaf that floats, seen from above, with a notch and veins."""
+    x, y = canvas.x - SIDE / 2, canvas.y - SIDE / 2
+    away = np.sqrt(x * x + y * y)
+    solid = (away < 6.6 + 0.3 * noise(canvas, 8, 8, 1)) & ~((np.abs(x) < -0.45 * y) & (y < 0))
+    veins = np.minimum.reduce([np.abs(x), np.abs(y), np.abs(x - y) * 0.7, np.abs(x + y) * 0.7])
+    tone = 0.1 * (veins < 0.5) - 0.14 * (away > 5.6) + 0.06 * fractal(canvas, 16, 16, 2)
+    return Surface(tone, 0.2 * solid, alpha=solid, roughness=0.45)
+
+
+def web(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A spider's web: threads from the middle to the sides and rings between, else holes."""
+    x, y = canvas.x - 7.5, canvas.y - 7.5  # The middle of a texel at 16 px.
+    thick = 0.5 if canvas.size_px == 16 else 0.3
+    spokes = np.minimum.reduce([np.abs(x), np.abs(y), np.abs(x - y) * 0.7, np.abs(x + y) * 0.7])
+    ring = np.maximum.reduce([np.abs(x), np.abs(y), 0.72 * (np.abs(x) + np.abs(y))])
+    away = np.abs((ring + 0.2 * noise(canvas, 8, 8, 1) * canvas.fineness) % 3.0 - 1.5)
+    solid = (spokes < thick) | ((away > 1.5 - thick) & (ring > 1.5) & (ring < 7.6))
+    return Surface(0.12 * noise(canvas, 8, 8, 2), 0.1 * solid, alpha=solid, roughness=0.6)

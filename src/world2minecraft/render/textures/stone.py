@@ -5,6 +5,7 @@ import numpy as np
 from world2minecraft.render.textures.canvas import (
     SIDE,
     Canvas,
+    contour,
     fractal,
     noise,
     pick,
@@ -23,7 +24,7 @@ def rock(canvas: Canvas) -> tuple[np.ndarray, np.ndarray]:
     if canvas.fineness:
         steps = 0.5 * steps + 0.5 * patches
         steps = steps + 0.3 * canvas.fineness * fractal(canvas, 32, 32, 3, 0.6)
-    return 0.12 * steps, 0.25 * steps
+    return 0.12 * steps, 0.16 * steps
 
 
 def stone(canvas: Canvas, recipe: Recipe) -> Surface:
@@ -35,17 +36,16 @@ def stone(canvas: Canvas, recipe: Recipe) -> Surface:
 def speckled(canvas: Canvas, recipe: Recipe) -> Surface:
     """Granite, andesite, terrazzo: grains of lighter and darker stone."""
     grains = noise(canvas, 16, 16, 1) + 0.4 * noise(canvas, 8, 8, 2)
-    if canvas.fineness:
-        pieces = stones(canvas, 16, 3, 0.9)
-        grains = 0.6 * grains + 0.6 * pick(canvas, pieces.identity, 4)
-    spots = smooth(grains, 0.75, 1.0)
+    pieces = stones(canvas, 12, 3, 0.9)
+    grains = 0.5 * grains + 0.75 * pick(canvas, pieces.identity, 5)
+    spots = smooth(grains, 0.8, 0.95)
     tone = 0.1 * grains
     return Surface(tone, 0.04 * grains, ((recipe.ink(1), 0.7 * spots),), roughness=0.7)
 
 
 def cobble(canvas: Canvas, recipe: Recipe) -> Surface:
     """Round stones with dark joints; moss, the accent, in the joints where asked for."""
-    pieces = stones(canvas, int(recipe.number("stones")), 1)
+    pieces = stones(canvas, int(recipe.number("stones")), 1, 0.9)
     body = smooth(pieces.edge, 0.1, 1.9)
     fine = fractal(canvas, 16, 16, 4)
     light = relief(canvas, 1.1 * body)
@@ -92,7 +92,7 @@ def quartz(canvas: Canvas, recipe: Recipe) -> Surface:
         edge = rim(canvas) < canvas.joint
         lower = edge & ((canvas.x > 15) | (canvas.y > 15))
         tone = tone - 0.08 * lower + 0.02 * (edge & ~lower)
-        veins = smooth(0.12 - np.abs(noise(canvas, 4, 4, 3)), 0.0, 0.12)
+        veins = 1 - smooth(contour(canvas, noise(canvas, 4, 4, 3)), 0.0, 0.8)
         tone = tone - 0.05 * veins
     return Surface(tone, height, roughness=0.3)
 
@@ -125,12 +125,13 @@ def prismarine(canvas: Canvas, recipe: Recipe) -> Surface:
 
 def facets(canvas: Canvas, recipe: Recipe) -> Surface:
     """Cut crystal: flat facets of many shades, as a block of amethyst or diamond has."""
-    pieces = stones(canvas, 4, 1, 0.9)
-    tilt = pick(canvas, pieces.identity, 3) * pieces.x + pick(canvas, pieces.identity, 4) * pieces.y
-    tone = 0.2 * pick(canvas, pieces.identity, 5) + 0.07 * tilt
-    rims = 1 - smooth(pieces.edge, 0.15, 0.55)
-    tone = tone + 0.16 * rims + 0.03 * fractal(canvas, 16, 16, 6)
-    return Surface(tone, 0.25 * tilt, roughness=0.14)
+    pieces = stones(canvas, 4, 1, 0.95)
+    lean = pick(canvas, pieces.identity, 3), pick(canvas, pieces.identity, 4)
+    tilt = lean[0] * pieces.x + lean[1] * pieces.y
+    tone = 0.17 * pick(canvas, pieces.identity, 5) + 0.09 * tilt
+    upper = (pieces.x + pieces.y < 0) & (pieces.edge < max(0.3, canvas.joint * 0.5))
+    tone = tone + 0.2 * upper + 0.03 * fractal(canvas, 16, 16, 6)
+    return Surface(tone, 0.3 * tilt, roughness=0.14)
 
 
 def gem(canvas: Canvas, recipe: Recipe) -> Surface:
@@ -152,6 +153,26 @@ def gem(canvas: Canvas, recipe: Recipe) -> Surface:
 
 def bone(canvas: Canvas, recipe: Recipe) -> Surface:
     """Pale bone: long pores along v."""
-    pores = smooth(noise(canvas, 8, 4, 1), 0.5, 0.75)
-    tone = 0.06 * noise(canvas, 16, 4, 2) - 0.22 * pores + 0.03 * fractal(canvas, 16, 16, 3)
+    pieces = stones(canvas, 6, 1, 0.8)
+    kept = pick(canvas, pieces.identity, 4) > 0.45
+    away = np.sqrt((pieces.x * 2.2) ** 2 + (pieces.y * 0.8) ** 2)
+    pores = (1 - smooth(away, 0.8, 1.3)) * kept
+    tone = 0.07 * noise(canvas, 16, 2, 2) - 0.2 * pores + 0.03 * fractal(canvas, 16, 16, 3)
     return Surface(tone, -0.3 * pores, roughness=0.7)
+
+
+def marble(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Polished marble: clouds, and veins of the accent."""
+    x = canvas.x + 2.5 * noise(canvas, 2, 2, 1) + 0.5 * noise(canvas, 8, 8, 2)
+    y = canvas.y + 2.5 * noise(canvas, 2, 2, 3) + 0.5 * noise(canvas, 8, 8, 4)
+    lines = (
+        contour(canvas, noise(canvas, 2, 3, 5, x, y)),
+        contour(canvas, noise(canvas, 4, 4, 6, x, y)),
+    )
+    width = 0.9 if canvas.size_px == 16 else 0.5
+    strong = (1 - smooth(lines[0], 0.0, width)) * smooth(noise(canvas, 4, 4, 9), -0.6, 0.6)
+    thin = (1 - smooth(lines[1], 0.0, 0.6 * width)) * smooth(noise(canvas, 4, 4, 10), -0.2, 0.9)
+    tone = 0.05 * fractal(canvas, 4, 4, 7) + 0.015 * fractal(canvas, 16, 16, 8)
+    tone = tone - 0.05 * (1 - smooth(lines[0], 0.0, 2.5))
+    share = np.clip(0.75 * strong + 0.35 * thin, 0, 1)
+    return Surface(tone, -0.02 * share, ((recipe.ink(1), share),), roughness=0.16)

@@ -15,9 +15,10 @@ Field = np.ndarray | float  # [N, N], or the same everywhere.
 TONE_OF_COLOUR, TONE_FLOOR = 0.62, 24.0
 WARMTH = np.array([1.04, 1.0, 0.95])  # Light is a little warmer than shadow.
 MEAN_MARGIN = 1.0  # White and black may miss their mean by this, so that they are not flat.
-# Levels that the main colour moves to make room for accents: in light, and in hue.
-MOST_LIGHT, MOST_HUE = 60.0, 14.0
-ROUNDS = 30  # Of a bisection over 512 levels.
+# Shares of the way to black or white that the main colour goes to make room for accents: in light,
+# and apart from it in each of red, green and blue.
+MOST_LIGHT, MOST_HUE = 0.4, 0.08
+ROUNDS = 24  # Of a bisection over -1 to 1.
 SLOPE = 0.6  # Of the normals, times the height's.
 
 
@@ -89,35 +90,36 @@ def _colours(canvas: Canvas, recipe: Recipe, surface: Surface) -> tuple[np.ndarr
 
 
 def settle_mean(colour: np.ndarray, give: np.ndarray, target: np.ndarray) -> np.ndarray:
-    """Return colours, float64 [M, 3] in 0 to 255, shifted so that their mean is the target's.
+    """Return colours, float64 [M, 3] in 0 to 255, moved so that their mean is the target's.
 
-    The main colour moves first, so that accents stay what they are; then everything. Contrast is
-    kept, but where a colour is so light or dark that there is no room for it.
+    The main colour moves first, so that accents stay what they are; then everything. A move goes
+    some share of the way to white or to black, so that nothing is cut off and contrast stays.
 
     Args:
-        colour: float64 [M, 3].
+        colour: float64 [M, 3], 0 to 255.
         give: float64 [M], 1 for the main colour, 0 for accents.
         target: float64 [3]; met within a level once rounded, and within two at black and white.
     """
     goal = np.clip(target, MEAN_MARGIN, 255.0 - MEAN_MARGIN)
-    room = np.minimum(goal, 255.0 - goal) + 4.0
-    spread = np.abs(colour - colour.mean(axis=0)) * (give[:, None] > 0.5)
-    high = np.quantile(spread, 0.9, axis=0)
-    scale = np.minimum(1.0, room / np.maximum(high, 1e-9))
-    middle = colour.mean(axis=0)
-    calm = np.where(give[:, None] > 0.5, middle + (colour - middle) * scale, colour)
-    shift = _shift(calm, give[:, None], goal)
-    light = np.clip(shift.mean(), -MOST_LIGHT, MOST_LIGHT)
-    moved = calm + give[:, None] * (light + np.clip(shift - shift.mean(), -MOST_HUE, MOST_HUE))
-    return np.clip(moved + _shift(moved, np.ones((len(give), 1)), goal), 0.0, 255.0)
+    share = _share(colour, give[:, None], goal)
+    light = np.clip(share.mean(), -MOST_LIGHT, MOST_LIGHT)
+    share = light + np.clip(share - share.mean(), -MOST_HUE, MOST_HUE)
+    moved = _moved(colour, share, give[:, None])
+    every = np.ones((len(give), 1))
+    return _moved(moved, _share(moved, every, goal), every)
 
 
-def _shift(colour: np.ndarray, give: np.ndarray, goal: np.ndarray) -> np.ndarray:
-    """Return the shift, float64 [3], after which the mean within 0 to 255 is nearest the goal."""
-    low, high = np.full(3, -256.0), np.full(3, 256.0)
+def _moved(colour: np.ndarray, share: np.ndarray, give: np.ndarray) -> np.ndarray:
+    """Return colours that went a share of the way to white, or to black where it is negative."""
+    return colour + give * np.abs(share) * (np.where(share > 0, 255.0, 0.0) - colour)
+
+
+def _share(colour: np.ndarray, give: np.ndarray, goal: np.ndarray) -> np.ndarray:
+    """Return the share, float64 [3], after which the rounded mean is nearest the goal."""
+    low, high = np.full(3, -1.0), np.full(3, 1.0)
     for _ in range(ROUNDS):
         middle = (low + high) / 2
-        above = np.rint(np.clip(colour + give * middle, 0.0, 255.0)).mean(axis=0) > goal
+        above = np.rint(_moved(colour, middle, give)).mean(axis=0) > goal
         low, high = np.where(above, low, middle), np.where(above, middle, high)
     return low  # Rounding makes the mean jump by up to a level: stay on one side.
 

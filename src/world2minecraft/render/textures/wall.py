@@ -22,7 +22,7 @@ def plain(canvas: Canvas, recipe: Recipe) -> Surface:
     fine = fractal(canvas, 16, 16, 1)
     slow = noise(canvas, 4, 4, 2)
     tone = grain * (0.05 * fine + 0.03 * slow)
-    return Surface(tone, 0.05 * grain * fine, roughness=0.8 + 0.06 * grain * fine)
+    return Surface(tone, 0.02 * grain * fine, roughness=0.8 + 0.06 * grain * fine)
 
 
 def plaster(canvas: Canvas, recipe: Recipe) -> Surface:
@@ -30,8 +30,8 @@ def plaster(canvas: Canvas, recipe: Recipe) -> Surface:
     x, y = canvas.x + 2 * noise(canvas, 4, 4, 1), canvas.y + 2 * noise(canvas, 4, 4, 2)
     strokes = noise(canvas, 4, 8, 3, x, y) + 0.6 * noise(canvas, 8, 4, 4, x, y)
     fine = fractal(canvas, 16, 16, 5)
-    height = 0.12 * strokes + 0.04 * fine
-    tone = 0.035 * strokes + 0.025 * fine + 0.05 * relief(canvas, 0.5 * height)
+    height = 0.08 * strokes + 0.015 * fine
+    tone = 0.035 * strokes + 0.025 * fine + 0.05 * relief(canvas, height)
     return Surface(tone, height, roughness=0.9)
 
 
@@ -79,7 +79,7 @@ def brick_wall(canvas: Canvas, recipe: Recipe) -> Surface:
     solid = 1 - pieces.joint
     tone = solid * (strength * shade + 0.06 * fine + 0.12 * relief(canvas, body))
     tone = tone + pieces.joint * 0.05 * fine
-    height = 0.6 * body + 0.06 * fine
+    height = 0.6 * body + 0.03 * fine
     return Surface(tone, height, ((recipe.ink(1), pieces.joint),), roughness=0.86)
 
 

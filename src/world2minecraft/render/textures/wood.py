@@ -93,19 +93,19 @@ def grain(canvas: Canvas, recipe: Recipe) -> Surface:
 
 def rings(canvas: Canvas, recipe: Recipe) -> Surface:
     """The end of a log: year rings within a border of bark, the accent."""
-    x, y = canvas.x - SIDE / 2, canvas.y - SIDE / 2
-    square = np.maximum(np.abs(x), np.abs(y))
-    part = 0.5 * canvas.fineness
-    away = square * (1 - part) + np.sqrt(x * x + y * y) * part
-    away = away + 0.5 * canvas.fineness * noise(canvas, 4, 4, 1)
-    year = np.floor(away / 2)
-    wave = np.where(away % 2 < 1, 1.0, -1.0)
+    x, y = np.abs(canvas.x - SIDE / 2), np.abs(canvas.y - SIDE / 2)
+    away = np.maximum(x, y)
     if canvas.fineness:
-        wave = wave * 0.3 + np.sin(np.pi * away * 2.0) * 0.5 + 0.5 * pick(canvas, year, 2)
+        round_away = (x**3 + y**3) ** (1 / 3)
+        away = round_away + 0.35 * noise(canvas, 4, 4, 1) + 0.1 * noise(canvas, 16, 16, 6)
+        years = np.sin(np.pi * away) + 0.5 * np.sin(np.pi * 2.0 * away + 1.0)
+        wave = 0.6 * years + 0.5 * pick(canvas, np.floor(away / 2), 2)
+    else:
+        wave = np.where(away % 2 < 1, 1.0, -1.0)
     border = (rim(canvas) < 1.0).astype(np.float64)
     speck = fractal(canvas, 16, 16, 3)
-    tone = (1 - border) * (0.13 * wave + 0.05 * speck - 0.2 * (square < 1)) + border * 0.2 * speck
+    core = 1 - smooth(away, 0.7, 1.1)
+    tone = (1 - border) * (0.12 * wave + 0.05 * speck - 0.2 * core) + border * 0.2 * speck
     inner = ((rim(canvas) >= 1.0) & (rim(canvas) < 1.0 + canvas.joint)).astype(np.float64)
-    tone = tone - 0.14 * inner
-    height = 0.4 * border + 0.06 * wave
-    return Surface(tone, height, ((recipe.ink(1), border),), roughness=0.75)
+    height = 0.4 * border + 0.05 * wave
+    return Surface(tone - 0.14 * inner, height, ((recipe.ink(1), border),), roughness=0.75)
