@@ -1,6 +1,9 @@
 """Recipes: what is read, what is refused and with which words."""
 
+from pathlib import Path
+
 import pytest
+from PIL import Image
 
 from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.render.textures import (
@@ -10,6 +13,8 @@ from world2minecraft.render.textures import (
     texture_of,
     texture_sheet,
 )
+from world2minecraft.render.textures.__main__ import main
+from world2minecraft.render.textures.table import generator_table
 
 
 def test_one_texture_has_one_name():
@@ -106,3 +111,16 @@ def test_the_sheet_shows_them_all():
     assert sheet.dtype.name == "uint8"
     assert sheet.shape[2] == 3
     assert len(GENERATORS) >= 60
+
+
+def test_the_docs_have_the_table_of_today():
+    page = Path(__file__).resolve().parents[2] / "docs" / "textures.md"
+    assert generator_table() in page.read_text(encoding="utf-8")
+
+
+def test_the_sheet_is_written_as_a_picture(tmp_path):
+    main([str(tmp_path / "sheet.png"), "16", "2"])
+    with Image.open(tmp_path / "sheet.png") as picture:
+        assert picture.width > 1000
+    with pytest.raises(UsageError, match="write: python -m world2minecraft.render.textures"):
+        main([])

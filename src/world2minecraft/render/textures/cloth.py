@@ -109,7 +109,7 @@ def straw(canvas: Canvas, recipe: Recipe) -> Surface:
         stalks = stalks + 0.5 * canvas.fineness * fractal(canvas, 32, 4, 3)
     band = np.zeros(canvas.x.shape)
     if recipe.word("band") == "1":
-        band = ((np.abs(canvas.y - 3.5) < 1) | (np.abs(canvas.y - 12.5) < 1)).astype(np.float64)
+        band = ((np.abs(canvas.y - 3) < 1) | (np.abs(canvas.y - 13) < 1)).astype(np.float64)
     tone = 0.15 * stalks * (1 - 0.6 * band)
     return Surface(tone, 0.4 * stalks + 0.3 * band, ((recipe.ink(1), band),), roughness=0.95)
 

@@ -19,6 +19,7 @@ from world2minecraft.render.textures.stencil import draw, paints_of
 from world2minecraft.render.textures.surface import Surface
 from world2minecraft.render.textures.wood import fibre
 
+SOOT = np.full(3, 28.0)  # sRGB, within a cold stove.
 SHELF = 1.0  # Thickness of a shelf's boards, sixteenths.
 SPINES = ((1, 2, 2, 1, 2, 1, 2, 2, 1), (2, 1, 2, 1, 1, 2, 2, 1, 2))  # Widths, 14 in all.
 FURNACE = """
@@ -150,18 +151,13 @@ def furnace_front(canvas: Canvas, recipe: Recipe) -> Surface:
     """A stove: stone around a grate and a mouth, with a fire of the accent when it is lit."""
     drawn, tone, _ = draw(canvas, FURNACE)
     mouth = np.isin(drawn, ("M", "K"))
-    lit = recipe.word("lit") == "1"
-    stone = 0.06 * fractal(canvas, 16, 16, 1)
-    if lit:
-        flame = smooth(noise(canvas, 8, 8, 2) + 0.12 * (canvas.y - 9), -0.2, 0.7)
-        tone = np.where(mouth, 0.3 * flame, tone + stone)
-        paints = ((recipe.ink(1), mouth * 1.0),)
-        return Surface(
-            tone, ~mouth * 0.6, paints, roughness=0.85, emission=mouth * (0.5 + 0.5 * flame)
-        )
-    tone = np.where(mouth, -0.9 + 0.15 * (drawn == "M"), tone + stone)
-    dark = ((np.full(3, 28.0), mouth * 1.0),)
-    return Surface(tone + 0.9 * mouth, ~mouth * 0.6, dark, roughness=0.85)
+    tone = np.where(mouth, 0.15 * (drawn == "M"), tone + 0.06 * fractal(canvas, 16, 16, 1))
+    flame = np.zeros(tone.shape)
+    if recipe.word("lit") == "1":
+        flame = mouth * smooth(noise(canvas, 8, 8, 2) + 0.45 * (canvas.y - 11.5), -0.3, 0.5)
+    dark = SOOT, (mouth & (flame < 0.5)) * 1.0
+    paints = (dark, (recipe.ink(1), flame))
+    return Surface(tone, ~mouth * 0.6, paints, roughness=0.85, emission=flame)
 
 
 def face(canvas: Canvas, recipe: Recipe) -> Surface:

@@ -85,7 +85,8 @@ def mushroom(canvas: Canvas, recipe: Recipe) -> Surface:
 def _sprite(canvas: Canvas, recipe: Recipe, art: str) -> Surface:
     drawn, tone, solid = draw(canvas, art)
     tone = tone + 0.06 * fractal(canvas, 16, 16, 1)
-    return Surface(tone, 0.4 * solid, paints_of(drawn, recipe), solid, roughness=0.8)
+    paints = paints_of(drawn, recipe)
+    return Surface(tone, 0.4 * solid, paints, solid, roughness=0.8, bold=True)
 
 
 def vine(canvas: Canvas, recipe: Recipe) -> Surface:

@@ -28,7 +28,8 @@ class Surface:
 
     ``tone`` is lighter and darker, about -1 to 1, over the colours. ``paints`` lay accents over
     the main colour in order, each a colour float64 [3] and how much of it, 0 to 1. ``height`` is
-    in sixteenths of a block. ``alpha`` is 0 to 1.
+    in sixteenths of a block. ``alpha`` is 0 to 1. ``bold`` lets the main colour go as far as
+    accents make it, as the head of a flower on its green stem does.
     """
 
     tone: Field
@@ -39,6 +40,7 @@ class Surface:
     metal: Field = 0.0
     emission: Field = 0.0
     translucent: bool = False
+    bold: bool = False
 
 
 def texture_from(canvas: Canvas, recipe: Recipe, surface: Surface) -> Texture:
@@ -48,7 +50,7 @@ def texture_from(canvas: Canvas, recipe: Recipe, surface: Surface) -> Texture:
         alpha = np.where(alpha < 128, 0, 255).astype(np.uint8)
     seen = alpha > 0
     colour, give = _colours(canvas, recipe, surface)
-    settled = settle_mean(colour[seen], give[seen], recipe.ink(0))
+    settled = settle_mean(colour[seen], give[seen], recipe.ink(0), surface.bold)
     rgba = np.empty((*alpha.shape, 4), np.uint8)
     rgba[..., :3] = np.array(recipe.colours[0], np.uint8)  # Holes too, for filters that mix them.
     rgba[seen, :3] = np.rint(settled)
@@ -89,7 +91,9 @@ def _colours(canvas: Canvas, recipe: Recipe, surface: Surface) -> tuple[np.ndarr
     return np.clip(lit, 0.0, 255.0), give
 
 
-def settle_mean(colour: np.ndarray, give: np.ndarray, target: np.ndarray) -> np.ndarray:
+def settle_mean(
+    colour: np.ndarray, give: np.ndarray, target: np.ndarray, bold: bool = False
+) -> np.ndarray:
     """Return colours, float64 [M, 3] in 0 to 255, moved so that their mean is the target's.
 
     The main colour moves first, so that accents stay what they are; then everything. A move goes
@@ -99,11 +103,13 @@ def settle_mean(colour: np.ndarray, give: np.ndarray, target: np.ndarray) -> np.
         colour: float64 [M, 3], 0 to 255.
         give: float64 [M], 1 for the main colour, 0 for accents.
         target: float64 [3]; met within a level once rounded, and within two at black and white.
+        bold: whether the main colour may move as far as is needed, in light and hue.
     """
     goal = np.clip(target, MEAN_MARGIN, 255.0 - MEAN_MARGIN)
     share = _share(colour, give[:, None], goal)
-    light = np.clip(share.mean(), -MOST_LIGHT, MOST_LIGHT)
-    share = light + np.clip(share - share.mean(), -MOST_HUE, MOST_HUE)
+    if not bold:
+        light = np.clip(share.mean(), -MOST_LIGHT, MOST_LIGHT)
+        share = light + np.clip(share - share.mean(), -MOST_HUE, MOST_HUE)
     moved = _moved(colour, share, give[:, None])
     every = np.ones((len(give), 1))
     return _moved(moved, _share(moved, every, goal), every)
