@@ -94,6 +94,18 @@ def test_a_zip_that_lists_too_much_is_refused_unread(tmp_path):
     assert refusal(path, LimitError) == "lists more than 400,000 files"
 
 
+def test_a_large_zip_that_lists_too_much_is_refused_unread(tmp_path):
+    """Zips of over 65,535 files say their sizes in a second record, before the first."""
+    path = zip_pack(tmp_path / "a.zip", cube_files("stone", RED))
+    data = path.read_bytes()
+    at = data.rfind(b"PK\x05\x06")
+    most = (archive.MOST_DIRECTORY_BYTES + 1).to_bytes(8, "little")
+    record = b"PK\x06\x06" + bytes(36) + most + bytes(8)
+    locator = b"PK\x06\x07" + bytes(4) + at.to_bytes(8, "little") + bytes(4)
+    path.write_bytes(data[:at] + record + locator + data[at:])
+    assert refusal(path, LimitError) == "lists more than 400,000 files"
+
+
 def test_too_many_files_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(archive, "MOST_FILES", 2)
     path = zip_pack(tmp_path / "a.zip", cube_files("stone", RED))
