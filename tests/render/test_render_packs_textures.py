@@ -90,6 +90,24 @@ def test_textures_become_squares_of_a_power_of_two(tmp_path, shape, most_px, sid
     assert (texture.colour == 77).all()
 
 
+@pytest.mark.parametrize(
+    ("sides", "most_px", "usual"),
+    [((16, 16, 64), 128, 16), ((16, 64, 64), 128, 64), ((512, 512), 128, 128), ((), 128, 16)],
+)
+def test_the_usual_size_is_that_of_most_textures(tmp_path, sides, most_px, usual):
+    files = {PICTURE.format(f"t{n}"): plain(1, 2, 3, side=side) for n, side in enumerate(sides)}
+    files |= {PICTURE.format("broken"): b"no", "assets/minecraft/textures/item/a.png": RED}
+    looks = PackLooks([folder_pack(tmp_path / "pack", files)], most_px=most_px)
+    assert looks.texture_px == usual
+    assert looks.problems == []
+
+
+def test_the_usual_size_is_that_of_the_highest_packs(tmp_path):
+    jar = folder_pack(tmp_path / "jar", {PICTURE.format("a"): RED})
+    fine = folder_pack(tmp_path / "fine", {PICTURE.format("a"): plain(1, 2, 3, side=32)})
+    assert PackLooks([jar, fine]).texture_px == 32
+
+
 def test_a_size_that_is_no_power_of_two_is_refused(tmp_path):
     folder = folder_pack(tmp_path / "pack", cube_files("stone", RED))
     with pytest.raises(UsageError, match="most_px must be a power of two such as 64, not 48"):

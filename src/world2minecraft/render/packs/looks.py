@@ -69,6 +69,11 @@ class PackLooks:
         """How many things could not be read so far."""
         return self._resources.problem_count
 
+    @property
+    def texture_px(self) -> int:
+        """The side that most of the packs' textures have, 16 to ``most_px``: a size for a scene."""
+        return self._textures.usual_px()
+
     def model(self, state: str) -> BlockModel | None:
         """Return the model of a state's text; None where no pack has one that can be read."""
         if state not in self._models:

@@ -15,15 +15,21 @@ MOST_PIXELS = 1 << 25  # 32 frames of 1024 x 1024.
 _HEAD = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
 
 
+def png_size(data: bytes) -> tuple[int, int]:
+    """Return the width and height that a PNG says it has; ValueError where it is none."""
+    if not data.startswith(_HEAD) or len(data) < 24:
+        raise ValueError("is no PNG")
+    width, height = struct.unpack(">II", data[16:24])
+    return width, height
+
+
 def decode_png(data: bytes) -> np.ndarray:
     """Return uint8 [H, W, 4] of a PNG, its size checked before it is unpacked.
 
     Raises:
         ValueError: it is no PNG, is damaged or too large.
     """
-    if not data.startswith(_HEAD) or len(data) < 24:
-        raise ValueError("is no PNG")
-    width, height = struct.unpack(">II", data[16:24])
+    width, height = png_size(data)
     if not 0 < width * height <= MOST_PIXELS:
         raise ValueError(f"has {width} x {height} pixels; at most {MOST_PIXELS:,} are read")
     try:

@@ -37,6 +37,16 @@ class Resources:
         """Return whether any pack has a file of that name."""
         return any(folder + name in pack.names for pack, folder in self._layers)
 
+    def pictures(self) -> list[str]:
+        """Return the names of all pictures of blocks, sorted, of any pack and namespace."""
+        names = {
+            name.removeprefix(folder)
+            for pack, folder in self._layers
+            for name in pack.names
+            if name.startswith(folder) and name.endswith(".png") and "/textures/block/" in name
+        }
+        return sorted(name for name in names if name.startswith("assets/"))
+
     def versions(self, name: str, most_bytes: int) -> Iterator[tuple[str, bytes]]:
         """Yield (where, bytes) of each pack's file of that name, the highest first."""
         for pack, folder in self._layers:

@@ -1,6 +1,7 @@
 """Names of textures become ``Texture`` values: read, cut, squared, joined, with labPBR maps."""
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,12 +11,19 @@ from world2minecraft.render.packs.checks import mapping, resource
 from world2minecraft.render.packs.joining import joined
 from world2minecraft.render.packs.lab_pbr import material_maps, normal_map
 from world2minecraft.render.packs.layering import OVER, TIMES
-from world2minecraft.render.packs.pixels import decode_png, first_frame, resampled, side_for
+from world2minecraft.render.packs.pixels import (
+    decode_png,
+    first_frame,
+    png_size,
+    resampled,
+    side_for,
+)
 from world2minecraft.render.packs.resources import Resources
 from world2minecraft.render.texture import Texture
 
 MOST_PNG_BYTES = 32 << 20
 MOST_TEXTURES = 8192  # Of one run; the game has about 1,500 of blocks.
+LEAST_PX, SAMPLE = 16, 100  # The side of the game's textures; how many are looked at.
 CLEAR = "~clear"  # Ends the name of a texture that a block of clear stuff uses.
 _CLEAR_WORDS = re.compile(r"glass|(?<![a-z])ice(?![a-z])|slime|honey_block|water|portal|jelly")
 # A texture of clear stuff mixes with what is behind it where this share is neither hole nor solid.
@@ -26,6 +34,11 @@ HOLE, SOLID = 13, 242  # Of alpha: what is nearly a hole or nearly solid counts 
 def is_clear(name: str) -> bool:
     """Return whether a block's or texture's name says that one sees through its stuff."""
     return _CLEAR_WORDS.search(name) is not None
+
+
+def _power(value: int) -> int:
+    """Return the least power of two that is not smaller."""
+    return 1 << max(value - 1, 0).bit_length()
 
 
 class PackTextures:
@@ -44,6 +57,19 @@ class PackTextures:
             parts = name.split(OVER)
             self._read[name] = self._one(name) if len(parts) == 1 else self._joined(parts)
         return self._read[name]
+
+    def usual_px(self) -> int:
+        """Return the side that most textures of blocks have, by a sample of them: 16, 32, ..."""
+        names = self._resources.pictures()
+        sides: Counter[int] = Counter()
+        for name in names[:: max(1, len(names) // SAMPLE)]:
+            for _, data in self._resources.versions(name, MOST_PNG_BYTES):
+                try:
+                    sides[min(max(_power(png_size(data)[0]), LEAST_PX), self._most_px)] += 1
+                except ValueError:
+                    continue  # It is said where it is used.
+                break
+        return max(sides, key=lambda side: (sides[side], side), default=LEAST_PX)
 
     def map_colour(self, name: str, column: int, row: int) -> tuple[int, int, int] | None:
         """Return a pixel of a colour map of 256 x 256 px; None where no pack has that map."""
