@@ -1,5 +1,7 @@
 """Packs through the whole renderer: what a ray meets has the colours that the pack says."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pack_making import PICTURE, block_files, cube_files, folder_pack, one_model, plain
@@ -130,3 +132,22 @@ def test_a_locked_texture_points_the_same_way_on_a_turned_block(tmp_path):
         pictures[name] = colour
     np.testing.assert_array_equal(pictures["locked"], pictures["as_made"])
     assert (pictures["free"] != pictures["as_made"]).any()
+
+
+def test_a_pool_has_no_walls_within(tmp_path):
+    files = {PICTURE.format("water_still"): plain(200, 200, 200, 120)}
+    files |= cube_files("wall", plain(255, 255, 255))
+    seen_through = []
+    for count in (1, 3):
+        states = ["minecraft:wall", *["minecraft:water[level=0]"] * count]
+        volume = volume_of(*states)
+        cells = np.minimum(volume.states, 2).astype(np.uint16)  # One state of water.
+        volume = replace(volume, states=cells, palette=volume.palette[:3])
+        packs = PackLooks([folder_pack(tmp_path / str(count), files)])
+        scene = prepare_scene(volume, LookStack((packs, PlainLooks())))
+        target = np.array([0.5, 0.5, count + 1])
+        pose = look_at(room(target + np.array([0, 0, 3])), room(target))
+        colour = render_volume(scene, CAMERA, pose).colour
+        assert colour is not None
+        seen_through.append(hue(colour[24, 32]))
+    np.testing.assert_allclose(*seen_through, atol=0.1)

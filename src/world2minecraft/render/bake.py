@@ -130,7 +130,12 @@ def is_unit_cube(element: Element) -> bool:
 
 
 def joins(state: str, model: BlockModel) -> bool:
-    """Whether two such blocks side by side show no face between them: glass does, leaves do not."""
+    """Whether two such blocks side by side show no face between them: glass does, leaves do not.
+
+    Water does though it is no full cube: a pool has no walls within.
+    """
+    if state.partition("[")[0] == "minecraft:water":
+        return True
     return (
         len(model.elements) == 1
         and is_unit_cube(model.elements[0])
