@@ -285,6 +285,8 @@ def test_water_and_lava_are_boxes_of_their_level(tmp_path):
     texture = looks.texture(up.texture)
     assert texture is not None and texture.translucent
     (lava,) = model_of(looks, "minecraft:lava[level=6]").elements
+    falling = model_of(looks, "minecraft:water[level=8]").elements[0]
+    assert falling.high == (1, 1, 1)
     assert lava.high[1] == pytest.approx(2 / 9) and lava.emission == 15
     assert {face.texture for face in lava.faces if face} == {"minecraft:block/lava_still"}
     assert all(face.tint is None for face in lava.faces if face)

@@ -31,7 +31,7 @@ def fluid_model(
     if not has_texture(still):
         return None
     level = int(state.get("level", "0")) if state.get("level", "0").isdigit() else 0
-    high = (1.0, FULL if level in (0, *range(8, 16)) else (8 - min(level, 7)) / 9, 1.0)
+    high = (1.0, 1.0 if level > 7 else FULL - level / 9, 1.0)  # What falls has more above it.
     is_lava = block == "lava"
     faces = tuple(
         _face(side, high, still, flow if has_texture(flow) else still, None if is_lava else tint)
