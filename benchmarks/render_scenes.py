@@ -1,0 +1,186 @@
+"""The scenes and the poses that the renderer is checked and measured on; all are made from seeds.
+
+``room(scale)`` is a furnished living room that went through find, furnish and build;
+``storeys(...)`` is a block of flats of any size, filled with furniture of many boxes: ``small()``
+has 60 x 40 x 60 cells, ``large()`` 256 x 64 x 256.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+
+from world2minecraft.build import build_volume
+from world2minecraft.coordinates import apply, block_to_room, look_at
+from world2minecraft.find import FindParameters, find_objects
+from world2minecraft.furnish import FurnishParameters, furnish
+from world2minecraft.rooms import generate_room
+from world2minecraft.types import BlockVolume, Camera, OccupancyGrid
+
+VERTICAL_FOV_DEG = 70.0
+VOXEL_STEP = 3  # Of the 2 cm cells of the generator: 6 cm, which its origin is a multiple of.
+STOREY, ROOM = 6, 12  # Blocks, floor to floor and wall to wall.
+AIR, PLANKS, WALL, STONE, PANE_X, PANE_Z, LAMP = 0, 1, 2, 3, 4, 5, 6
+PALETTE = (
+    "minecraft:air",
+    "minecraft:oak_planks",
+    "minecraft:white_concrete",
+    "minecraft:stone",
+    "minecraft:glass_pane[east=true,north=false,south=false,waterlogged=false,west=true]",
+    "minecraft:glass_pane[east=false,north=true,south=true,waterlogged=false,west=false]",
+    "minecraft:sea_lantern",
+    "minecraft:bookshelf",
+    "minecraft:spruce_stairs[facing=east,half=bottom,shape=straight,waterlogged=false]",
+    "minecraft:spruce_stairs[facing=north,half=bottom,shape=straight,waterlogged=false]",
+    "minecraft:oak_slab[type=bottom,waterlogged=false]",
+    "minecraft:birch_slab[type=top,waterlogged=false]",
+    "minecraft:oak_fence[east=false,north=true,south=true,waterlogged=false,west=false]",
+    "minecraft:chest[facing=south,type=single,waterlogged=false]",
+    "minecraft:oak_trapdoor[facing=west,half=bottom,open=true,powered=false,waterlogged=false]",
+    "minecraft:red_carpet",
+    "minecraft:flower_pot",
+    "minecraft:torch",
+    "minecraft:light_blue_stained_glass",
+)
+FURNITURE = range(7, len(PALETTE))
+
+
+def camera_of(width: int, height: int) -> Camera:
+    """Return a camera with the vertical field of view that all figures are taken with."""
+    focal_px = height / 2 / np.tan(np.radians(VERTICAL_FOV_DEG / 2))
+    return Camera(width, height, focal_px, focal_px, width / 2, height / 2)
+
+
+@lru_cache(maxsize=4)
+def room(scale: float, seed: int = 1, kind: str = "living", style: str = "blocks") -> BlockVolume:
+    """Return a generated room, built at ``scale`` blocks a metre by the stages themselves."""
+    from world2minecraft.build.parameters import BuildParameters
+
+    made = generate_room(seed, kind=kind)
+    step = slice(VOXEL_STEP // 2, None, VOXEL_STEP)
+    labels = np.ascontiguousarray(made.labels[step, step, step])
+    grid = OccupancyGrid(
+        labels=labels,
+        confidence=np.ones(labels.shape, np.float16),
+        colour=np.ascontiguousarray(made.colour[step, step, step]),
+        source=np.ones(labels.shape, np.uint8),
+        instance=np.zeros(labels.shape, np.uint16),
+        voxel_m=made.voxel_m * VOXEL_STEP,
+        origin_m=made.origin_m,
+    )
+    found = find_objects(grid, FindParameters())
+    placements = furnish(found.grid, found.instances, FurnishParameters())
+    return build_volume(
+        found.grid,
+        placements,
+        found.instances,
+        corner_m=np.array([0.0, float(made.size_m[1])]),
+        blocks_per_metre=scale,
+        parameters=BuildParameters(style=style),
+    )
+
+
+def small() -> BlockVolume:
+    """Return 60 x 40 x 60 cells, some 45,000 of them filled."""
+    return storeys((60, 40, 60), ground=0, furnished=0.1)
+
+
+@lru_cache(maxsize=1)
+def large() -> BlockVolume:
+    """Return 256 x 64 x 256 cells, some 1.8 million of them filled."""
+    return storeys((256, 64, 256), ground=8, furnished=0.2)
+
+
+def storeys(
+    shape: tuple[int, int, int], *, ground: int, furnished: float, seed: int = 0
+) -> BlockVolume:
+    """Return flats: floors, walls with doorways and windows, lamps, furniture.
+
+    Args:
+        shape: cells along x, y (up) and z.
+        ground: layers of stone at the bottom.
+        furnished: the share of the floor that has something on it.
+        seed: of what stands where.
+    """
+    rng = np.random.default_rng(seed)
+    states = np.zeros(shape, np.uint16)
+    states[:, :ground] = STONE
+    for floor in range(ground, shape[1], STOREY):
+        _put_storey(states, floor, furnished, rng)
+    filled = states > 0
+    return BlockVolume(
+        states=states,
+        palette=PALETTE,
+        semantic=np.where(filled, 10, 0).astype(np.uint8),
+        instance=np.where(filled, states, 0).astype(np.uint16),
+        corner=(0, 64, 0),
+        block_to_room=block_to_room(np.array([0.0, float(shape[2])]), 1.0),
+    )
+
+
+def _put_storey(states: np.ndarray, floor: int, furnished: float, rng: np.random.Generator) -> None:
+    """Fill one storey: its floor, then what stands, then walls and what is in them."""
+    states[:, floor] = PLANKS
+    rooms = states[:, floor + 1 : floor + STOREY]
+    if rooms.shape[1] < STOREY - 1:  # The roof's remainder stays open.
+        return
+    wide, high, deep = rooms.shape
+    things = rng.choice(np.array(FURNITURE), (wide, 2, deep))
+    stands = rng.random((wide, 2, deep)) < furnished
+    stands[:, 1] &= stands[:, 0] & (rng.random((wide, deep)) < 0.5)  # Some things are two high.
+    rooms[:, :2] = np.where(stands, things, AIR)
+    for at in range(0, wide, ROOM):
+        rooms[at] = WALL
+    for at in range(0, deep, ROOM):
+        rooms[:, :, at] = WALL
+    rooms[-1], rooms[:, :, -1] = WALL, WALL
+    middles = np.arange(ROOM // 2, max(wide, deep), ROOM)
+    for x in middles[middles < wide]:
+        rooms[x : x + 2, :3, ROOM : deep - ROOM : ROOM] = AIR  # Doorways.
+        rooms[x - 3 : x + 3, 1:4, 0] = rooms[x - 3 : x + 3, 1:4, -1] = PANE_X
+        for z in middles[middles < deep]:
+            rooms[x, high - 1, z] = LAMP
+    for z in middles[middles < deep]:
+        rooms[ROOM : wide - ROOM : ROOM, :3, z : z + 2] = AIR
+        rooms[0, 1:4, z - 3 : z + 3] = rooms[-1, 1:4, z - 3 : z + 3] = PANE_Z
+
+
+def poses(
+    volume: BlockVolume, count: int, seed: int, *, inside: bool = False
+) -> list[np.ndarray]:
+    """Return cameras that stand indoors: a block lies above and below each.
+
+    Args:
+        volume: the scene.
+        count: how many.
+        seed: of where they stand and look: any way, 25 degrees down to 10 up.
+        inside: whether they stand in cells of furniture in place of free ones.
+
+    Returns:
+        Poses, float64 [4, 4], camera to room.
+    """
+    rng = np.random.default_rng(seed)
+    filled = volume.states > 0
+    below = np.maximum.accumulate(filled, axis=1)
+    above = np.maximum.accumulate(filled[:, ::-1], axis=1)[:, ::-1]
+    indoors = below & above
+    indoors &= _is_furniture(volume) if inside else ~filled
+    cells = np.argwhere(indoors)
+    found = []
+    for cell in cells[rng.integers(len(cells), size=count)]:
+        eye = cell + volume.corner + rng.uniform(0.2, 0.8, 3)
+        yaw, pitch = rng.uniform(0, 2 * np.pi), np.radians(rng.uniform(-25, 10))
+        ahead = np.array([np.cos(yaw) * np.cos(pitch), np.sin(pitch), np.sin(yaw) * np.cos(pitch)])
+        ends = apply(volume.block_to_room, np.stack([eye, eye + ahead]))
+        found.append(look_at(ends[0], ends[1]))
+    return found
+
+
+def _is_furniture(volume: BlockVolume) -> np.ndarray:
+    """Tell, bool [X, Y, Z], which cells are filled in part."""
+    from world2minecraft.render.appearance import visible_boxes
+
+    partly = np.zeros(len(volume.palette), bool)
+    for row, state in enumerate(volume.palette):
+        boxes = visible_boxes(state)
+        partly[row] = len(boxes) > 0 and float(np.prod(boxes[0, 3:] - boxes[0, :3])) < 1
+    return partly[volume.states]
