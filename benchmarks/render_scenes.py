@@ -13,6 +13,8 @@ from world2minecraft.build import build_volume
 from world2minecraft.coordinates import apply, block_to_room, look_at
 from world2minecraft.find import FindParameters, find_objects
 from world2minecraft.furnish import FurnishParameters, furnish
+from world2minecraft.render.elements import LookSource
+from world2minecraft.render.plain_looks import PlainLooks
 from world2minecraft.rooms import generate_room
 from world2minecraft.types import BlockVolume, Camera, OccupancyGrid
 
@@ -144,8 +146,18 @@ def _put_storey(states: np.ndarray, floor: int, furnished: float, rng: np.random
         rooms[0, 1:4, z - 3 : z + 3] = rooms[-1, 1:4, z - 3 : z + 3] = PANE_Z
 
 
+def scene_looks() -> LookSource:
+    """Return where the models and textures of these scenes come from: the renderer's own."""
+    return PlainLooks()
+
+
 def poses(
-    volume: BlockVolume, count: int, seed: int, *, inside: bool = False
+    volume: BlockVolume,
+    count: int,
+    seed: int,
+    *,
+    looks: LookSource | None = None,
+    inside: bool = False,
 ) -> list[np.ndarray]:
     """Return cameras that stand indoors: a block lies above and below each.
 
@@ -153,6 +165,7 @@ def poses(
         volume: the scene.
         count: how many.
         seed: of where they stand and look: any way, 25 degrees down to 10 up.
+        looks: tell which blocks fill their cell only in part.
         inside: whether they stand in cells of furniture in place of free ones.
 
     Returns:
@@ -163,7 +176,7 @@ def poses(
     below = np.maximum.accumulate(filled, axis=1)
     above = np.maximum.accumulate(filled[:, ::-1], axis=1)[:, ::-1]
     indoors = below & above
-    indoors &= _is_furniture(volume) if inside else ~filled
+    indoors &= _partly(volume, looks or scene_looks()) if inside else ~filled
     cells = np.argwhere(indoors)
     found = []
     for cell in cells[rng.integers(len(cells), size=count)]:
@@ -175,12 +188,11 @@ def poses(
     return found
 
 
-def _is_furniture(volume: BlockVolume) -> np.ndarray:
-    """Tell, bool [X, Y, Z], which cells are filled in part."""
-    from world2minecraft.render.appearance import visible_boxes
-
+def _partly(volume: BlockVolume, looks: LookSource) -> np.ndarray:
+    """Tell, bool [X, Y, Z], which cells hold more or less than one cube."""
     partly = np.zeros(len(volume.palette), bool)
     for row, state in enumerate(volume.palette):
-        boxes = visible_boxes(state)
-        partly[row] = len(boxes) > 0 and float(np.prod(boxes[0, 3:] - boxes[0, :3])) < 1
+        model = looks.model(state)
+        ends = [(one.low, one.high) for one in model.elements] if model else []
+        partly[row] = bool(ends) and ends != [((0, 0, 0), (1, 1, 1))]
     return partly[volume.states]

@@ -29,15 +29,14 @@ class Hits:
 
     depth: np.ndarray  # float64 [N], inf for none
     index: np.ndarray  # int64 [N], the cell's C-order index, -1 for a display entity or none
-    face: np.ndarray  # uint8 [N]
+    normal: np.ndarray  # float64 [N, 3], outward, in block axes; 0 for none
     thing: np.ndarray  # int64 [N], the number of the display entity, -1 for none
 
-    def keep_nearer(self, rays: np.ndarray, depth, face, index, thing) -> None:
+    def keep_nearer(self, rays: np.ndarray, depth, normal, index, thing) -> None:
         """Take what lies nearer on some of the rays, or as near."""
-        nearer = depth <= self.depth[rays]
-        rays = rays[nearer & np.isfinite(depth)]
-        nearer &= np.isfinite(depth)
-        self.depth[rays], self.face[rays] = depth[nearer], face[nearer]
+        nearer = (depth <= self.depth[rays]) & np.isfinite(depth)
+        rays = rays[nearer]
+        self.depth[rays], self.normal[rays] = depth[nearer], normal[nearer]
         self.index[rays] = np.broadcast_to(index, depth.shape)[nearer]
         self.thing[rays] = thing
 
@@ -59,8 +58,19 @@ def oracle_picture(
     to_grid[:3, 3] -= volume.corner
     hits = cast(volume, looks, to_grid[:3, 3], at_one @ to_grid[:3, :3].T)
     shape = (camera.height_px, camera.width_px)
-    fields = (hits.depth, hits.index, hits.face, hits.thing)
-    return Hits(*(field.reshape(shape) for field in fields))
+    fields = (hits.depth, hits.index, hits.normal, hits.thing)
+    return Hits(*(field.reshape(*shape, *field.shape[1:]) for field in fields))
+
+
+def has_face(hits: Hits, face: np.ndarray) -> np.ndarray:
+    """Tell where ``face`` is the side of a block that looks most like the surface met.
+
+    Of sides that look like it equally, as of a box turned by 45 degrees, any will do.
+    """
+    none = face == NO_FACE
+    likeness = np.einsum("...a,...a->...", SIGNS[np.where(none, 0, face)], hits.normal)
+    best = np.abs(hits.normal).max(axis=-1)
+    return np.where(none, best == 0, (best > 0) & (likeness >= best - 1e-6))
 
 
 def cast(volume: BlockVolume, looks: LookSource, origin: np.ndarray, rays: np.ndarray) -> Hits:
@@ -68,8 +78,7 @@ def cast(volume: BlockVolume, looks: LookSource, origin: np.ndarray, rays: np.nd
     count = len(rays)
     rays = np.where(np.abs(rays) < 1e-12, 1e-12, rays)
     hits = Hits(
-        np.full(count, np.inf), np.full(count, -1), np.full(count, NO_FACE, np.uint8),
-        np.full(count, -1),
+        np.full(count, np.inf), np.full(count, -1), np.zeros((count, 3)), np.full(count, -1)
     )  # fmt: skip
     models = [_elements(looks, state) for state in volume.palette]
     inner = [[one for one in model if not reaches_out(one)] for model in models]
@@ -79,14 +88,14 @@ def cast(volume: BlockVolume, looks: LookSource, origin: np.ndarray, rays: np.nd
         for element in filter(reaches_out, model):
             for cell in np.argwhere(volume.states == row):
                 number = np.ravel_multi_index(cell, volume.states.shape)
-                depth, face = meet(element, looks, origin - cell, rays)
-                hits.keep_nearer(every, depth, face, number, -1)
+                depth, normal = meet(element, looks, origin - cell, rays)
+                hits.keep_nearer(every, depth, normal, number, -1)
     for number, cube in enumerate(display_cubes(volume.entities)):
         turn = cube.cube_to_world.copy()
         turn[:3, 3] -= volume.corner
         for element in _elements(looks, cube.state):
-            depth, face = meet(element, looks, origin, rays, turn)
-            hits.keep_nearer(every, depth, face, -1, number)
+            depth, normal = meet(element, looks, origin, rays, turn)
+            hits.keep_nearer(every, depth, normal, -1, number)
     return hits
 
 
@@ -111,7 +120,7 @@ def meet(
     rays: np.ndarray,
     turn: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return where rays enter an element, float64 [N] or inf, and by which face, uint8 [N].
+    """Return where rays enter an element, float64 [N] or inf, and the normals there, [N, 3].
 
     Args:
         element: in its own frame.
@@ -137,7 +146,8 @@ def meet(
     met = np.isfinite(depth)
     points = origin[met] + depth[met, None] * rays[met]
     depth[np.flatnonzero(met)[~_is_there(element, looks, face[met], points)]] = np.inf
-    return depth, face
+    gradient = to_element[:3, :3] / np.linalg.norm(to_element[:3, :3], axis=1, keepdims=True)
+    return depth, np.where(going_up, -1, 1)[:, None] * gradient[axis]
 
 
 def _is_there(element: Element, looks: LookSource, face: np.ndarray, points: np.ndarray):
@@ -169,10 +179,10 @@ def _walk(volume: BlockVolume, looks: LookSource, models, origin, rays, hits: Hi
             here = np.flatnonzero(states == row)
             number = np.ravel_multi_index(tuple(cell[here].T), tuple(shape))
             for element in models[row]:
-                depth, face = meet(element, looks, origin - cell[here], rays[active[here]])
+                depth, normal = meet(element, looks, origin - cell[here], rays[active[here]])
                 if joined[row]:
-                    depth[_faces_its_like(volume, cell[here], face)] = np.inf
-                hits.keep_nearer(active[here], depth, face, number, -1)
+                    depth[_faces_its_like(volume, cell[here], normal)] = np.inf
+                hits.keep_nearer(active[here], depth, normal, number, -1)
         going = ~np.isfinite(hits.depth[active])
         active, cell = active[going], cell[going]
         ray = rays[active]
@@ -212,10 +222,10 @@ def _joins(state: str, model, looks: LookSource) -> bool:
                for face, texture in zip(one.faces, textures, strict=True))  # fmt: skip
 
 
-def _faces_its_like(volume: BlockVolume, cell: np.ndarray, face: np.ndarray) -> np.ndarray:
-    """Tell, bool [N], whether the neighbour before a face has the same state."""
+def _faces_its_like(volume: BlockVolume, cell: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Tell, bool [N], whether the neighbour that a face looks at has the same state."""
     shape = np.array(volume.states.shape)
-    ahead = cell + SIGNS[face]
+    ahead = cell + np.round(normal).astype(np.int64)
     inside = ((ahead >= 0) & (ahead < shape)).all(axis=1)
     same = np.zeros(len(cell), bool)
     same[inside] = (

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from oracle import NO_FACE, cast, meet, oracle_picture
+from oracle import NO_FACE, SIGNS, cast, has_face, meet, oracle_picture
 from scenes import CAMERA, random_pose, random_volume, slow_picture, volume_of
 
 from world2minecraft.render.elements import BlockModel, Element, FaceLook, face_uv
@@ -60,7 +60,13 @@ def one_block(element: Element, cell=(2, 2, 2)):
 def first(element: Element, origin, ray):
     volume, looks = one_block(element)
     hits = cast(volume, looks, np.array(origin, float), np.array([ray], float))
-    return float(hits.depth[0]), int(hits.face[0]), int(hits.index[0])
+    return float(hits.depth[0]), face_of(hits), int(hits.index[0])
+
+
+def face_of(hits) -> int:
+    """The one face that the first ray has met."""
+    (face,) = (face for face in (*range(6), NO_FACE) if has_face(hits, np.array([face]))[0])
+    return face
 
 
 AHEAD = (0.5, 2.5, 2.25), (1.0, 0.0, 0.0)
@@ -104,7 +110,11 @@ def test_a_turned_box_is_met_where_its_edge_comes_forward():
     turn[:3, :3] = [[half, 0, half], [0, 1, 0], [-half, 0, half]]
     turn[:3, 3] = np.array([0.5, 0.5, 0.5]) - turn[:3, :3] @ np.array([0.5, 0.5, 0.5])
     low, high = (0.25, 0.0, 0.25), (0.75, 1.0, 0.75)
-    depth, _, _ = first(box(low, high, turn=turn), (0.5, 2.5, 2.5 + 1e-9), (1, 0, 0))
+    volume, looks = one_block(box(low, high, turn=turn))
+    origin, ray = np.array([0.5, 2.5, 2.5 + 1e-9]), np.array([[1.0, 0.0, 0.0]])
+    hits = cast(volume, looks, origin, ray)
+    depth = float(hits.depth[0])
+    assert [face for face in range(6) if has_face(hits, np.array([face]))[0]] == [0, 5]
     assert depth == pytest.approx(2.0 - 0.25 * np.sqrt(2), abs=1e-6)
 
 
@@ -119,17 +129,18 @@ def test_glass_side_by_side_is_one_body():
     looks = Looks(white_concrete=(box(texture="half"),))
     ray = np.array([[1.0, 0.0, 0.0]])
     through = cast(volume_of(states, scale=1.0), looks, np.array([0.5, 2.5, 2.25]), ray)
-    assert through.face[0] == NO_FACE
+    assert face_of(through) == NO_FACE
     behind = cast(volume_of(states, scale=1.0), looks, np.array([1.5, 2.5, 2.75]), ray)
-    assert behind.face[0] == NO_FACE  # The face between the two is not there.
+    assert face_of(behind) == NO_FACE  # The face between the two is not there.
 
 
 def test_the_later_of_two_faces_at_one_place_counts():
     looks = Looks(white_concrete=(box(), box((0.0, 0.0, 0.0), (0.5, 1.0, 1.0))))
     volume, _ = one_block(box())
-    depth, face = meet(looks.model("minecraft:white_concrete").elements[1], looks,
+    depth, normal = meet(looks.model("minecraft:white_concrete").elements[1], looks,
                        np.array([-1.5, 0.5, 0.5]), np.array([[1.0, 0.0, 0.0]]))  # fmt: skip
-    assert (float(depth[0]), int(face[0])) == (1.5, 0)
+    assert depth[0] == 1.5
+    assert np.array_equal(normal[0], SIGNS[0])
     assert cast(volume, looks, np.array(AHEAD[0]), np.array([AHEAD[1]])).depth[0] == 1.5
 
 

@@ -1,0 +1,133 @@
+"""Does the ray caster see what a slow float64 caster sees? Ids, faces and depth, pixel by pixel.
+
+``python -m benchmarks.check_render [--poses 6 --size 320 240] [--spoil]``
+
+Scenes: a generated room built at 4 and 2 blocks a metre and as display entities, flats full of
+furniture, and a heap of odd models (turned, flat, hollow, perforated boxes, glass); cameras stand in
+free cells and inside furniture. The slow caster is ``tests/render/oracle.py``. The command leaves
+with 1 where less than 99.99 % of a row's pixels are equal or the median depth error is not under
+1e-4 of a metre; ``--spoil`` moves one of its cameras by a millimetre, so that one sees it fail.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from benchmarks.odd_looks import OddLooks, odd_volume
+from benchmarks.render_scenes import camera_of, poses, room, scene_looks, small
+from tests.render.oracle import has_face, oracle_picture
+from world2minecraft.render import Picture, prepare_scene, render_volume
+from world2minecraft.render.elements import LookSource
+from world2minecraft.types import BlockVolume, Camera
+
+LEAST_EQUAL, MOST_MEDIAN_M = 0.9999, 1e-4
+SPOIL_M = 1e-3
+
+
+class Case(NamedTuple):
+    """A scene and where its cameras stand."""
+
+    name: str
+    volume: Callable[[], BlockVolume]
+    looks: Callable[[], LookSource]
+    inside: bool
+
+
+class Agreement(NamedTuple):
+    """What one row of the table says."""
+
+    pixels: int
+    equal: float  # share of pixels with the same cell, entity and face
+    median_m: float  # of depth, where ids are equal
+    worst_m: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is as good as it has to be."""
+        return self.equal >= LEAST_EQUAL and self.median_m < MOST_MEDIAN_M
+
+
+CASES = (
+    Case("room, 4 blocks/m, free cells", lambda: room(4.0), lambda: scene_looks(), False),
+    Case("room, 4 blocks/m, inside furniture", lambda: room(4.0), lambda: scene_looks(), True),
+    Case("room, 2 blocks/m, free cells", lambda: room(2.0), lambda: scene_looks(), False),
+    Case("room, display entities", lambda: room(4.0, 1, "living", "display"),
+         lambda: scene_looks(), False),
+    Case("flats 60x40x60, free cells", small, lambda: scene_looks(), False),
+    Case("flats 60x40x60, inside furniture", small, lambda: scene_looks(), True),
+    Case("odd models, free cells", lambda: odd_volume(0), lambda: OddLooks(0), False),
+    Case("odd models, inside them", lambda: odd_volume(0), lambda: OddLooks(0), True),
+)  # fmt: skip
+
+
+def compare(
+    volume: BlockVolume,
+    looks: LookSource,
+    camera: Camera,
+    cameras: list[np.ndarray],
+    spoil_m: float = 0.0,
+) -> Agreement:
+    """Take all pictures both ways, the fast one from ``spoil_m`` beside, and compare them."""
+    scene = prepare_scene(volume, looks)
+    equal, total, errors = 0, 0, [np.zeros(0)]
+    for pose in cameras:
+        beside = pose.copy()
+        beside[:3, 3] += spoil_m * pose[:3, 0]
+        same, error = differences(
+            render_volume(scene, camera, beside, outputs=()), volume, looks, camera, pose
+        )
+        equal, total = equal + int(same.sum()), total + same.size
+        errors.append(error)
+    every = np.concatenate(errors)
+    median, worst = (float(np.median(every)), float(every.max())) if len(every) else (0.0, 0.0)
+    return Agreement(total, equal / total, median, worst)
+
+
+def differences(
+    picture: Picture, volume: BlockVolume, looks: LookSource, camera: Camera, pose: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return bool [H, W] of the pixels with equal ids, and the depth errors of those, in metres."""
+    truth = oracle_picture(volume, looks, camera, pose)
+    same = (picture.block_index == truth.index) & (picture.cube_index == truth.thing)
+    same &= has_face(truth, picture.face)
+    met = same & np.isfinite(truth.depth)
+    return same, np.abs(picture.depth_m[met] - truth.depth[met])
+
+
+def results(count: int, size: tuple[int, int], spoil: bool) -> Iterator[tuple[str, Agreement]]:
+    """Give the name and the figures of each row."""
+    camera = camera_of(*size)
+    for number, case in enumerate(CASES):
+        volume, looks = case.volume(), case.looks()
+        cameras = poses(volume, count, 100 + number, looks=looks, inside=case.inside)
+        spoil_m = SPOIL_M if spoil and number == 0 else 0.0
+        name = case.name + (", spoilt" if spoil_m else "")
+        yield name, compare(volume, looks, camera, cameras, spoil_m)
+
+
+def main() -> int:
+    """Print the table; return the exit code."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--poses", type=int, default=6)
+    parser.add_argument("--size", type=int, nargs=2, default=(320, 240))
+    parser.add_argument("--spoil", action="store_true", help="prove that the check can fail")
+    chosen = parser.parse_args()
+    table = Table("scene", "pixels", "equal ids", "median depth error", "worst", "", box=None)
+    failed = False
+    for name, row in results(chosen.poses, tuple(chosen.size), chosen.spoil):
+        failed |= not row.holds
+        table.add_row(
+            name, f"{row.pixels:,}", f"{row.equal:.4%}", f"{row.median_m:.1e} m",
+            f"{row.worst_m:.1e} m", "ok" if row.holds else "WRONG",
+        )  # fmt: skip
+    Console(width=120).print(table)
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
