@@ -1,82 +1,176 @@
-"""The ray caster and the virtual scan: milliseconds of CPU a picture, seconds a capture."""
+"""The ray caster and the virtual scan: milliseconds of CPU a picture, seconds a capture.
 
+``python -m benchmarks.bench_render`` prints more: wall time and spread, beside the rival. Pictures
+are of a furnished room built at 4 and 2 blocks a metre, and of flats of 0.14 and 4.2 million cells;
+cameras stand at random places indoors. The rival is ``benchmarks.rivals_render``.
+"""
+
+import gc
+import io
 import resource
 import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
+from rich.console import Console
+from rich.table import Table
 
+from benchmarks.render_scenes import camera_of, large, poses, room, scene_looks, small
+from benchmarks.render_timing import Timing, time_all
+from benchmarks.rival_mesh import mesh_of
+from benchmarks.rivals_render import Rasteriser, why_not
 from benchmarks.rows import Row
-from world2minecraft.coordinates import block_to_room, look_at
-from world2minecraft.render import prepare_scene, preview, render_volume
+from world2minecraft.render import BlockScene, prepare_scene, preview, render_volume
+from world2minecraft.render.light import LookLight
 from world2minecraft.rooms import generate_room, scan_room
-from world2minecraft.rooms.room import Room
 from world2minecraft.types import BlockVolume, Camera
 
-ROUNDS = 12
-PALETTE = (
-    "minecraft:air",
-    "minecraft:white_concrete",
-    "minecraft:oak_planks",
-    "minecraft:light_blue_stained_glass",
-    "minecraft:oak_stairs[facing=east,half=bottom,shape=straight,waterlogged=false]",
-)
-STATE_OF_CLASS = np.array([0, 1, 2, 1, 3, 4, 1, 1, 2, 1, 2, 2], np.uint16)
+SCENES: dict[str, Callable[[], BlockVolume]] = {
+    "room, 4 blocks/m": lambda: room(4.0),
+    "room, 2 blocks/m": lambda: room(2.0),
+    "flats 60x40x60": small,
+    "flats 256x64x256": large,
+}
+# Width, height, CPU milliseconds of the issue, poses a round.
+SIZES = ((224, 224, 5.0, 16), (640, 480, 15.0, 12), (1920, 1129, 120.0, 4))
+RGB_DEPTH_IDS = ("colour", "depth", "semantic", "instance")
+LIGHT, SUNNY = LookLight(), LookLight(sun_shadow=True)
+# What is measured: the outputs and the light. "depth, ids" is what the way of the rays takes.
+MODES = {
+    "rgb, depth, ids": (RGB_DEPTH_IDS, LIGHT),
+    "rgb, depth, ids, sun shadow": (RGB_DEPTH_IDS, SUNNY),
+    "rgb, depth, blocks": (("colour",), LIGHT),
+    "depth, blocks": ((), LIGHT),
+}
+RIVALS = ("llvmpipe", "llvmpipe, chunks culled")
+JPEG_QUALITY = 90
+DATASET_IMAGES, DATASET_CORES, DATASET_HOURS = 100_000, 2, 2.5
+SLICE = 8  # Images of the slice that the data set's time is extrapolated from.
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One line: a scene, a size, what was made by whom, and how long it took."""
+
+    scene: str
+    width: int
+    height: int
+    what: str
+    timing: Timing
+    budget_ms: float | None
 
 
 def run() -> list[Row]:
     """Measure; CPU time of the least of some rounds, because the machine may be shared."""
-    room = generate_room(1, kind="living")
     rows = []
-    for blocks_per_metre in (4.0, 12.5):
-        volume = volume_of_room(room, blocks_per_metre)
-        rows += _pictures(volume, f"{blocks_per_metre:g} blocks a metre")
-        seconds = _least(lambda volume=volume: preview(volume, 960, 720), 2)
-        rows.append(Row(f"preview 960x720, {blocks_per_metre:g} blocks a metre", seconds, "s"))
-    rows.append(_scan(room))
+    for name, make in SCENES.items():
+        volume = make()
+        rows += _preparation(name, volume)
+        rows += [row for measured in _of_size(measure(name, volume)) for row in _rows(measured)]
+        gc.collect()
+    rows += _data_set()
+    volume = room(4.0)
+    seconds = _least(lambda: preview(volume, 960, 720), 2)
+    rows.append(Row("preview 960x720, 4 blocks a metre", seconds, "s"))
+    rows.append(_scan())
     return rows
 
 
-def volume_of_room(room: Room, blocks_per_metre: float) -> BlockVolume:
-    """Sample a generated room at the middle of each block."""
-    step = 1 / blocks_per_metre / room.voxel_m
-    picks = [np.arange(step / 2, side, step).astype(int) for side in room.labels.shape]
-    labels = np.swapaxes(room.labels[np.ix_(*picks)][:, ::-1], 1, 2)
-    states = np.ascontiguousarray(STATE_OF_CLASS[labels])
-    return BlockVolume(
-        states=states,
-        palette=PALETTE,
-        semantic=np.ascontiguousarray(labels),
-        instance=np.zeros_like(states),
-        corner=(-1, 63, -1),
-        block_to_room=block_to_room(np.array([0.0, float(room.size_m[1])]), blocks_per_metre),
-    )
+def measure(name: str, volume: BlockVolume) -> list[Measured]:
+    """Time every size and mode of a scene, and the rival's where it can run."""
+    scene = prepare_scene(volume, scene_looks())
+    mesh = None if why_not() else mesh_of(scene.tables, LIGHT.parameters(scene.exposure))
+    found = []
+    for width, height, budget, count in SIZES:
+        camera = camera_of(width, height)
+        works = {what: _ours(scene, camera, *mode) for what, mode in MODES.items()}
+        rival = None
+        if mesh is not None:
+            rival = Rasteriser(mesh, scene.tables.texels, scene.side_px, camera)
+            works |= {what: _rivals(rival, scene, "chunks" in what) for what in RIVALS}
+        timings = time_all(works, poses(volume, count, 7))
+        for what, timing in timings.items():
+            own = budget if what == "rgb, depth, ids" else None
+            found.append(Measured(name, width, height, what, timing, own))
+        if rival is not None:
+            rival.release()
+    return found
 
 
-def _pictures(volume: BlockVolume, name: str) -> list[Row]:
-    scene = prepare_scene(volume)
-    pose = look_at(np.array([0.6, 0.6, 1.6]), np.array([3.0, 2.4, 0.8]))
+def _ours(scene: BlockScene, camera: Camera, outputs, light: LookLight):
+    return lambda pose: render_volume(scene, camera, pose, outputs=outputs, light=light)
+
+
+def _rivals(rival: Rasteriser, scene: BlockScene, by_chunk: bool):
+    return lambda pose: rival.draw(scene.room_to_grid @ pose, by_chunk=by_chunk)
+
+
+def _of_size(measured: list[Measured]) -> list[list[Measured]]:
+    return [[one for one in measured if one.width == size[0]] for size in SIZES]
+
+
+def _rows(group: list[Measured]) -> list[Row]:
+    """Return a row for each of our modes; that with a budget says the rivals' ratios too."""
+    by_what = {one.what: one for one in group}
     rows = []
-    for width, height, budget in ((640, 480, 15.0), (1920, 1129, 120.0)):
-        camera = Camera(width, height, 0.6 * width, 0.6 * width, width / 2, height / 2)
-        seconds = _least(lambda camera=camera: render_volume(scene, camera, pose), ROUNDS)
-        what = f"render rgb, depth, ids {width}x{height}, {name}"
-        rows.append(Row(what, 1000 * seconds, "ms", budget))
-        seconds = _least(
-            lambda camera=camera: render_volume(scene, camera, pose, outputs=()), ROUNDS
+    for what in MODES:
+        one = by_what[what]
+        head = f"{one.scene}, {one.width}x{one.height}"
+        rows.append(Row(f"{head}: {what}", one.timing.cpu_ms, "ms", one.budget_ms))
+        if one.budget_ms is None:
+            continue
+        for rival in RIVALS:
+            if rival in by_what:
+                ratio = by_what[rival].timing.cpu_ms / one.timing.cpu_ms
+                value = by_what[rival].timing.cpu_ms
+                rows.append(Row(f"{head}: {rival}", value, "ms", None, "ours is", ratio))
+            else:
+                rows.append(Row(f"{head}: {rival}", 0.0, "ms", None, f"skipped: {why_not()}"))
+    return rows
+
+
+def _preparation(name: str, volume: BlockVolume) -> list[Row]:
+    """How long a scene takes to prepare, and what it holds a cell."""
+    seconds = _least(lambda: prepare_scene(volume, scene_looks()), 2)
+    tables = prepare_scene(volume, scene_looks()).tables
+    by_cell = (tables.space, tables.bounds, tables.looks, tables.light)
+    held = sum(array.nbytes for array in by_cell) / volume.states.size
+    return [
+        Row(f"{name}: prepare the scene", 1000 * seconds, "ms"),
+        Row(f"{name}: memory of the scene", held, "bytes/cell"),
+    ]
+
+
+def _data_set() -> list[Row]:
+    """A slice of a data set: pictures of 1920x1129 with depth and ids, encoded as JPEG."""
+    volume = room(4.0)
+    scene, camera = prepare_scene(volume, scene_looks()), camera_of(1920, 1129)
+
+    def one(pose: np.ndarray) -> None:
+        picture = render_volume(scene, camera, pose, outputs=RGB_DEPTH_IDS, light=LIGHT)
+        Image.fromarray(np.asarray(picture.colour)).save(
+            io.BytesIO(), "JPEG", quality=JPEG_QUALITY
         )
-        rows.append(Row(f"render depth, ids {width}x{height}, {name}", 1000 * seconds, "ms"))
-    return rows
+
+    timing = time_all({"slice": one}, poses(volume, SLICE, 11), rounds=2)["slice"]
+    hours = timing.cpu_ms / 1000 * DATASET_IMAGES / DATASET_CORES / 3600
+    return [
+        Row(f"slice of {SLICE} images 1920x1129, JPEG too", timing.cpu_ms, "ms an image", 180.0),
+        Row("100,000 of them on two cores, extrapolated", hours, "h", DATASET_HOURS),
+    ]
 
 
-def _scan(room: Room) -> Row:
+def _scan() -> Row:
+    room_ = generate_room(1, kind="living")
     with tempfile.TemporaryDirectory() as folder:
-        scan_room(room, Path(folder) / "warm", frames=1, width=320, height=240)
+        scan_room(room_, Path(folder) / "warm", frames=1, width=320, height=240)
         start = time.process_time()
-        scan_room(room, Path(folder) / "scan", frames=40)
+        scan_room(room_, Path(folder) / "scan", frames=40)
         seconds = time.process_time() - start
     # Kilobytes on Linux, bytes on macOS.
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
@@ -94,3 +188,24 @@ def _least(work: Callable[[], object], rounds: int) -> float:
         work()
         times.append(time.process_time() - start)
     return min(times)
+
+
+def main() -> None:
+    """Print a table of everything that is timed."""
+    table = Table("scene", "size", "what", "CPU ms", "spread", "wall ms", box=None)
+    reason = why_not()
+    for name, make in SCENES.items():
+        for one in measure(name, make()):
+            table.add_row(
+                one.scene, f"{one.width}x{one.height}", one.what, f"{one.timing.cpu_ms:.1f}",
+                f"+{one.timing.spread:.0%}", f"{one.timing.wall_ms:.1f}",
+            )  # fmt: skip
+        gc.collect()
+    console = Console(width=110)
+    console.print(table)
+    if reason:
+        console.print(f"The rival was skipped: {reason}.")
+
+
+if __name__ == "__main__":
+    main()
