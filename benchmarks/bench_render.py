@@ -153,9 +153,7 @@ def _data_set() -> list[Row]:
 
     def one(pose: np.ndarray) -> None:
         picture = render_volume(scene, camera, pose, outputs=RGB_DEPTH_IDS, light=LIGHT)
-        Image.fromarray(np.asarray(picture.colour)).save(
-            io.BytesIO(), "JPEG", quality=JPEG_QUALITY
-        )
+        Image.fromarray(np.asarray(picture.colour)).save(io.BytesIO(), "JPEG", quality=JPEG_QUALITY)
 
     timing = time_all({"slice": one}, poses(volume, SLICE, 11), rounds=2)["slice"]
     hours = timing.cpu_ms / 1000 * DATASET_IMAGES / DATASET_CORES / 3600

@@ -3,10 +3,11 @@
 ``python -m benchmarks.check_render [--poses 6 --size 320 240] [--spoil]``
 
 Scenes: a generated room built at 4 and 2 blocks a metre and as display entities, flats full of
-furniture, and a heap of odd models (turned, flat, hollow, perforated boxes, glass); cameras stand in
-free cells and inside furniture. The slow caster is ``tests/render/oracle.py``. The command leaves
-with 1 where less than 99.99 % of a row's pixels are equal or the median depth error is not under
-1e-4 of a metre; ``--spoil`` moves one of its cameras by a millimetre, so that one sees it fail.
+furniture, and a heap of odd models (turned, flat, hollow, perforated boxes, glass). Cameras stand
+in free cells and inside furniture. The slow caster is ``tests/render/oracle.py``. The command
+leaves with 1 where less than 99.99 % of a row's pixels are equal or the median depth error is not
+under 1e-4 of a metre; ``--spoil`` moves the cameras of a row by a millimetre, so that one sees it
+fail.
 """
 
 import argparse
@@ -17,10 +18,10 @@ from typing import NamedTuple
 import numpy as np
 from rich.console import Console
 from rich.table import Table
+from tests.render.oracle import has_face, oracle_picture
 
 from benchmarks.odd_looks import OddLooks, odd_volume
 from benchmarks.render_scenes import camera_of, poses, room, scene_looks, small
-from tests.render.oracle import has_face, oracle_picture
 from world2minecraft.render import Picture, prepare_scene, render_volume
 from world2minecraft.render.elements import LookSource
 from world2minecraft.types import BlockVolume, Camera
@@ -53,13 +54,13 @@ class Agreement(NamedTuple):
 
 
 CASES = (
-    Case("room, 4 blocks/m, free cells", lambda: room(4.0), lambda: scene_looks(), False),
-    Case("room, 4 blocks/m, inside furniture", lambda: room(4.0), lambda: scene_looks(), True),
-    Case("room, 2 blocks/m, free cells", lambda: room(2.0), lambda: scene_looks(), False),
+    Case("room, 4 blocks/m, free cells", lambda: room(4.0), scene_looks, False),
+    Case("room, 4 blocks/m, inside furniture", lambda: room(4.0), scene_looks, True),
+    Case("room, 2 blocks/m, free cells", lambda: room(2.0), scene_looks, False),
     Case("room, display entities", lambda: room(4.0, 1, "living", "display"),
-         lambda: scene_looks(), False),
-    Case("flats 60x40x60, free cells", small, lambda: scene_looks(), False),
-    Case("flats 60x40x60, inside furniture", small, lambda: scene_looks(), True),
+         scene_looks, False),
+    Case("flats 60x40x60, free cells", small, scene_looks, False),
+    Case("flats 60x40x60, inside furniture", small, scene_looks, True),
     Case("odd models, free cells", lambda: odd_volume(0), lambda: OddLooks(0), False),
     Case("odd models, inside them", lambda: odd_volume(0), lambda: OddLooks(0), True),
 )  # fmt: skip

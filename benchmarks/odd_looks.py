@@ -1,4 +1,4 @@
-"""Models that nobody would make, from a seed: turned, flat, hollow, perforated and overlapping boxes.
+"""Models that nobody would make, from a seed: boxes that are turned, flat, hollow or perforated.
 
 They are what a renderer may get wrong, all in one volume: ``odd_volume(seed)`` with the looks
 ``OddLooks(seed)``.

@@ -74,9 +74,7 @@ def mesh_of(tables: SceneTables, lit: LitParameters) -> Mesh:
     high = np.maximum.reduceat(vertices["place"].max(axis=1), starts)
     solid_chunks = int(np.searchsorted(key[starts], 1 << 36))
     triangles = _triangles(vertices)
-    return Mesh(
-        vertices.reshape(-1), triangles, np.r_[starts, len(key)], low, high, solid_chunks
-    )
+    return Mesh(vertices.reshape(-1), triangles, np.r_[starts, len(key)], low, high, solid_chunks)
 
 
 def _has_holes(tables: SceneTables) -> np.ndarray:

@@ -86,9 +86,7 @@ class Rasteriser:
         # before it runs.
         self.arrays = [self._array("false"), self._array("true")]
         finest = np.ascontiguousarray(texels[:, : side_px * side_px])
-        self.texture = self.context.texture_array(
-            (side_px, side_px, len(finest)), 4, finest
-        )
+        self.texture = self.context.texture_array((side_px, side_px, len(finest)), 4, finest)
         self.texture.build_mipmaps()
         self.texture.filter = (moderngl.NEAREST_MIPMAP_NEAREST, moderngl.NEAREST)
         size = (camera.width_px, camera.height_px)

@@ -171,7 +171,9 @@ def _is_there(element: Element, looks: LookSource, face: np.ndarray, points: np.
 def _walk(volume: BlockVolume, looks: LookSource, models, origin, rays, hits: Hits) -> None:
     """Go from cell to cell with all rays that have met nothing yet."""
     shape = np.array(volume.states.shape)
-    joined = [_joins(state, model, looks) for state, model in zip(volume.palette, models, strict=True)]
+    joined = [
+        _joins(state, model, looks) for state, model in zip(volume.palette, models, strict=True)
+    ]
     cell, active = _first_cells(shape, origin, rays)
     while len(active):
         states = volume.states[tuple(cell.T)]
@@ -228,7 +230,5 @@ def _faces_its_like(volume: BlockVolume, cell: np.ndarray, normal: np.ndarray) -
     ahead = cell + np.round(normal).astype(np.int64)
     inside = ((ahead >= 0) & (ahead < shape)).all(axis=1)
     same = np.zeros(len(cell), bool)
-    same[inside] = (
-        volume.states[tuple(ahead[inside].T)] == volume.states[tuple(cell[inside].T)]
-    )
+    same[inside] = volume.states[tuple(ahead[inside].T)] == volume.states[tuple(cell[inside].T)]
     return same
