@@ -56,11 +56,14 @@ def _loops(canvas: Canvas) -> tuple[np.ndarray, np.ndarray]:
 
 
 def carpet(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Carpet: short, even pile; a border in the accent where asked for."""
-    pile = fractal(canvas, 16, 16, 1, 0.75)
-    slow = noise(canvas, 4, 4, 2)
-    tone = 0.07 * pile + 0.025 * slow
-    return Surface(tone, 0.1 * pile, roughness=1.0)
+    """Carpet: short, even pile."""
+    pile, slow = noise(canvas, 16, 16, 1), noise(canvas, 4, 4, 2)
+    tone, height = 0.06 * pile + 0.025 * slow, 0.05 * pile
+    if canvas.fineness:  # Tufts of yarn, as many as there is room for.
+        cells = canvas.size_px // 2
+        tufts = noise(canvas, cells, cells, 3) + 0.7 * noise(canvas, 2 * cells, 2 * cells, 4)
+        tone, height = tone + 0.1 * canvas.fineness * tufts, height + 0.12 * tufts
+    return Surface(tone, height, roughness=1.0)
 
 
 def leather(canvas: Canvas, recipe: Recipe) -> Surface:

@@ -14,7 +14,10 @@ from world2minecraft.render.textures.canvas import (
 )
 from world2minecraft.render.textures.layout import stones
 from world2minecraft.render.textures.recipe import Recipe
+from world2minecraft.render.textures.stamps import scatter
 from world2minecraft.render.textures.surface import Surface
+
+TURF = 260  # Blades of grass on a block, seen from above.
 
 
 def sand(canvas: Canvas, recipe: Recipe) -> Surface:
@@ -36,21 +39,30 @@ def gravel(canvas: Canvas, recipe: Recipe) -> Surface:
 def dirt(canvas: Canvas, recipe: Recipe) -> Surface:
     """Earth: crumbs, a few pebbles."""
     crumbs = noise(canvas, 16, 16, 1) + 0.6 * noise(canvas, 8, 8, 2)
-    crumbs = crumbs + 0.4 * canvas.fineness * fractal(canvas, 32, 32, 3, 0.7)
     pebbles = smooth(noise(canvas, 16, 16, 4), 0.8, 0.95)
-    steps = np.rint(crumbs * 1.5) / 1.5 if not canvas.fineness else crumbs
-    tone = 0.14 * steps + 0.22 * pebbles
-    return Surface(tone, 0.2 * crumbs + 0.3 * pebbles, roughness=0.97)
+    if not canvas.fineness:
+        steps = np.rint(crumbs * 1.5) / 1.5
+        return Surface(0.14 * steps + 0.22 * pebbles, 0.2 * crumbs, roughness=0.97)
+    pieces = stones(canvas, 12, 5, 0.95)
+    body = smooth(pieces.edge, 0.0, 0.7)
+    tone = 0.11 * crumbs + 0.09 * pick(canvas, pieces.identity, 7) + 0.1 * (body - 0.6)
+    tone = tone + 0.08 * relief(canvas, 0.4 * body) + 0.06 * fractal(canvas, 32, 32, 3, 0.8)
+    height = 0.12 * crumbs + 0.3 * body + 0.2 * pebbles
+    return Surface(tone + 0.18 * pebbles, height, roughness=0.97)
 
 
 def grass(canvas: Canvas, recipe: Recipe) -> Surface:
     """Turf from above: short blades of many greens."""
     tufts = noise(canvas, 16, 16, 1) + 0.5 * noise(canvas, 8, 8, 2)
-    if canvas.fineness:
-        bend = canvas.x + 0.8 * noise(canvas, 8, 8, 3)
-        tufts = 0.6 * tufts + canvas.fineness * 0.9 * noise(canvas, 32, 8, 4, bend)
-        tufts = tufts + 0.4 * fractal(canvas, 32, 16, 5, x=bend)
-    return Surface(0.15 * tufts, 0.22 * tufts, roughness=0.95)
+    if not canvas.fineness:
+        return Surface(0.15 * tufts, 0.22 * tufts, roughness=0.95)
+    blades = scatter(canvas, TURF, 1.5, 0.3, 3)
+    here = blades.identity >= 0
+    level = blades.identity / TURF  # Later blades lie over earlier ones.
+    shade = 0.13 * pick(canvas, np.maximum(blades.identity, 0), 7) + 0.26 * (level - 0.6)
+    tone = 0.18 * tufts + np.where(here, shade + 0.06 * blades.along, -0.3)
+    height = 0.1 * tufts + np.where(here, 0.2 + 0.35 * level, 0.0)
+    return Surface(tone, height, roughness=0.95)
 
 
 def grass_side(canvas: Canvas, recipe: Recipe) -> Surface:

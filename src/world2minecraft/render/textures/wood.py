@@ -27,7 +27,8 @@ def fibre(canvas: Canvas, x: np.ndarray, y: np.ndarray, salt: int) -> np.ndarray
     bend = 1.3 * noise(canvas, 2, 4, salt + 2, x, y) + 0.25 * noise(canvas, 8, 8, salt + 3, x, y)
     arcs = np.sin(2 * np.pi * (0.75 * y + bend))
     pores = noise(canvas, 8, min(4 * 16, canvas.size_px), salt + 4, x, y)
-    return streaks + canvas.fineness * (0.3 * arcs + 0.35 * pores)
+    lines = noise(canvas, 16, canvas.size_px, salt + 5, x, y)
+    return streaks + canvas.fineness * (0.3 * arcs + 0.4 * pores + 0.25 * lines)
 
 
 def planks(canvas: Canvas, recipe: Recipe) -> Surface:
