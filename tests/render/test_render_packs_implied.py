@@ -90,6 +90,26 @@ def test_grass_is_tinted_above_and_a_plant_is_a_cross(tmp_path):
     assert model_of(tmp_path, "wheat[age=7]", "wheat_stage7") is not None
 
 
+def test_blocks_of_newer_games_and_mods_are_cubes_or_crosses(tmp_path):
+    cube = model_of(tmp_path, "minecraft:resin_block", "resin_block")
+    assert set(sides_of(cube).values()) == {"resin_block"}
+    stairs = "minecraft:resin_brick_stairs[facing=east,half=bottom,shape=straight]"
+    model = model_of(tmp_path, stairs, "resin_bricks")
+    assert model is not None and len(model.elements) == 2
+    flower = RED.copy()
+    flower[:, :5] = 0
+    files = {PICTURE.format("open_eyeblossom"): flower}
+    looks = PackLooks([folder_pack(tmp_path / "flowers", files)])
+    plant = looks.model("minecraft:open_eyeblossom")
+    assert plant is not None and plant.elements[0].turn is not None
+
+
+def test_a_renamed_plant_is_found_by_either_name(tmp_path):
+    assert model_of(tmp_path / "a", "minecraft:short_grass", "short_grass") is not None
+    assert model_of(tmp_path / "b", "minecraft:short_grass", "grass") is not None
+    assert model_of(tmp_path / "c", "minecraft:grass", "short_grass") is not None
+
+
 @pytest.mark.parametrize("state", ["chest", "red_bed", "oak_sign", "dirt", "water"])
 def test_what_has_no_texture_or_is_drawn_in_code_is_left_to_the_next(tmp_path, state):
     assert model_of(tmp_path, state, "chest", "red_bed", "oak_sign", "oak_planks") is None

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from world2minecraft.minecraft.states import BlockState
 from world2minecraft.render.elements import BlockModel, Element, FaceLook, face_uv
 from world2minecraft.render.packs.tints import Tint
+from world2minecraft.render.texture import Texture
 
 FLUIDS = ("minecraft:water", "minecraft:lava")
 FULL = 8 / 9  # The height of a source, blocks; each level below it is a ninth lower.
@@ -17,24 +18,26 @@ _FLOW_SCALE = 0.5
 
 
 def fluid_model(
-    state: BlockState, has_texture: Callable[[str], bool], tint: tuple[int, int, int] | None
+    state: BlockState,
+    texture_of: Callable[[str], Texture | None],
+    tint: tuple[int, int, int] | None,
 ) -> BlockModel | None:
     """Return the model of water or lava, None where the packs have no texture of it.
 
     Args:
         state: with its ``level``: 0 a source, 1 to 7 lower and lower, 8 and more falling.
-        has_texture: whether there is a texture of a name.
+        texture_of: a texture's name to the packs' texture.
         tint: the colour of water; lava has its own.
     """
     block = state.name.partition(":")[2]
     still, flow = (f"minecraft:block/{block}_{kind}" for kind in ("still", "flow"))
-    if not has_texture(still):
+    if texture_of(still) is None:
         return None
     level = int(state.get("level", "0")) if state.get("level", "0").isdigit() else 0
     high = (1.0, 1.0 if level > 7 else FULL - level / 9, 1.0)  # What falls has more above it.
     is_lava = block == "lava"
     faces = tuple(
-        _face(side, high, still, flow if has_texture(flow) else still, None if is_lava else tint)
+        _face(side, high, still, flow if texture_of(flow) else still, None if is_lava else tint)
         for side in range(6)
     )
     box = Element((0.0, 0.0, 0.0), high, faces, emission=LAVA_LIGHT if is_lava else 0)

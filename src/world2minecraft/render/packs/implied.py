@@ -5,16 +5,18 @@ those models, the boxes of ``minecraft/visual.py`` wear the textures that a bloc
 ``oak_stairs`` those of ``oak_planks``, a log its rings at the ends, a furnace its front.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from world2minecraft.minecraft.blocks import block_table
 from world2minecraft.minecraft.states import BlockState
+from world2minecraft.minecraft.versions import name_in_version, new_names
 from world2minecraft.minecraft.visual import family_of, visual_boxes_of
 from world2minecraft.render.elements import FACE_NAMES, BlockModel, Element, FaceLook, face_uv
 from world2minecraft.render.packs.tints import Tint
 from world2minecraft.render.packs.turning import carry, free_turn, quarter_turn
+from world2minecraft.render.texture import Texture
 
 # Endings of names that say a shape, and those of what it may be made of.
 SHAPES = ("stairs", "slab", "wall", "fence_gate", "fence", "button", "pressure_plate")
@@ -40,37 +42,55 @@ Names = Callable[[str], str | None]  # A picture's name without its folder to th
 
 
 def implied_model(
-    state: BlockState, has_texture: Callable[[str], bool], tint_of: Callable[[int], Tint]
+    state: BlockState,
+    texture_of: Callable[[str], Texture | None],
+    tint_of: Callable[[int], Tint],
+    is_free: bool,
 ) -> BlockModel | None:
     """Return a model of a complete state from the textures of its name; None where there are none.
 
-    A block that the table does not know has none: its boxes would be a guess.
-
     Args:
         state: with all its properties.
-        has_texture: whether the packs have a texture of a name.
+        texture_of: a texture's name to the packs' texture.
         tint_of: a tint index to a colour, as for models that are read.
+        is_free: whether a block that the table does not know may be guessed: no pack says more of
+            it. It is a cube, or a cross where its texture has holes.
     """
-    if state.name not in block_table().blocks:
+    is_known = state.name in block_table().blocks
+    if not (is_known or is_free):
         return None
     space, block = state.name.split(":")
+    names = (block, *other_names(state.name))
     family = family_of(state)
 
     def named(picture: str) -> str | None:
         name = f"{space}:block/{picture}"
-        return name if has_texture(name) else None
+        return name if texture_of(name) is not None else None
 
     if family is not None and family.name in CROSSES:
-        return _cross(state, named, tint_of(0))
+        return _cross(names, state, named, tint_of(0))
     if family is not None and family.name not in BOXES:
         return None
-    textures = next(
-        (found for stem in _stems(block) if (found := _sides(stem, state, named))), None
-    )
+    stems = [stem for name in names for stem in _stems(name)]
+    textures = next((found for stem in stems if (found := _sides(stem, state, named))), None)
     if textures is None:
         return None
     boxes = visual_boxes_of(str(state)).astype(float).tolist()
+    is_guess = not is_known and boxes == [[0, 0, 0, 1, 1, 1]]
+    if is_guess and _is_cut_out(texture_of(textures["north"])):
+        return _cross(names, state, named, tint_of(0))
     return BlockModel(tuple(_box(box, textures, state, tint_of(0)) for box in boxes))
+
+
+def _is_cut_out(texture: Texture | None) -> bool:
+    return texture is not None and texture.has_holes and not texture.translucent
+
+
+def other_names(name: str) -> list[str]:
+    """Return what older and newer games call a block, without the namespace."""
+    newest = name_in_version(name, 1 << 30)
+    others = [newest, new_names().get(newest, newest)]
+    return [other.partition(":")[2] for other in others if other != name]
 
 
 def _stems(block: str) -> list[str]:
@@ -130,13 +150,14 @@ def _box(box: list[float], textures: dict[str, str], state: BlockState, tint: Ti
     return carry(element, quarter_turn(*turn)) if turn else element
 
 
-def _cross(state: BlockState, named: Names, tint: Tint) -> BlockModel | None:
-    """Return two crossed pictures of a plant."""
-    block = state.name.split(":")[1]
+def _cross(names: Sequence[str], state: BlockState, named: Names, tint: Tint) -> BlockModel | None:
+    """Return two crossed pictures of a plant, None where there is none of any of its names."""
     endings = [f"_stage{state.get('age')}", "", "_plant"]
     if state.get("half") in ("upper", "lower"):
         endings = ["_top" if state.get("half") == "upper" else "_bottom"]
-    texture = next((found for one in endings if (found := named(block + one))), None)
+    texture = next(
+        (found for name in names for one in endings if (found := named(name + one))), None
+    )
     if texture is None:
         return None
     low, high = (0.05, 0.0, 0.5), (0.95, 1.0, 0.5)

@@ -10,11 +10,10 @@ from pathlib import Path
 
 from world2minecraft.errors import UsageError
 from world2minecraft.minecraft.states import BlockState, complete, parse_state
-from world2minecraft.minecraft.versions import name_in_version, new_names
 from world2minecraft.render.elements import BlockModel, Element
 from world2minecraft.render.packs.blockstates import Part, parts_of
 from world2minecraft.render.packs.fluids import FLUIDS, fluid_model
-from world2minecraft.render.packs.implied import implied_model
+from world2minecraft.render.packs.implied import implied_model, other_names
 from world2minecraft.render.packs.layering import merged
 from world2minecraft.render.packs.model_files import MOST_ELEMENTS, flatten, texture_of
 from world2minecraft.render.packs.resources import Resources
@@ -90,30 +89,25 @@ class PackLooks:
         except UsageError:
             return None
         if state.name in FLUIDS:
-            return fluid_model(state, self._has_texture, self._tints["water"])
-        model, is_read = self._read(state)
-        if model is None and not is_read:
-            model = implied_model(state, self._has_texture, tint_rule(state, self._tints))
-        return model
-
-    def _has_texture(self, name: str) -> bool:
-        space, _, path = name.partition(":")
-        file = f"assets/{space}/textures/{path}.png"
-        return self._resources.has(file) and self.texture(name) is not None
-
-    def _read(self, state: BlockState) -> tuple[BlockModel | None, bool]:
-        """Return the model that the packs' files say, and whether they say one (or none)."""
+            return fluid_model(state, self._present, self._tints["water"])
         space, block = state.name.split(":")
-        for name in (block, *_other_names(state.name)):
-            file = f"assets/{space}/blockstates/{name}.json"
-            root = self._resources.object(file)
+        names = [f"assets/{space}/blockstates/{n}.json" for n in (block, *other_names(state.name))]
+        for name in names:
+            root = self._resources.object(name)
             if root is not None:
                 try:
-                    return self._drawn(state, parts_of(root, dict(state.properties))), True
+                    return self._drawn(state, parts_of(root, dict(state.properties)))
                 except ValueError as error:
                     self._resources.note(f"{state.name}: {error}")
                     break
-        return None, False
+        is_free = not any(self._resources.has(name) for name in names)
+        return implied_model(state, self._present, tint_rule(state, self._tints), is_free)
+
+    def _present(self, name: str) -> Texture | None:
+        """Return the texture of a name, None where there is none, which is no problem."""
+        space, _, path = name.partition(":")
+        has_file = self._resources.has(f"assets/{space}/textures/{path}.png")
+        return self.texture(name) if has_file else None
 
     def _drawn(self, state: BlockState, parts: tuple[Part, ...]) -> BlockModel | None:
         """Return the parts' elements as one model; None where the game draws a part in code."""
@@ -148,10 +142,3 @@ def _texture_name(face: str, textures: Mapping[str, object], ending: str) -> str
     """Return the name of a face's texture, marked where the block is of clear stuff."""
     name = texture_of(face, textures)
     return name if not ending or is_clear(name) else name + ending
-
-
-def _other_names(name: str) -> list[str]:
-    """Return what older and newer games call a block, without the namespace."""
-    newest = name_in_version(name, 1 << 30)
-    others = [newest, new_names().get(newest, newest)]
-    return [other.partition(":")[2] for other in others if other != name]
