@@ -46,9 +46,9 @@ _SHAPES = (
 )
 _BARKS = ("_log", "_stem")  # Wood and hyphae are bark on all six sides.
 _MATERIAL_ENDINGS = (
+    "_planks",  # Before the bare name: a bamboo slab is of planks, not of the plant.
     "",
     "s",
-    "_planks",
     "_block",
     "_wool",
     "_log",
