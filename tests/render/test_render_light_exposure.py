@@ -26,7 +26,13 @@ def exposure_of(states, eyes=None, **look) -> float:
 def test_open_air_by_day_is_as_it_is():
     states = np.zeros((8, 4, 8), np.uint16)
     states[:, 0] = 1
-    assert exposure_of(states) == pytest.approx(0.75, abs=0.2)
+    assert exposure_of(states) == pytest.approx(1, abs=0.1)
+
+
+def test_the_sun_s_shadow_does_not_change_the_exposure_of_the_open():
+    states = np.zeros((8, 4, 8), np.uint16)
+    states[:, 0] = 1
+    assert exposure_of(states, sun_shadow=True) == pytest.approx(exposure_of(states))
 
 
 def test_darker_rooms_are_opened_further():
@@ -43,9 +49,9 @@ def test_a_night_stays_darker_than_a_day():
 
 
 def test_only_what_is_around_the_eyes_counts():
-    states = np.concatenate([room(lamp=True), room()], axis=0)
+    states = np.concatenate([room(True, True), room()], axis=0)
     bright, dark = exposure_of(states, [(6, 3, 6)]), exposure_of(states, [(18, 3, 6)])
-    assert bright < exposure_of(states) < dark
+    assert bright < exposure_of(states) <= dark
     assert exposure_of(states, [(18, 3, 6), (6, 3, 6)]) == exposure_of(
         states, [(6, 3, 6), (18, 3, 6)]
     )

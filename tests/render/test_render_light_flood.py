@@ -137,3 +137,12 @@ def test_small_volumes_have_light(shape):
     field = light_field(np.zeros(shape, np.uint16), PALETTE)
     assert field.sky_light.shape == shape
     assert (field.sky_light == 15).all()
+
+
+def test_hidden_lamps_may_be_left_out():
+    palette = ("minecraft:air", "minecraft:light[level=12]", "minecraft:lantern")
+    states = np.array([[[1, 0, 0, 0, 2]]], np.uint16)
+    shining = light_field(states, palette).block_light[0, 0]
+    natural = light_field(states, palette, hidden_lamps=False).block_light[0, 0]
+    assert shining.tolist() == [12, 12, 13, 14, 15]
+    assert natural.tolist() == [11, 12, 13, 14, 15]

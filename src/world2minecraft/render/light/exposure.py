@@ -12,9 +12,10 @@ from world2minecraft.minecraft.rules.flood import SHUT, SOLID, steps_of
 from world2minecraft.render.light.field import LightField
 from world2minecraft.render.light.look import LookLight
 
-DAY_KEY, NIGHT_KEY = 0.62, 0.34  # The light that surfaces shall have; a night stays a night.
+# The light that surfaces shall have, by what they have most of: a night stays a night.
+DAY_KEY, LAMP_KEY, NIGHT_KEY = 1.05, 0.80, 0.30
 ADAPTS = 0.75  # How much of the way there: dim rooms stay a little dimmer than bright ones.
-LEAST, MOST = 0.6, 5.0
+LEAST, MOST = 0.6, 4.0
 REACH_BLOCKS = 24  # Steps from an eye: at 4 blocks per metre, a room.
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
@@ -38,14 +39,16 @@ def scene_exposure(field: LightField, look: LookLight, eyes: np.ndarray | None =
         cells = near if len(near) else cells
     if not len(cells):
         return 1.0
-    light = np.exp(np.log(_surface_light(field, look, cells)).mean())
+    sky, lamps = _surface_light(field, look, cells)
+    light = np.exp(np.log(sky + lamps).mean())
     daylight = min(float(LUMINANCE @ look.sky.light), 1.0)
     key = NIGHT_KEY + (DAY_KEY - NIGHT_KEY) * daylight
+    key += (LAMP_KEY - key) * lamps.sum() / (sky + lamps).sum()
     return float(np.clip((key / light) ** ADAPTS, LEAST, MOST))
 
 
 def _surface_light(field: LightField, look: LookLight, cells: np.ndarray) -> np.ndarray:
-    """Return the luminance of the light in cells, float64 [N], at exposure 1."""
+    """Return the luminance of the sky's and of the lamps' light in cells, float64 [2, N]."""
     lit = look.parameters(1.0)
     ambient, sky, block = (
         float(LUMINANCE @ colour)
@@ -58,7 +61,10 @@ def _surface_light(field: LightField, look: LookLight, cells: np.ndarray) -> np.
     full = 15 * field.reach
     levels = (field.sky.reshape(-1)[cells] / full, field.block.reshape(-1)[cells] / full)
     shines = [level / (1 + lit.curve * (1 - level)) for level in levels]
-    return ambient + sky * shines[0] + block * shines[1]
+    sky_light = ambient + sky * shines[0]
+    if look.sun_shadow:  # In the open the sun shines on about as much as it does not.
+        sky_light += (levels[0] == 1) * (float(LUMINANCE @ look.sky.light) - sky)
+    return np.array([sky_light, block * shines[1]])
 
 
 def _standing(field: LightField) -> np.ndarray:

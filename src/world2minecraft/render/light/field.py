@@ -27,6 +27,7 @@ class LightField:
     block: np.ndarray  # uint8 [X + 2, Y + 2, Z + 2]
     lattice: np.ndarray  # uint16 [3, X + 2, Y + 2, Z + 2], see render.light.lattice
     reach: float = 1.0
+    hidden_lamps: bool = True
 
     @property
     def sky_light(self) -> np.ndarray:
@@ -39,7 +40,13 @@ class LightField:
         return self.block[1:-1, 1:-1, 1:-1]
 
 
-def light_field(states: np.ndarray, palette: tuple[str, ...], reach: float = 1.0) -> LightField:
+def light_field(
+    states: np.ndarray,
+    palette: tuple[str, ...],
+    reach: float = 1.0,
+    *,
+    hidden_lamps: bool = True,
+) -> LightField:
     """Return the light of a volume.
 
     Args:
@@ -47,6 +54,8 @@ def light_field(states: np.ndarray, palette: tuple[str, ...], reach: float = 1.0
         palette: block states.
         reach: how many blocks light goes for each level that it loses, 1 to 16, to a fifteenth;
             1 is the game's.
+        hidden_lamps: whether the game's invisible light blocks shine. A room that is full of them,
+            so that no monsters come, looks natural by its windows and lamps alone.
 
     Raises:
         ValueError: the reach is out of range, or the palette has over 65,535 states.
@@ -54,11 +63,11 @@ def light_field(states: np.ndarray, palette: tuple[str, ...], reach: float = 1.0
     if len(palette) > MOST_STATES:
         raise ValueError(f"a palette may have {MOST_STATES:,} states, not {len(palette):,}")
     reach = whole_reach(reach)
-    words, gives = light_rows(palette)
+    words, gives = light_rows(palette, hidden_lamps)
     kinds = with_margin(states.astype(np.uint16) + np.uint16(1), 0)
     sky = flood_sky(kinds, words, reach)
     block = flood_block(kinds, words, gives, reach)
     lattice = np.zeros((3, *kinds.shape), np.uint16)
     low, high = np.zeros(3, np.int64), np.array(kinds.shape, np.int64)
     fill_lattice(lattice, sky, block, kinds, words, quarters(reach), low, high)
-    return LightField(kinds, words, gives, sky, block, lattice, reach)
+    return LightField(kinds, words, gives, sky, block, lattice, reach, hidden_lamps)

@@ -1,5 +1,6 @@
 """How a picture is lit: what a user chooses, and what it comes to for the kernel."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,12 +14,15 @@ PRESETS = ("shader", "game", "neutral")
 DEFAULT_HOUR = 11.0  # Late morning: a high sun with shadows that still have a direction.
 WARM = (1.0, 0.86, 0.62)  # The game's torchlight.
 LAMP = 0.95  # Full block light beside full daylight.
+# The same as eyes see it, linear: paler beside the sun, golden in the dark.
+LAMP_BY_DAY, LAMP_BY_NIGHT = (0.58, 0.52, 0.42), (0.98, 0.72, 0.42)
 GLOW = 1.9  # A lamp's own face: past the shoulder, so that it looks lit.
-AMBIENT = 0.06
-CORNER = 0.26  # In linear light, what looks like the game's 0.2 on the screen.
+AMBIENT = 0.05
+DIM_BY_NIGHT = (0.45, 0.48, 0.60)  # Of the ambient light.
+CORNER = 0.28  # In linear light, what looks like the game's 0.2 on the screen.
 # Shades of faces: x (east, west), up, down, z (north, south).
 GAME_SHADE = (0.6, 1.0, 0.5, 0.8)
-SOFT_SHADE = (0.72, 1.0, 0.62, 0.86)
+SOFT_SHADE = (0.74, 1.0, 0.70, 0.87)
 NEUTRAL_SHADE = (0.85, 1.0, 0.70, 0.94)
 NEUTRAL_SKY = (238, 238, 236), (226, 226, 224), (214, 214, 212)  # sRGB: a quiet, warm light grey.
 NEUTRAL_EXPOSURE = 1.10
@@ -68,8 +72,10 @@ class LookLight:
             return _neutral(self.exposure or 1.0)
         sky, screen = self.sky, self.preset == "game"
         light = sky.shade if self.sun_shadow else sky.light
-        ambient = AMBIENT * (0.4 + 1.2 * self.brightness) * np.array([1.0, 0.98, 0.95])
-        colours = np.array([light, LAMP * np.array(WARM), ambient, sky.sun])
+        daylight = min(sky.light[1], 1.0)
+        lamp = LAMP * np.array(WARM) if screen else mixed(LAMP_BY_NIGHT, LAMP_BY_DAY, daylight)
+        ambient = AMBIENT * (0.4 + 1.2 * self.brightness) * mixed(DIM_BY_NIGHT, (1, 1, 1), daylight)
+        colours = np.array([light, lamp, ambient, sky.sun])
         colours[3] *= self.sun_shadow
         return LitParameters._make([
             *(colours * exposure).reshape(-1).tolist(),
@@ -92,6 +98,11 @@ class LookLight:
         ground = 0.5 * np.array(sky.horizon)
         colours = np.array([sky.zenith, sky.horizon, ground, sky.sun]) * exposure**0.5
         return Background._make([*colours.reshape(-1).tolist(), *sky.sun_direction])
+
+
+def mixed(first: Sequence[float], second: Sequence[float], share: float) -> np.ndarray:
+    """Return a colour between two, ``share`` of the way to the second."""
+    return np.array(first) * (1 - share) + np.array(second) * share
 
 
 def _neutral(exposure: float) -> LitParameters:

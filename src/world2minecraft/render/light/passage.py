@@ -19,7 +19,7 @@ SHAPED = (
 # Whole cubes that light falls through undimmed.
 CLEAR_CUBES = ("glass", "*_glass", "barrier", "copper_grate", "*_copper_grate")
 WET = ("water", "lava", "kelp", "kelp_plant", "seagrass", "tall_seagrass", "bubble_column")
-MARGIN = 0  # The row of the air around a volume.
+HIDDEN_LAMP = "minecraft:light"
 
 
 @lru_cache(maxsize=1 << 16)
@@ -42,15 +42,25 @@ def word_of(state: str) -> int:
     return word
 
 
-def light_rows(palette: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
+def light_rows(
+    palette: tuple[str, ...], hidden_lamps: bool = True
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the tables of a palette, a row for each state after one for the margin.
+
+    Args:
+        palette: block states.
+        hidden_lamps: whether the game's invisible light blocks shine.
 
     Returns:
         uint32 [P + 1], the words of ``minecraft.rules.flood``, and uint8 [P + 1], the light that
         each gives, 0 to 15.
     """
     words = [SHUT, *map(word_of, palette)]
-    return np.array(words, np.uint32), np.array([0, *map(light_of, palette)], np.uint8)
+    gives = [
+        0 if state.partition("[")[0] == HIDDEN_LAMP and not hidden_lamps else light_of(state)
+        for state in palette
+    ]
+    return np.array(words, np.uint32), np.array([0, *gives], np.uint8)
 
 
 def _matches(name: str, patterns: tuple[str, ...]) -> bool:

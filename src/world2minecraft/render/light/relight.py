@@ -80,7 +80,7 @@ def _learn(field: LightField, palette: tuple[str, ...]) -> None:
     known = len(field.words) - 1
     if not known <= len(palette) <= MOST_STATES:
         raise ValueError(f"the palette may have {known} to {MOST_STATES:,} states now")
-    words, gives = light_rows(palette[known:])
+    words, gives = light_rows(palette[known:], field.hidden_lamps)
     field.words = np.concatenate([field.words, words[1:]])
     field.gives = np.concatenate([field.gives, gives[1:]])
 
