@@ -177,6 +177,13 @@ def test_shade_and_light_are_read(tmp_path):
     assert (element.shade, element.emission) == (False, 12)
 
 
+def test_lamps_are_seen_at_full_brightness_while_they_are_lit(tmp_path):
+    looks = looks_of(tmp_path, cube_files("redstone_lamp", RED) | cube_files("glowstone", RED))
+    states = ("redstone_lamp[lit=true]", "redstone_lamp[lit=false]", "glowstone")
+    light = [model_of(looks, state).elements[0].emission for state in states]
+    assert light == [15, 0, 15]
+
+
 def tinted_block(block: str, index: int = 0) -> dict:
     faces = {"up": {"texture": "#all", "tintindex": index}, "down": {"texture": "#all"}}
     box = {"from": [0, 0, 0], "to": [16, 16, 16], "faces": faces}

@@ -5,10 +5,12 @@ What cannot be read is noted and left to the next source.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from world2minecraft.errors import UsageError
+from world2minecraft.minecraft.glow import is_luminous
 from world2minecraft.minecraft.states import BlockState, complete, parse_state
 from world2minecraft.render.elements import BlockModel, Element
 from world2minecraft.render.packs.blockstates import Part, parts_of
@@ -25,6 +27,7 @@ from world2minecraft.render.texture import Texture
 
 TEXTURE_PX = 128  # The largest side of the renderer's textures; larger ones of packs are reduced.
 
+FULL_LIGHT = 15
 MOST_ELEMENTS_OF_ALL = 200_000  # A thousand states of the game have about 5,000.
 
 
@@ -76,7 +79,8 @@ class PackLooks:
     def model(self, state: str) -> BlockModel | None:
         """Return the model of a state's text; None where no pack has one that can be read."""
         if state not in self._models:
-            self._models[state] = self._made(state)
+            model = self._made(state)
+            self._models[state] = _shining(model) if model and is_luminous(state) else model
         return self._models[state]
 
     def texture(self, name: str) -> Texture | None:
@@ -136,6 +140,12 @@ class PackLooks:
             if self.texture(name) is None:
                 plain = name.removesuffix(CLEAR)
                 raise ValueError(f"texture {plain} is in none of the packs, or cannot be read")
+
+
+def _shining(model: BlockModel) -> BlockModel:
+    """Return a lamp's model, seen at full brightness; files do not say which blocks are lamps."""
+    elements = tuple(replace(one, emission=one.emission or FULL_LIGHT) for one in model.elements)
+    return replace(model, elements=elements)
 
 
 def _texture_name(face: str, textures: Mapping[str, object], ending: str) -> str:
