@@ -118,3 +118,16 @@ GOLDEN = {
 def test_a_texture_stays_what_it_is(recipe):
     colour = np.ascontiguousarray(texture_of(recipe).colour)
     assert hashlib.sha256(colour.tobytes()).hexdigest()[:16] == GOLDEN[recipe]
+
+
+def test_a_stair_becomes_a_slope_and_all_else_stays():
+    from world2minecraft.render.textures.stencil import doubled
+
+    square = np.array([list("...."), list(".mm."), list(".mm."), list("....")])
+    corner = np.array([list("m.."), list("mm."), list("mmm")])
+    fine = doubled(square)
+    assert fine.shape == (8, 8)
+    assert (fine == "m").sum() == 12  # Four quarters of sixteen are cut.
+    assert ["".join(row) for row in doubled(corner)][1:4] == ["mmm...", "mmm...", "mmmmm."]
+    flat = np.full((5, 5), "m")
+    assert (doubled(flat) == "m").all()

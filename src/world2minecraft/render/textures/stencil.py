@@ -7,7 +7,7 @@ A letter says the ink and how light it is; ``.`` is a hole::
     2nd               1       2  3
     3rd               4       5  6
 
-At 16 px a letter is a texel. Above, the areas of letters keep their place and get round corners.
+At 16 px a letter is a texel. Above, areas keep their place, and their stairs become slopes.
 """
 
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from world2minecraft.render.textures.canvas import SIDE, Canvas
+from world2minecraft.render.textures.canvas import Canvas
 from world2minecraft.render.textures.recipe import Recipe
 
 TONES = {
@@ -30,31 +30,37 @@ INKS = {
     **dict.fromkeys("123", 2),
     **dict.fromkeys("456", 3),
 }
-SOLID_FIRST = 0.06  # So that a line of one texel stays in one piece where it goes askew.
 
 
 @lru_cache(maxsize=256)
 def letters(art: str, size_px: int) -> np.ndarray:
     """Return the letter of each texel, str [N, N], of 16 lines of 16 letters."""
-    rows = np.array([list(line) for line in art.split()])
-    if rows.shape != (16, 16):
-        raise ValueError(f"a stencil has 16 lines of 16 letters, not {rows.shape}")
-    if size_px == 16:
-        return rows
-    kinds = np.unique(rows)
-    weight = np.stack([_grown((rows == kind).astype(np.float64), size_px) for kind in kinds])
-    weight[kinds != "."] += SOLID_FIRST
-    return kinds[weight.argmax(axis=0)]
+    drawn = np.array([list(line) for line in art.split()])
+    if drawn.shape != (16, 16):
+        raise ValueError(f"a stencil has 16 lines of 16 letters, not {drawn.shape}")
+    while len(drawn) < size_px:
+        drawn = doubled(drawn)
+    return drawn
 
 
-def _grown(mask: np.ndarray, size_px: int) -> np.ndarray:
-    """Return a 16 by 16 mask between its texels' centres, float64 [N, N]."""
-    place = (np.arange(size_px) + 0.5) * (SIDE / size_px) - 0.5
-    low = np.floor(place).astype(np.int64)
-    part = place - low
-    first, second = np.clip(low, 0, 15), np.clip(low + 1, 0, 15)
-    across = mask[:, first] * (1 - part) + mask[:, second] * part
-    return across[first] * (1 - part)[:, None] + across[second] * part[:, None]
+def doubled(drawn: np.ndarray) -> np.ndarray:
+    """Return a picture of letters at twice the size; a stair becomes a slope.
+
+    Each quarter of a texel takes the letter of the two neighbours beside it where they agree and
+    the two across from it do not.
+    """
+    edge = np.pad(drawn, 1, mode="edge")
+    up, down, left, right = edge[:-2, 1:-1], edge[2:, 1:-1], edge[1:-1, :-2], edge[1:-1, 2:]
+    fine = drawn.repeat(2, axis=0).repeat(2, axis=1)
+    for row, column, first, second, third, fourth in (
+        (0, 0, up, left, down, right),
+        (0, 1, up, right, down, left),
+        (1, 0, down, left, up, right),
+        (1, 1, down, right, up, left),
+    ):
+        turn = (first == second) & (first != fourth) & (second != third)
+        fine[row::2, column::2] = np.where(turn, first, drawn)
+    return fine
 
 
 def by_letter(drawn: np.ndarray, values: Mapping[str, float], rest: float = 0.0) -> np.ndarray:
