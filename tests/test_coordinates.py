@@ -307,6 +307,52 @@ def test_the_papers_focal_length_is_too_long_by_the_aspect(width, height, fov):
 
 
 @given(st.integers(1, 4000), st.floats(1, 170))
+def test_a_field_of_view_comes_back_from_its_focal_length(side, fov):
+    assert co.fov_deg_of_focal_px(side, co.focal_px_of_fov(side, fov)) == pytest.approx(fov)
+
+
+@given(vectors, degrees, st.floats(-90, 90, allow_nan=False, width=32))
+def test_a_game_pose_comes_back_from_its_camera(eye, yaw, pitch):
+    """Straight up and down too, where the way that one looks says no yaw."""
+    camera_to_block = co.camera_to_block_of_game_pose(eye, yaw, pitch)
+    found_eye, found_yaw, found_pitch = co.game_pose_of_camera_to_block(camera_to_block)
+    assert np.array_equal(found_eye, eye)
+    assert -180 <= found_yaw < 180
+    off = (found_yaw - yaw + 180) % 360 - 180
+    assert off == pytest.approx(0, abs=1e-4)
+    assert found_pitch == pytest.approx(pitch, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("yaw", "pitch", "ahead"),
+    [(0, 0, (0, 0, 1)), (90, 0, (-1, 0, 0)), (180, 0, (0, 0, -1)), (-90, 0, (1, 0, 0)),
+     (0, 90, (0, -1, 0)), (0, -90, (0, 1, 0))],
+)  # fmt: skip
+def test_the_games_yaw_begins_in_the_south_and_goes_with_the_clock(yaw, pitch, ahead):
+    pose = co.camera_to_block_of_game_pose(np.zeros(3), yaw, pitch)
+    np.testing.assert_allclose(pose[:3, 2], ahead, atol=1e-12)
+
+
+@given(vectors, degrees, pitches, scales, vectors)
+def test_a_camera_that_is_carried_sees_the_same(eye, yaw, pitch, scale, point):
+    """What is ahead in blocks is as far ahead in the room, in metres, and in the same pixel."""
+    block_to_room = co.block_to_room(np.array([1.0, 2.0]), scale)
+    camera_to_block = co.camera_to_block_of_game_pose(eye, yaw, pitch)
+    camera_to_room = co.carry_camera(camera_to_block, block_to_room)
+    assert_rotation(camera_to_room[:3, :3])
+    in_blocks = co.apply(co.invert_rigid(camera_to_block), point)
+    in_room = co.apply(co.invert_rigid(camera_to_room), co.apply(block_to_room, point))
+    np.testing.assert_allclose(in_room * scale, in_blocks, atol=1e-6)
+    back = co.carry_camera(camera_to_room, co.invert(block_to_room))
+    np.testing.assert_allclose(back, camera_to_block, atol=1e-6)
+
+
+@pytest.mark.parametrize(("scale", "eye"), [(1.0, 1.62), (4.0, 6.48)])
+def test_a_player_grows_with_the_scale(scale, eye):
+    assert co.eye_height_blocks(scale) == pytest.approx(eye)
+
+
+@given(st.integers(1, 4000), st.floats(1, 170))
 def test_a_focal_length_spans_its_field_of_view(side, fov):
     seen = 2 * np.degrees(np.arctan(side / 2 / co.focal_px_of_fov(side, fov)))
     assert seen == pytest.approx(fov)

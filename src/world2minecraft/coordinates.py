@@ -167,12 +167,48 @@ def camera_to_block_of_game_pose(
     return pose
 
 
+def eye_height_blocks(blocks_per_metre: float) -> float:
+    """Return how high a player's eye is over the feet, whose size is that of the room's scale."""
+    return PLAYER_EYE_BLOCKS * blocks_per_metre
+
+
+def game_pose_of_camera_to_block(camera_to_block: np.ndarray) -> tuple[np.ndarray, float, float]:
+    """Undo ``camera_to_block_of_game_pose``: the eye, float64 [3], the game's yaw and pitch.
+
+    The yaw is from -180 up to 180, and holds where the camera looks straight up or down too. A
+    camera that leans to a side has no such pose: its lean is left out.
+    """
+    right, down, forward = camera_to_block[:3, :3].T
+    yaw_deg = np.degrees(np.arctan2(-right[2], -right[0]))
+    pitch_deg = np.degrees(np.arctan2(-forward[1], max(-down[1], 0.0)))
+    wrapped = (float(yaw_deg) + 180.0) % 360.0 - 180.0
+    return camera_to_block[:3, 3].copy(), wrapped, float(pitch_deg)
+
+
+def carry_camera(camera_to_a: np.ndarray, a_to_b: np.ndarray) -> np.ndarray:
+    """Return ``camera_to_b``: frame a's scale moves the camera's place and not its own lengths.
+
+    Of blocks and rooms: ``camera_to_room = carry_camera(camera_to_block, block_to_room)``, and
+    back by the inverse of ``block_to_room``.
+    """
+    scale = np.linalg.norm(a_to_b[:3, 0])
+    pose = np.eye(4)
+    pose[:3, :3] = a_to_b[:3, :3] @ camera_to_a[:3, :3] / scale
+    pose[:3, 3] = apply(a_to_b, camera_to_a[:3, 3])
+    return pose
+
+
 def focal_px_of_fov(side_px: int, fov_deg: float) -> float:
     """Return the focal length in pixels of a field of view across ``side_px`` pixels.
 
     The game's FOV is vertical: pass the height. The paper passes the width with the same angle.
     """
     return side_px / (2 * np.tan(np.radians(fov_deg) / 2))
+
+
+def fov_deg_of_focal_px(side_px: int, focal_px: float) -> float:
+    """Undo ``focal_px_of_fov``: the field of view across ``side_px`` pixels, in degrees."""
+    return float(np.degrees(2 * np.arctan(side_px / (2 * focal_px))))
 
 
 # The paper's own reading, kept for ``paper_compat``; docs/conventions.md tells its two slips.

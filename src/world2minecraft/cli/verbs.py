@@ -30,6 +30,7 @@ VERBS: dict[str, str] = {
     "furniture add": "Add a piece of your own from a schematic.",
     "furniture sheet": "Draw all furniture on one sheet.",
     "palettes": "List the palettes, or check one of your own.",
+    "render": "Draw a build: pictures, depth, ids, walks and turntables.",
     "convert": "Turn any form of a room or build into any other.",
     "clean": "Mend a built room as a person would.",
     "install": "Copy a built world to where the game finds it.",
@@ -42,6 +43,7 @@ w2m demo                                  a room to OUT/, nothing needed
 w2m scan my_scan                          what is in this folder?
 w2m reconstruct my_scan --out OUT         the whole way
 w2m install OUT                           the world comes into your game
+w2m render OUT --tour --out walk.gif      a walk through it, as a picture that moves
 w2m doctor                                check this machine
 w2m convert house.schem worlds/house      a schematic becomes a world
 """

@@ -1,0 +1,172 @@
+"""``w2m render``: pictures of any build: from the game's poses, from outside, on a walk within."""
+
+from collections.abc import Iterator
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from world2minecraft.cli import render_options as option
+from world2minecraft.cli.render_files import (
+    LINES_FILE,
+    Target,
+    Writer,
+    check_many,
+    one_size,
+    target_of,
+)
+from world2minecraft.cli.render_shots import Plan, View, plan_of, turntable_count, view_of
+from world2minecraft.cli.render_source import Source, read_source
+
+if TYPE_CHECKING:
+    from world2minecraft.render import Picture
+    from world2minecraft.render.views import Shot
+    from world2minecraft.types import BlockVolume
+
+EXAMPLES = """\
+w2m render OUT                                        from where the player starts
+w2m render house.schem --out house.png                a schematic, from outside
+w2m render OUT --pose 4,64,-3,90,10 --out here.jpg    as F3 in the game says
+w2m render OUT --tour --out walk.mp4                  a walk through the rooms
+w2m render OUT --turntable --out room.gif             the room turns on a plain ground
+w2m render OUT --tour --frames 200 --outputs rgb,depth,id --out DATA
+w2m render OUT --poses DATA/poses.jsonl --out AGAIN   the same views, once more
+"""
+
+
+def run(
+    source: option.SourcePath,
+    out: option.Out = None,
+    pose: option.Pose = None,
+    poses: option.Poses = None,
+    orbit: option.Orbit = False,
+    tour: option.Tour = False,
+    turntable: option.Turntable = False,
+    frames: option.Frames = None,
+    opened: option.Opened = None,
+    box: option.BoxText = "",
+    size: option.Size = "1280x720",
+    vfov: option.VerticalFov = None,
+    hfov: option.HorizontalFov = None,
+    outputs: option.Outputs = "rgb",
+    image_format: option.ImageFormat = "png",
+    depth_format: option.DepthFormat = "png",
+    depth_scale: option.DepthScale = 1000,
+    quality: option.Quality = 92,
+    fps: option.Rate = 24.0,
+    threads: option.Threads = None,
+) -> None:
+    """Draw a build, without the game, a display or a graphics card.
+
+    One kind of view a command: --pose, --poses, --orbit, --tour or --turntable; without any, where
+    the player of a world of this program starts, and other builds from outside. Beside the
+    pictures lies NAME.poses.jsonl (in a folder poses.jsonl) with the pose, the intrinsics and the
+    files of each, which --poses reads again; names.json says what the numbers of ids mean.
+
+    Raises:
+        UsageError: the words contradict each other, or one is out of range.
+        InputError: the build or the poses cannot be read, or the output cannot be written.
+    """
+    option.check_count(frames, fps)
+    choice = option.camera_choice(size, vfov, hfov)
+    given = tuple(option.pose_of(text) for text in pose or ())
+    flags = {"orbit": orbit, "tour": tour, "turntable": turntable}
+    view = view_of(given, poses, flags, frames, fps, opened)  # type: ignore[arg-type]
+    from world2minecraft.render.output import layers_named
+
+    files = option.file_choice(image_format, depth_format, quality, depth_scale)
+    wanted = layers_named(outputs)
+    count = frames if frames is not None else len(given) or None
+    target = target_of(out, source.resolve().stem, view.kind, wanted, files, count)
+    built = read_source(source, option.box_of(box))
+    draw(built, view, choice, target, option.threads_of(threads))
+
+
+def draw(
+    source: Source, view: View, choice: option.CameraChoice, target: Target, threads: int
+) -> None:
+    """Draw a view and say what was drawn. Raises what ``run`` raises."""
+    from time import perf_counter
+
+    from world2minecraft.cli.progress import shown
+
+    plan = plan_of(view, source, choice, target.medium)
+    count = len(plan.shots) or turntable_count(view, target.medium)
+    check_many(target, count)
+    one_size(plan.shots, target)
+    for note in [*source.notes, *plan.notes]:
+        print(f"note: {note}")
+    tour_id = f"{source.name}-{view.kind}"
+    writer = Writer(target, source.volume.block_to_room, source.name, tour_id)
+    began = perf_counter()
+    with shown() as progress, writer.open(view.rate_hz):
+        if view.kind == "turntable":
+            _draw_turntable(source, view, choice, writer, count, threads, progress)
+        else:
+            _draw_plan(plan, writer, threads, progress)
+    writer.finish(plan.volume_of(plan.shots[0]) if plan.shots else source.volume)
+    _say(writer, view, source, (perf_counter() - began) / count)
+
+
+def _draw_plan(plan: Plan, writer: Writer, threads: int, progress) -> None:
+    from world2minecraft.render.output import needs_of
+
+    needs = needs_of(writer.target.layers)
+    progress("render", 0, len(plan.shots))
+    for done, (shot, picture, volume) in enumerate(_pictures(plan, needs, threads), 1):
+        writer.picture(shot, picture, volume)
+        progress("render", done, len(plan.shots))
+
+
+def _pictures(
+    plan: Plan, needs: tuple[str, ...], threads: int
+) -> Iterator[tuple["Shot", "Picture", "BlockVolume"]]:
+    """Take the pictures of a plan; each volume that is seen is made ready once at a time."""
+    from world2minecraft.render import prepare_scene
+    from world2minecraft.render.views import frames_of
+
+    for _, run_of in groupby(plan.shots, key=lambda shot: id(plan.volume_of(shot))):
+        shots = list(run_of)
+        volume = plan.volume_of(shots[0])
+        scene = prepare_scene(volume)
+        pictures = frames_of(scene, shots, outputs=needs, threads=threads)
+        for shot, picture in zip(shots, pictures, strict=True):
+            yield shot, picture, volume
+
+
+def _draw_turntable(
+    source: Source, view: View, choice: option.CameraChoice, writer: Writer, count: int,
+    threads: int, progress,
+) -> None:  # fmt: skip
+    from world2minecraft.errors import UsageError
+    from world2minecraft.render.views.turntable import FOV_DEG, turntable
+
+    if writer.target.layers != ("rgb",):
+        raise UsageError("a turntable is colour alone; --orbit has depth and ids too")
+    turning = turntable(
+        source.volume,
+        choice.camera(FOV_DEG),
+        count,
+        threads=threads,
+        rate_hz=view.rate_hz,
+        opened=view.opened,
+    )
+    progress("render", 0, count)
+    for done, (shot, colour) in enumerate(turning, 1):
+        writer.colour(shot, colour)
+        progress("render", done, count)
+
+
+def _say(writer: Writer, view: View, source: Source, seconds: float) -> None:
+    """Say what was written, from where the first picture was taken, and what to try next."""
+    target, first, count = writer.target, writer.lines[0], len(writer.lines)
+    what = "one picture" if count == 1 else f"{count:,} pictures"
+    print(f"{target.path}: {what} of {first['width']}x{first['height']}, {seconds:.2f} s each")
+    if count == 1:
+        x, y, z, yaw, pitch = (first[key] for key in ("x", "y", "z", "yaw", "pitch"))
+        print(f"  pose   --pose {x:.2f},{y:.2f},{z:.2f},{yaw:.1f},{pitch:.1f},eye")
+    print(f"  poses  {target.beside(LINES_FILE)}")
+    name = source.name
+    following = {
+        "tour": f"--tour --outputs rgb,depth,id --out {name}_data     the same walk as a data set",
+        "turntable": f"--tour --out {name}_tour.gif     a walk through the rooms",
+    }.get(view.kind, f"--tour --out {name}_tour.gif     a walk through the rooms")
+    print(f"  next   w2m render {source.path} {following}")

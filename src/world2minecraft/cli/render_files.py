@@ -1,0 +1,180 @@
+"""What ``w2m render`` writes: pictures, one or a folder or moving, and the poses beside them."""
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from world2minecraft.cli.render_shots import Kind, Medium
+from world2minecraft.errors import OutputError, UsageError
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from world2minecraft.render import Picture
+    from world2minecraft.render.output import FileChoice
+    from world2minecraft.render.views import Shot
+    from world2minecraft.types import BlockVolume
+
+LINES_FILE, NAMES_FILE = "poses.jsonl", "names.json"
+_NUMBERS = ("block", "state", "class", "instance", "face")
+
+
+@dataclass(frozen=True)
+class Target:
+    """Where pictures go, and which layers of them."""
+
+    path: Path
+    medium: Medium
+    layers: tuple[str, ...]
+    choice: "FileChoice"
+
+    def beside(self, name: str) -> Path:
+        """Return the place of a file about the pictures: in their folder, or beside them."""
+        if self.medium == "folder":
+            return self.path / name
+        return self.path.with_name(f"{self.path.stem}.{name}")
+
+
+def target_of(
+    out: Path | None, name: str, kind: Kind, layers: tuple[str, ...], choice: "FileChoice",
+    frames: int | None,
+) -> Target:  # fmt: skip
+    """Return where pictures go.
+
+    Raises:
+        UsageError: the name's end says no kind of file, or one that cannot hold the layers.
+        OutputError: a folder is needed where a file is, or the other way round.
+    """
+    from dataclasses import replace
+
+    from world2minecraft.render.output import MOVING_SUFFIXES
+    from world2minecraft.render.output.images import COLOUR_SUFFIXES, DEPTH_SUFFIXES
+
+    if out is None:
+        end = {"tour": ".gif", "turntable": ".gif", "poses": "_views"}.get(kind, ".png")
+        out = Path(f"{name}{end}")
+    suffix = out.suffix.lower()
+    many = kind in ("poses", "tour", "turntable") or (frames or 1) > 1
+    moving = suffix in MOVING_SUFFIXES and (suffix != ".webp" or (many and frames != 1))
+    if moving:
+        if layers != ("rgb",):
+            raise UsageError(f"{out}: a moving picture holds rgb alone; give a folder for {layers}")
+        return Target(_file(out), "moving", layers, choice)
+    if suffix in COLOUR_SUFFIXES:
+        return Target(_file(out), "picture", layers, replace(choice, colour_suffix=suffix))
+    if suffix in DEPTH_SUFFIXES:
+        wanted = ("depth",) if layers == ("rgb",) else layers
+        return Target(_file(out), "picture", wanted, replace(choice, depth_suffix=suffix))
+    if suffix and not out.is_dir():
+        known = ", ".join(dict.fromkeys((*COLOUR_SUFFIXES, *DEPTH_SUFFIXES, *MOVING_SUFFIXES)))
+        raise UsageError(f"{out}: --out ends in {known}, or in nothing for a folder")
+    if out.exists() and not out.is_dir():
+        raise OutputError(out, "is a file; --out needs a folder, or a name such as house.png")
+    return Target(out, "folder", layers, choice)
+
+
+def _file(out: Path) -> Path:
+    if out.is_dir():
+        raise OutputError(out, "is a folder; give another name")
+    return out
+
+
+class Writer:
+    """Writes pictures as they come, and what was written as lines at the end."""
+
+    def __init__(self, target: Target, block_to_room: "np.ndarray", scene_id: str, tour_id: str):
+        """Begin with nothing written."""
+        self.target, self.lines = target, []
+        self._block_to_room, self._ids = block_to_room, {"scene_id": scene_id, "tour_id": tour_id}
+        self._moving: Any = None
+
+    @contextmanager
+    def open(self, rate_hz: float) -> Iterator[None]:
+        """Keep a moving picture open while the block runs; other files need nothing."""
+        from world2minecraft.render.output import moving_picture
+
+        if self.target.medium != "moving":
+            yield
+            return
+        with moving_picture(self.target.path, rate_hz) as self._moving:
+            yield
+
+    def picture(self, shot: "Shot", picture: "Picture", volume: "BlockVolume") -> None:
+        """Write all layers of a picture."""
+        from world2minecraft.files import write_bytes
+        from world2minecraft.render.output import LAYERS
+
+        if self._moving is not None:
+            self.colour(shot, picture.colour)
+            return
+        files = self._files()
+        for name, path in files.items():
+            write_bytes(path, LAYERS[name].make(picture, volume, self.target.choice))
+        self._line(shot, {name: path.name for name, path in files.items()})
+
+    def colour(self, shot: "Shot", colour: "np.ndarray | None") -> None:
+        """Write a picture of which there is colour alone."""
+        from world2minecraft.files import write_bytes
+        from world2minecraft.render.output import colour_bytes
+
+        if colour is None:
+            raise ValueError("the picture has no colour")
+        if self._moving is not None:
+            self._moving(colour)
+            self._line(shot, {"rgb": self.target.path.name})
+            return
+        path, choice = self._files()["rgb"], self.target.choice
+        write_bytes(path, colour_bytes(colour, choice.colour_suffix, choice.quality))
+        self._line(shot, {"rgb": path.name})
+
+    def finish(self, volume: "BlockVolume") -> None:
+        """Write the poses, and what the numbers mean where there are any."""
+        from world2minecraft.files import write_json
+        from world2minecraft.render.output import table_of_names
+        from world2minecraft.render.views import write_lines
+
+        write_lines(self.target.beside(LINES_FILE), self.lines)
+        if any(name in _NUMBERS for name in self.target.layers):
+            write_json(self.target.beside(NAMES_FILE), table_of_names(volume))
+
+    def _files(self) -> dict[str, Path]:
+        from world2minecraft.render.output import file_name
+
+        target = self.target
+        folder, stem = target.path, f"{len(self.lines):06d}"
+        if target.medium == "picture":
+            folder, stem = target.path.parent, target.path.stem
+        names = {name: file_name(stem, name, target.choice) for name in target.layers}
+        if target.medium == "picture" and len(names) == 1:
+            names = dict.fromkeys(names, target.path.name)  # Called as the user called it.
+        return {name: folder / file for name, file in names.items()}
+
+    def _line(self, shot: "Shot", files: dict[str, str]) -> None:
+        from world2minecraft.render.views import tour_line
+
+        more = {
+            **self._ids,
+            "image": files.get("rgb", next(iter(files.values()))),
+            "files": files,
+            "intrinsics": shot.camera.matrix.tolist(),
+            "camera_to_room": shot.camera_to_room.round(9).tolist(),
+        }
+        self.lines.append(tour_line(shot, len(self.lines), self._block_to_room, more))
+
+
+def check_many(target: Target, count: int) -> None:
+    """Refuse many pictures in one file. Raises UsageError."""
+    if target.medium == "picture" and count != 1:
+        raise UsageError(
+            f"{count} pictures do not fit in {target.path.name}; give --out a folder, or "
+            "a name that ends in .gif, .webp or .mp4"
+        )
+
+
+def one_size(shots: Iterable["Shot"], target: Target) -> None:
+    """Refuse a moving picture whose frames differ in size. Raises UsageError."""
+    sizes = {(shot.camera.width_px, shot.camera.height_px) for shot in shots}
+    if target.medium == "moving" and len(sizes) > 1:
+        raise UsageError("the poses have several sizes; give --out a folder")

@@ -1,0 +1,186 @@
+"""Moving pictures, written frame by frame: GIF, APNG and WebP by pillow, MP4 and WebM by ffmpeg.
+
+All are written beside their place and moved there at the end: whole or not at all.
+"""
+
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.errors import LimitError, MissingExtraError, OutputError, UsageError
+
+PILLOW_KINDS = {".gif": "GIF", ".apng": "PNG", ".webp": "WEBP"}
+VIDEO_SUFFIXES = (".mp4", ".webm")
+MOVING_SUFFIXES = (*PILLOW_KINDS, *VIDEO_SUFFIXES)
+MOST_HELD_BYTES = 1 << 30  # Pillow's kinds are held in memory until they are whole.
+GIF_COLOURS = 256
+GIF_SAMPLES = 12  # Frames that its colours are chosen from.
+WEBP_QUALITY = 88
+# Constant quality: 18 of H.264 and 30 of VP9 look like the pictures themselves.
+CODECS = {
+    ".mp4": ["-c:v", "libx264", "-crf", "18", "-preset", "medium", "-pix_fmt", "yuv420p",
+             "-movflags", "+faststart"],
+    ".webm": ["-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0", "-row-mt", "1",
+              "-pix_fmt", "yuv420p"],
+}  # fmt: skip
+
+
+FrameWriter = Callable[[np.ndarray], None]  # Takes a frame, uint8 [H, W, 3], all of one size.
+
+
+@contextmanager
+def moving_picture(path: str | Path, rate_hz: float) -> Iterator[FrameWriter]:
+    """Write a moving picture: the block is given what takes its frames.
+
+    Args:
+        path: ends in one of ``MOVING_SUFFIXES``.
+        rate_hz: frames a second; a GIF rounds each frame to hundredths of a second.
+
+    Raises:
+        UsageError: another suffix, or no frame came. MissingExtraError: there is no ffmpeg.
+        LimitError: it takes too much memory. OutputError: it cannot be written.
+    """
+    target = Path(path)
+    suffix = target.suffix.lower()
+    if suffix in VIDEO_SUFFIXES:
+        with _whole(target) as draft, _ffmpeg(draft, suffix, rate_hz, target) as write:
+            yield write
+    elif suffix in PILLOW_KINDS:
+        held: list[np.ndarray] = []
+        yield _holding(held, target)
+        if not held:
+            raise UsageError(f"{target}: a moving picture needs at least one frame")
+        with _whole(target) as draft:
+            _save(held, draft, PILLOW_KINDS[suffix], rate_hz)
+    else:
+        known = ", ".join(MOVING_SUFFIXES)
+        raise UsageError(f"{target}: a moving picture ends in {known}, not {suffix!r}")
+
+
+def ffmpeg_program() -> str:
+    """Return the ffmpeg of the extra ``video``, or the one on the path.
+
+    It runs as a program of its own: nothing of it is linked in.
+
+    Raises:
+        MissingExtraError: there is none.
+    """
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe  # noqa: PLC0415  # An extra.
+
+        return get_ffmpeg_exe()
+    except (ImportError, RuntimeError):
+        found = shutil.which("ffmpeg")
+        if found is None:
+            raise MissingExtraError("an MP4 or WebM (a GIF needs none)", "video") from None
+        return found
+
+
+def _holding(held: list[np.ndarray], target: Path) -> FrameWriter:
+    def take(colour: np.ndarray) -> None:
+        if sum(one.nbytes for one in held[:1]) * (len(held) + 1) > MOST_HELD_BYTES:
+            raise LimitError(
+                target, f"over {len(held)} frames of this size; take fewer, smaller, or an .mp4"
+            )
+        held.append(colour)
+
+    return take
+
+
+def _save(held: list[np.ndarray], draft: Path, kind: str, rate_hz: float) -> None:
+    images = [Image.fromarray(colour) for colour in held]
+    if kind == "GIF":
+        images = _few_colours(images)
+    first, rest = images[0], images[1:]
+    options = {
+        "GIF": {"duration": round(100 / rate_hz) * 10, "optimize": False, "disposal": 1},
+        "PNG": {"duration": 1000 / rate_hz, "default_image": False},
+        "WEBP": {"duration": round(1000 / rate_hz), "quality": WEBP_QUALITY, "method": 4},
+    }[kind]
+    first.save(draft, kind, save_all=True, append_images=rest, loop=0, **options)
+
+
+def _few_colours(images: list[Image.Image]) -> list[Image.Image]:
+    """Return the images in one palette of their own, so that colours do not flicker."""
+    some = images[:: -(-len(images) // GIF_SAMPLES)]
+    strip = Image.new("RGB", (some[0].width, some[0].height * len(some)))
+    for n, image in enumerate(some):
+        strip.paste(image, (0, n * image.height))
+    palette = strip.quantize(GIF_COLOURS, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    return [image.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG) for image in images]
+
+
+@contextmanager
+def _whole(target: Path) -> Iterator[Path]:
+    """Give a file beside the target, which becomes the target when the block ends well."""
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        folder = tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}.")
+    except OSError as error:
+        raise OutputError(target, f"cannot be written: {error.strerror or error}") from error
+    try:
+        draft = Path(folder) / target.name
+        yield draft
+        os.replace(draft, target)
+    except OSError as error:
+        raise OutputError(target, f"cannot be written: {error.strerror or error}") from error
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
+def _ffmpeg(draft: Path, suffix: str, rate_hz: float, target: Path) -> Iterator[FrameWriter]:
+    """Run ffmpeg for a block, which is given what sends it frames."""
+    program = ffmpeg_program()
+    running: list[subprocess.Popen[bytes]] = []
+    with tempfile.TemporaryFile() as told:
+        try:
+            yield _sending(running, program, draft, suffix, rate_hz, told)
+            if not running:
+                raise UsageError(f"{target}: a moving picture needs at least one frame")
+            running[0].communicate()
+            if running[0].returncode:
+                raise OutputError(target, f"ffmpeg could not write it: {_last_line(told)}")
+        except BrokenPipeError as error:
+            raise OutputError(target, f"ffmpeg stopped: {_last_line(told)}") from error
+        finally:
+            for process in running:
+                process.kill()
+                process.wait()
+
+
+def _sending(
+    running: list[subprocess.Popen[bytes]],
+    program: str,
+    draft: Path,
+    suffix: str,
+    rate_hz: float,
+    told: IO[bytes],
+) -> FrameWriter:
+    def send(colour: np.ndarray) -> None:
+        height, width = colour.shape[0] // 2 * 2, colour.shape[1] // 2 * 2  # Codecs want even.
+        if not running:
+            words = [program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
+                     "-s", f"{width}x{height}", "-r", f"{rate_hz:g}", "-i", "-", "-an",
+                     "-map_metadata", "-1", "-fflags", "+bitexact",
+                     *CODECS[suffix], str(draft)]  # fmt: skip
+            running.append(subprocess.Popen(words, stdin=subprocess.PIPE, stderr=told))
+        pipe = running[0].stdin
+        if pipe is not None:
+            pipe.write(np.ascontiguousarray(colour[:height, :width]))
+
+    return send
+
+
+def _last_line(told: IO[bytes]) -> str:
+    told.seek(0)
+    lines = told.read().decode(errors="replace").strip().splitlines()
+    return lines[-1] if lines else "it said nothing"

@@ -1,0 +1,127 @@
+"""The one file of poses: a JSON object a line, or the same columns as CSV.
+
+Keys: frame, t (seconds), x, y, z (world block coordinates), yaw, pitch (the game's, degrees),
+vertical_fov_deg, width, height (pixels), scene_id, tour_id, image. Only x, y, z, yaw and pitch are
+needed. x, y, z is the eye; ``at`` may say ``feet``. ``intrinsics`` [3][3], where it is there,
+counts before the FOV. Other keys are left alone.
+"""
+
+import csv
+import io
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.errors import DamagedFileError, UsageError
+from world2minecraft.files import read_bytes, write_text
+from world2minecraft.render.views.cameras import camera_of, vertical_fov_deg_of
+from world2minecraft.render.views.poses import GamePose, Shot, game_pose_of
+from world2minecraft.types import Camera
+
+MAX_BYTES = 256 << 20  # About a million poses.
+NEEDED = ("x", "y", "z", "yaw", "pitch")
+
+
+@dataclass(frozen=True)
+class TourPose:
+    """A line of the file: the pose, its time, and its own camera where it says one."""
+
+    pose: GamePose
+    t_s: float = 0.0
+    camera: Camera | None = None
+
+
+def read_tour(path: str | Path) -> list[TourPose]:
+    """Read a tour from JSONL, or from CSV where the name ends in .csv.
+
+    Raises:
+        InputError: it cannot be read. DamagedFileError: a line is no pose, or there is none.
+        LimitError: it is too large.
+    """
+    source = Path(path)
+    try:
+        text = read_bytes(source, MAX_BYTES).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise DamagedFileError(source, "is no text in UTF-8") from error
+    rows = _csv_rows(text) if source.suffix.lower() == ".csv" else _json_rows(text, source)
+    poses = [_pose(row, number, source) for number, row in rows]
+    if not poses:
+        raise DamagedFileError(source, "holds no pose; each line needs x, y, z, yaw, pitch")
+    return poses
+
+
+def tour_line(
+    shot: Shot, number: int, block_to_room: np.ndarray, more: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the line of a shot, with ``more`` keys behind the tour's own."""
+    pose = game_pose_of(shot.camera_to_room, block_to_room)
+    own = {
+        "frame": number,
+        "t": _short(shot.t_s),
+        "x": _short(pose.x),
+        "y": _short(pose.y),
+        "z": _short(pose.z),
+        "yaw": _short(pose.yaw_deg),
+        "pitch": _short(pose.pitch_deg),
+        "vertical_fov_deg": _short(vertical_fov_deg_of(shot.camera)),
+        "width": shot.camera.width_px,
+        "height": shot.camera.height_px,
+    }
+    return {**own, **more}
+
+
+def _short(value: float) -> float:
+    return round(value, 6) + 0.0  # No -0.0.
+
+
+def write_lines(path: str | Path, lines: Sequence[Mapping[str, Any]]) -> None:
+    """Write lines of JSON, whole or not at all. Raises OutputError."""
+    write_text(path, "".join(json.dumps(line, allow_nan=False) + "\n" for line in lines))
+
+
+def _json_rows(text: str, source: Path) -> list[tuple[int, Mapping[str, Any]]]:
+    rows = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip():
+            continue
+        try:
+            row = json.loads(line)
+        except (ValueError, RecursionError) as error:
+            raise DamagedFileError(source, f"line {number} is no JSON") from error
+        if not isinstance(row, dict):
+            raise DamagedFileError(source, f"line {number} is no JSON object")
+        rows.append((number, row))
+    return rows
+
+
+def _csv_rows(text: str) -> list[tuple[int, Mapping[str, Any]]]:
+    reader = csv.DictReader(io.StringIO(text), skipinitialspace=True)
+    rows = [{key: value for key, value in row.items() if key and value} for row in reader]
+    return [(number, row) for number, row in enumerate(rows, 2) if row]
+
+
+def _pose(row: Mapping[str, Any], number: int, source: Path) -> TourPose:
+    missing = [key for key in NEEDED if key not in row]
+    if missing:
+        raise DamagedFileError(source, f"line {number} has no {missing[0]}")
+    try:
+        x, y, z, yaw, pitch = (float(row[key]) for key in NEEDED)
+        pose = GamePose(x, y, z, yaw, pitch, row.get("at", "eye"))
+        return TourPose(pose, float(row.get("t", 0.0)), _camera(row))
+    except (TypeError, ValueError, OverflowError, UsageError) as error:
+        raise DamagedFileError(source, f"line {number} is no pose ({error})") from error
+
+
+def _camera(row: Mapping[str, Any]) -> Camera | None:
+    if "width" not in row or "height" not in row:
+        return None
+    size = int(row["width"]), int(row["height"])
+    if "intrinsics" in row:
+        return camera_of(*size, intrinsics=np.array(row["intrinsics"], np.float64))
+    if "vertical_fov_deg" in row:
+        return camera_of(*size, vertical_fov_deg=float(row["vertical_fov_deg"]))
+    return None
