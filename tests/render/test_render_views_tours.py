@@ -214,9 +214,7 @@ def test_a_tour_comes_back_from_its_file(tmp_path):
     (back,) = read_tour(tmp_path / "poses.jsonl")
     assert back.camera == camera
     assert back.t_s == 0.5
-    np.testing.assert_allclose(
-        back.pose.camera_to_room(to_room), shot.camera_to_room, atol=1e-7
-    )
+    np.testing.assert_allclose(back.pose.camera_to_room(to_room), shot.camera_to_room, atol=1e-7)
 
 
 def test_the_same_columns_come_as_csv(tmp_path):

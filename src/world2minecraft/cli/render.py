@@ -13,12 +13,14 @@ from world2minecraft.cli.render_files import (
     one_size,
     target_of,
 )
+from world2minecraft.cli.render_look import Look, take
 from world2minecraft.cli.render_shots import Plan, View, plan_of, turntable_count, view_of
 from world2minecraft.cli.render_source import Source, read_source
+from world2minecraft.progress import Progress
 
 if TYPE_CHECKING:
     from world2minecraft.render import Picture
-    from world2minecraft.render.views import Shot
+    from world2minecraft.render.views import DrawOptions, Shot
     from world2minecraft.types import BlockVolume
 
 EXAMPLES = """\
@@ -52,6 +54,17 @@ def run(
     depth_scale: option.DepthScale = 1000,
     quality: option.Quality = 92,
     fps: option.Rate = 24.0,
+    light: option.Light = None,
+    hour: option.Hour = None,
+    brightness: option.Brightness = 0.5,
+    exposure: option.Exposure = None,
+    sun_shadow: option.SunShadow = False,
+    samples: option.Samples = None,
+    textures: option.Textures = 16,
+    pack: option.Packs = None,
+    photo: option.Photo = False,
+    photo_samples: option.PhotoSamples = 16,
+    device: option.Device = "auto",
     threads: option.Threads = None,
 ) -> None:
     """Draw a build, without the game, a display or a graphics card.
@@ -76,17 +89,21 @@ def run(
     wanted = layers_named(outputs)
     count = frames if frames is not None else len(given) or None
     target = target_of(out, source.resolve().stem, view.kind, wanted, files, count)
-    built = read_source(source, option.box_of(box))
-    draw(built, view, choice, target, option.threads_of(threads))
+    look = Look(light, hour, brightness, exposure, sun_shadow, samples, textures,
+                tuple(pack or ()), photo, photo_samples, device,
+                option.threads_of(threads))  # fmt: skip
+    look.light_of(view.kind)  # What is out of range is said before any work.
+    draw(read_source(source, option.box_of(box)), view, choice, target, look)
 
 
 def draw(
-    source: Source, view: View, choice: option.CameraChoice, target: Target, threads: int
+    source: Source, view: View, choice: option.CameraChoice, target: Target, look: Look
 ) -> None:
     """Draw a view and say what was drawn. Raises what ``run`` raises."""
     from time import perf_counter
 
     from world2minecraft.cli.progress import shown
+    from world2minecraft.render.output import needs_of
 
     plan = plan_of(view, source, choice, target.medium)
     count = len(plan.shots) or turntable_count(view, target.medium)
@@ -99,42 +116,44 @@ def draw(
     began = perf_counter()
     with shown() as progress, writer.open(view.rate_hz):
         if view.kind == "turntable":
-            _draw_turntable(source, view, choice, writer, count, threads, progress)
+            _draw_turntable(source, view, choice, writer, count, look, progress)
         else:
-            _draw_plan(plan, writer, threads, progress)
+            options = look.options_of(view.kind, target.medium, needs_of(target.layers))
+            _draw_plan(plan, writer, look, options, progress)
     writer.finish(plan.volume_of(plan.shots[0]) if plan.shots else source.volume)
     _say(writer, view, source, (perf_counter() - began) / count)
 
 
-def _draw_plan(plan: Plan, writer: Writer, threads: int, progress) -> None:
-    from world2minecraft.render.output import needs_of
-
-    needs = needs_of(writer.target.layers)
+def _draw_plan(
+    plan: Plan, writer: Writer, look: Look, options: "DrawOptions", progress: Progress
+) -> None:
     progress("render", 0, len(plan.shots))
-    for done, (shot, picture, volume) in enumerate(_pictures(plan, needs, threads), 1):
+    for done, (shot, picture, volume) in enumerate(_pictures(plan, look, options), 1):
         writer.picture(shot, picture, volume)
         progress("render", done, len(plan.shots))
 
 
 def _pictures(
-    plan: Plan, needs: tuple[str, ...], threads: int
+    plan: Plan, look: Look, options: "DrawOptions"
 ) -> Iterator[tuple["Shot", "Picture", "BlockVolume"]]:
     """Take the pictures of a plan; each volume that is seen is made ready once at a time."""
     from world2minecraft.render import prepare_scene
-    from world2minecraft.render.views import frames_of
+    from world2minecraft.render.views import exposed
 
+    looks = look.looks()
     for _, run_of in groupby(plan.shots, key=lambda shot: id(plan.volume_of(shot))):
         shots = list(run_of)
         volume = plan.volume_of(shots[0])
-        scene = prepare_scene(volume)
-        pictures = frames_of(scene, shots, outputs=needs, threads=threads)
+        scene = prepare_scene(volume, looks, texture_px=look.texture_px)
+        scene = exposed(scene, volume, options.light, shots)
+        pictures = take(scene, volume, shots, look, options)
         for shot, picture in zip(shots, pictures, strict=True):
             yield shot, picture, volume
 
 
 def _draw_turntable(
     source: Source, view: View, choice: option.CameraChoice, writer: Writer, count: int,
-    threads: int, progress,
+    look: Look, progress: Progress,
 ) -> None:  # fmt: skip
     from world2minecraft.errors import UsageError
     from world2minecraft.render.views.turntable import FOV_DEG, turntable
@@ -145,7 +164,9 @@ def _draw_turntable(
         source.volume,
         choice.camera(FOV_DEG),
         count,
-        threads=threads,
+        options=look.options_of(view.kind, writer.target.medium, ("colour",)),
+        looks=look.looks(),
+        texture_px=look.texture_px,
         rate_hz=view.rate_hz,
         opened=view.opened,
     )

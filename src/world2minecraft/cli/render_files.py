@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from world2minecraft.types import BlockVolume
 
 LINES_FILE, NAMES_FILE = "poses.jsonl", "names.json"
-_NUMBERS = ("block", "state", "class", "instance", "face")
+_NUMBERS = ("block", "opaque", "state", "class", "instance", "face")
 
 
 @dataclass(frozen=True)

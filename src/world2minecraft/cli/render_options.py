@@ -80,6 +80,37 @@ DepthFormat = Annotated[
 ]  # fmt: skip
 DepthScale = Annotated[int, _option("--depth-scale", text="What a metre is in a depth PNG.")]
 Quality = Annotated[int, _option("--quality", text="Of JPEG and WebP, 1 to 100.")]
+Hour = Annotated[
+    float | None, _option("--hour", text="Of the day, 0 to 24: 6 dawn, 11 usual, 19 dusk, 0 night.")
+]
+Light = Annotated[
+    str | None,
+    _option("--light", metavar="shader|game|neutral",
+            text="Soft light, the game's own, or even light at the camera."),
+]  # fmt: skip
+Brightness = Annotated[
+    float, _option("--brightness", text="As in the game: 0 moody, 1 bright; lifts the dark.")
+]
+Exposure = Annotated[
+    float | None, _option("--exposure", text="Light of the whole; by itself where left out.")
+]
+SunShadow = Annotated[
+    bool, _option("--sun-shadow/--no-sun-shadow", text="Whether things shade the sun.")
+]
+Samples = Annotated[
+    int | None, _option("--samples", text="1 to 4 rays across each pixel; stills have 2.")
+]
+Textures = Annotated[int, _option("--textures", metavar="16|32|64|128", text="Their side.")]
+Packs = Annotated[
+    list[Path] | None,
+    _option("--pack", metavar="PATH",
+            text="A resource pack or client jar of yours; given often, the last wins."),
+]  # fmt: skip
+Photo = Annotated[
+    bool, _option("--photo", text="Trace the paths of light: slow, soft, real shadows.")
+]
+PhotoSamples = Annotated[int, _option("--photo-samples", text="Paths a pixel of --photo.")]
+Device = Annotated[str, _option("--device", metavar="auto|cpu|gpu", text="What draws.")]
 Threads = Annotated[int | None, _option("--threads", text="How many; as many as there are cores.")]
 
 

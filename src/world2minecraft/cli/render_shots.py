@@ -129,20 +129,20 @@ def _file(path: Path, source: Source, choice: CameraChoice) -> Plan:
 def _orbit(view: View, source: Source, choice: CameraChoice, medium: Medium) -> Plan:
     from world2minecraft.render.views import orbit_shots
     from world2minecraft.render.views.opened import OpenedBuild, has_ceiling
-    from world2minecraft.render.views.orbit import ELEVATION_DEG
     from world2minecraft.render.views.turntable import OPEN_ELEVATION_DEG
 
     camera = choice.camera(ORBIT_FOV_DEG)
     count = turntable_count(view, medium)
     opened = has_ceiling(source.volume) if view.opened is None else view.opened
-    elevation_deg = OPEN_ELEVATION_DEG if opened else ELEVATION_DEG
-    options = {"elevation_deg": elevation_deg, "rate_hz": view.rate_hz}
     if not opened:
-        shots = orbit_shots(source.volume, camera, count, **options)
+        shots = orbit_shots(source.volume, camera, count, rate_hz=view.rate_hz)
         return Plan(shots, lambda shot: source.volume)
     build = OpenedBuild(source.volume)
-    start_deg = build.best_start_deg(elevation_deg)
-    shots = orbit_shots(build.whole, camera, count, start_deg=start_deg, **options)
+    start_deg = build.best_start_deg(OPEN_ELEVATION_DEG)
+    shots = orbit_shots(
+        build.whole, camera, count, elevation_deg=OPEN_ELEVATION_DEG, start_deg=start_deg,
+        rate_hz=view.rate_hz,
+    )  # fmt: skip
     note = "ceilings and near walls are left out, to show the rooms; --closed keeps them"
     return Plan(shots, lambda shot: build.seen_by(shot.camera_to_room), [note])
 

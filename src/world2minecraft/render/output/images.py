@@ -83,6 +83,13 @@ def index_bytes(index: np.ndarray) -> bytes:
     return _saved(Image.fromarray(rgba, "RGBA"), "PNG", compress_level=_PNG_LEVEL)
 
 
+def normal_bytes(normal: np.ndarray) -> bytes:
+    """Return unit normals, float32 [H, W, 3], as a PNG: 128 + 127 n, and black for nothing."""
+    packed = np.rint(128 + 127 * normal).astype(np.uint8)
+    packed[~normal.any(axis=2)] = 0
+    return _saved(Image.fromarray(packed), "PNG", compress_level=_PNG_LEVEL)
+
+
 def _saved(image: Image.Image, kind: str, **options: int | bool) -> bytes:
     stream = io.BytesIO()
     image.save(stream, kind, **options)

@@ -17,6 +17,7 @@ from world2minecraft.render.output.images import (
     colour_bytes,
     depth_bytes,
     index_bytes,
+    normal_bytes,
     number_bytes,
 )
 from world2minecraft.render.picture import Picture
@@ -102,6 +103,26 @@ LAYERS: dict[str, Layer] = {
         None,
         lambda picture, *_: number_bytes(picture.face),
         _png,
+    ),
+    "normal": Layer(
+        "the surface's normal in block axes, red x, green y, blue z, 128 for 0",
+        "normal",
+        lambda picture, *_: normal_bytes(_there(picture.normal)),
+        _png,
+    ),
+    "opaque": Layer(
+        "which block lies behind all glass, RGBA",
+        "opaque",
+        lambda picture, *_: index_bytes(_there(picture.opaque_index)),
+        _png,
+    ),
+    "opaque_depth": Layer(
+        "depth behind all glass",
+        "opaque",
+        lambda picture, _, choice: depth_bytes(
+            _there(picture.opaque_depth_m), choice.depth_suffix, choice.per_metre
+        ),
+        lambda choice: choice.depth_suffix,
     ),
 }
 GROUPS = {"id": ("state", "class", "instance"), "all": tuple(LAYERS)}

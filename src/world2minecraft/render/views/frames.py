@@ -4,24 +4,37 @@ This is the one door to the renderer: whoever overlaps work with writing, or spr
 processes, does so behind it.
 """
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import repeat
 
 import numpy as np
 
+from world2minecraft.coordinates import apply, invert
+from world2minecraft.render.lamps import DAY, Paper
+from world2minecraft.render.light import LookLight, light_field, scene_exposure
 from world2minecraft.render.picture import Picture, render_volume
-from world2minecraft.render.scene import RayScene
+from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.views.poses import Shot
-from world2minecraft.types import Camera
+from world2minecraft.types import BlockVolume, Camera
+
+
+@dataclass(frozen=True)
+class DrawOptions:
+    """How pictures are drawn; each means what it means in ``render_volume``."""
+
+    outputs: tuple[str, ...] = ("colour",)
+    light: LookLight = DAY
+    samples: int = 1
+    threads: int = 1
+    background: Paper | None = None
 
 
 def frames(
-    scene: RayScene,
+    scene: BlockScene,
     cameras: Camera | Iterable[Camera],
     poses: Iterable[np.ndarray],
-    *,
-    outputs: Collection[str] = ("colour",),
-    threads: int = 1,
+    options: DrawOptions | None = None,
 ) -> Iterator[Picture]:
     """Take the pictures of poses, in their order, one at a time.
 
@@ -29,20 +42,50 @@ def frames(
         scene: ``prepare_scene`` of a volume.
         cameras: one for all poses, or one for each.
         poses: ``camera_to_room``, float64 [4, 4] each.
-        outputs: what to make, see ``render_volume``.
-        threads: bands of a picture that are drawn at a time.
+        options: what to make, and how it looks.
 
     Raises:
         ValueError: what ``render_volume`` raises.
     """
+    how = options or DrawOptions()
     each = repeat(cameras) if isinstance(cameras, Camera) else cameras
     for camera, camera_to_room in zip(each, poses, strict=False):
-        yield render_volume(scene, camera, camera_to_room, outputs=outputs, threads=threads)
+        yield render_volume(
+            scene,
+            camera,
+            camera_to_room,
+            outputs=how.outputs,
+            light=how.light,
+            samples=how.samples,
+            threads=how.threads,
+            background=how.background,
+        )
 
 
 def frames_of(
-    scene: RayScene, shots: Collection[Shot], *, outputs: Collection[str], threads: int = 1
+    scene: BlockScene, shots: Collection[Shot], options: DrawOptions | None = None
 ) -> Iterator[Picture]:
     """Take the pictures of shots; see ``frames``."""
     cameras, poses = [shot.camera for shot in shots], [shot.camera_to_room for shot in shots]
-    return frames(scene, cameras, poses, outputs=outputs, threads=threads)
+    return frames(scene, cameras, poses, options)
+
+
+def exposed(
+    scene: BlockScene, volume: BlockVolume, light: LookLight, shots: Sequence[Shot]
+) -> BlockScene:
+    """Return the scene, opened up as far as the light around the cameras wants it.
+
+    One exposure for all shots: pictures of one tour belong together.
+
+    Args:
+        scene: ``prepare_scene`` of the volume.
+        volume: the blocks.
+        light: how it is lit.
+        shots: from where; cameras outside of the volume do not count.
+    """
+    if light.exposure is not None or light.preset == "neutral":
+        return scene
+    to_block = invert(volume.block_to_room)
+    eyes = np.array([apply(to_block, shot.camera_to_room[:3, 3]) for shot in shots])
+    field = light_field(volume.states, volume.palette)
+    return replace(scene, exposure=scene_exposure(field, light, eyes - np.array(volume.corner)))

@@ -13,9 +13,10 @@ from world2minecraft.render.cutaway import (
     without_near_walls,
     without_partitions,
 )
+from world2minecraft.render.plain_looks import PlainLooks
 from world2minecraft.render.scene import prepare_scene
 from world2minecraft.render.views.cameras import camera_of
-from world2minecraft.render.views.frames import frames
+from world2minecraft.render.views.frames import DrawOptions, frames_of
 from world2minecraft.render.views.orbit import TURN_DEG, orbit_shots
 from world2minecraft.types import BlockVolume, Camera
 
@@ -52,11 +53,12 @@ class OpenedBuild:
 
     def _shown(self, camera: Camera, start_deg: float, elevation_deg: float) -> float:
         """Return how many pixels show objects, counted by the root of each object's own number."""
-        options = {"start_deg": start_deg, "elevation_deg": elevation_deg}
-        shot = orbit_shots(self.whole, camera, 1, **options)[0]
-        scene = prepare_scene(self.seen_by(shot.camera_to_room))
-        outputs = ("semantic", "instance")
-        picture = next(frames(scene, camera, [shot.camera_to_room], outputs=outputs))
+        shot = orbit_shots(self.whole, camera, 1, start_deg=start_deg, elevation_deg=elevation_deg)[
+            0
+        ]
+        scene = prepare_scene(self.seen_by(shot.camera_to_room), PlainLooks())
+        options = DrawOptions(outputs=("semantic", "instance"))
+        picture = next(frames_of(scene, [shot], options))
         if picture.instance is None or picture.semantic is None:
             return 0.0
         is_object = picture.semantic >= SemanticClass.CHAIR

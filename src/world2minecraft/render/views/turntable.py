@@ -1,11 +1,14 @@
 """A build on a neutral ground that turns once around: the picture that shows a build as a thing."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.render.scene import RayScene, prepare_scene
-from world2minecraft.render.views.frames import frames
+from world2minecraft.render.elements import LookSource
+from world2minecraft.render.lamps import NEUTRAL
+from world2minecraft.render.scene import BlockScene, prepare_scene
+from world2minecraft.render.views.frames import DrawOptions, exposed, frames
 from world2minecraft.render.views.opened import OpenedBuild, has_ceiling
 from world2minecraft.render.views.orbit import TURN_DEG, orbit_shots
 from world2minecraft.render.views.poses import Shot
@@ -22,8 +25,9 @@ def turntable(
     camera: Camera,
     count: int,
     *,
-    samples: int = 2,
-    threads: int = 1,
+    options: DrawOptions | None = None,
+    looks: LookSource | None = None,
+    texture_px: int = 16,
     rate_hz: float = 24.0,
     opened: bool | None = None,
 ) -> Iterator[tuple[Shot, np.ndarray]]:
@@ -33,26 +37,29 @@ def turntable(
         volume: the blocks.
         camera: through which; ``FOV_DEG`` suits it.
         count: pictures in one turn.
-        samples: rays across a pixel's width and height.
-        threads: bands of a picture that are drawn at a time.
+        options: how it looks; a calm light and four rays a pixel where None.
+        looks: as in ``prepare_scene``.
+        texture_px: the same.
         rate_hz: frames a second, for the shots' times.
         opened: whether ceilings and near walls are left out; where there is a ceiling, if None.
     """
     inside = OpenedBuild(volume) if (has_ceiling(volume) if opened is None else opened) else None
     shown = volume if inside is None else inside.whole
+    how = options or DrawOptions(light=NEUTRAL, samples=2)
+    samples, how = how.samples, replace(how, outputs=("colour",), samples=1)
     fine = camera.resized(camera.width_px * samples, camera.height_px * samples)
     elevation = CLOSED_ELEVATION_DEG if inside is None else OPEN_ELEVATION_DEG
     studio = studio_of(shown)
-    scenes: dict[int, RayScene] = {}
+    scenes: dict[int, BlockScene] = {}
     start = TURN_DEG if inside is None else inside.best_start_deg(elevation)
     for shot in orbit_shots(
         shown, camera, count, elevation_deg=elevation, start_deg=start, rate_hz=rate_hz
     ):
         seen = volume if inside is None else inside.seen_by(shot.camera_to_room)
         if id(seen) not in scenes:  # The opened build keeps what it made, so ids are its own.
-            scenes[id(seen)] = prepare_scene(seen)
-        pose = shot.camera_to_room
-        picture = next(frames(scenes[id(seen)], fine, [pose], threads=threads))
+            scene = prepare_scene(seen, looks, texture_px=texture_px)
+            scenes[id(seen)] = exposed(scene, seen, how.light, [shot])
+        picture = next(frames(scenes[id(seen)], fine, [shot.camera_to_room], how))
         if picture.colour is None:
             raise ValueError("the picture has no colour")
         yield shot, _on_ground(picture.colour, picture.depth_m > 0, studio, shot, samples)
