@@ -1,4 +1,4 @@
-"""Moving pictures: whole or not at all, every frame in its place, and a clear word without ffmpeg."""
+"""Moving pictures: whole or not at all, frames in their places, a clear word without ffmpeg."""
 
 import shutil
 import sys

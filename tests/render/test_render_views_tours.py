@@ -1,6 +1,7 @@
 """Orbits that fit, tours that stay in free space, tour files that come back."""
 
 import json
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -190,7 +191,7 @@ def test_the_best_headings_are_found_among_all():
 
     def value(sequence):
         total = sum(rating[n, heading] for n, heading in enumerate(sequence))
-        for a, b in zip(sequence[:-1], sequence[1:], strict=True):
+        for a, b in pairwise(sequence):
             step = abs((b - a + 6) % 12 - 6)
             if step > 5:
                 return -np.inf

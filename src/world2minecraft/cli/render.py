@@ -10,11 +10,12 @@ from world2minecraft.cli.render_files import (
     Target,
     Writer,
     check_many,
+    check_pixels,
     one_size,
     target_of,
 )
 from world2minecraft.cli.render_look import Look, take
-from world2minecraft.cli.render_shots import Plan, View, plan_of, turntable_count, view_of
+from world2minecraft.cli.render_shots import Plan, View, plan_of, settled, turntable_count, view_of
 from world2minecraft.cli.render_source import Source, read_source
 from world2minecraft.progress import Progress
 
@@ -102,13 +103,20 @@ def draw(
     """Draw a view and say what was drawn. Raises what ``run`` raises."""
     from time import perf_counter
 
+    from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.render.output import needs_of
+    from world2minecraft.render.views.cameras import GAME_FOV_DEG
 
+    compiling_note()
+    view = settled(view, source)
     plan = plan_of(view, source, choice, target.medium)
     count = len(plan.shots) or turntable_count(view, target.medium)
     check_many(target, count)
     one_size(plan.shots, target)
+    options = look.options_of(view.kind, target.medium, needs_of(target.layers))
+    cameras = [shot.camera for shot in plan.shots] or [choice.camera(GAME_FOV_DEG)]
+    check_pixels(cameras, options.samples)
     for note in [*source.notes, *plan.notes]:
         print(f"note: {note}")
     tour_id = f"{source.name}-{view.kind}"
@@ -116,9 +124,8 @@ def draw(
     began = perf_counter()
     with shown() as progress, writer.open(view.rate_hz):
         if view.kind == "turntable":
-            _draw_turntable(source, view, choice, writer, count, look, progress)
+            _draw_turntable(source, view, choice, writer, count, look, options, progress)
         else:
-            options = look.options_of(view.kind, target.medium, needs_of(target.layers))
             _draw_plan(plan, writer, look, options, progress)
     writer.finish(plan.volume_of(plan.shots[0]) if plan.shots else source.volume)
     _say(writer, view, source, (perf_counter() - began) / count)
@@ -153,7 +160,7 @@ def _pictures(
 
 def _draw_turntable(
     source: Source, view: View, choice: option.CameraChoice, writer: Writer, count: int,
-    look: Look, progress: Progress,
+    look: Look, options: "DrawOptions", progress: Progress,
 ) -> None:  # fmt: skip
     from world2minecraft.errors import UsageError
     from world2minecraft.render.views.turntable import FOV_DEG, turntable
@@ -164,7 +171,7 @@ def _draw_turntable(
         source.volume,
         choice.camera(FOV_DEG),
         count,
-        options=look.options_of(view.kind, writer.target.medium, ("colour",)),
+        options=options,
         looks=look.looks(),
         texture_px=look.texture_px,
         rate_hz=view.rate_hz,
@@ -184,6 +191,9 @@ def _say(writer: Writer, view: View, source: Source, seconds: float) -> None:
     if count == 1:
         x, y, z, yaw, pitch = (first[key] for key in ("x", "y", "z", "yaw", "pitch"))
         print(f"  pose   --pose {x:.2f},{y:.2f},{z:.2f},{yaw:.1f},{pitch:.1f},eye")
+    size = " x ".join(str(side) for side in source.volume.states.shape)
+    corner = ",".join(str(value) for value in source.volume.corner)
+    print(f"  build  {size} blocks from {corner}")
     print(f"  poses  {target.beside(LINES_FILE)}")
     name = source.name
     following = {

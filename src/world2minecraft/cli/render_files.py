@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from world2minecraft.render import Picture
     from world2minecraft.render.output import FileChoice
     from world2minecraft.render.views import Shot
-    from world2minecraft.types import BlockVolume
+    from world2minecraft.types import BlockVolume, Camera
 
 LINES_FILE, NAMES_FILE = "poses.jsonl", "names.json"
 _NUMBERS = ("block", "opaque", "state", "class", "instance", "face")
@@ -60,7 +60,8 @@ def target_of(
     moving = suffix in MOVING_SUFFIXES and (suffix != ".webp" or (many and frames != 1))
     if moving:
         if layers != ("rgb",):
-            raise UsageError(f"{out}: a moving picture holds rgb alone; give a folder for {layers}")
+            others = ", ".join(name for name in layers if name != "rgb")
+            raise UsageError(f"{out}: a moving picture holds rgb alone; give a folder for {others}")
         return Target(_file(out), "moving", layers, choice)
     if suffix in COLOUR_SUFFIXES:
         return Target(_file(out), "picture", layers, replace(choice, colour_suffix=suffix))
@@ -171,6 +172,20 @@ def check_many(target: Target, count: int) -> None:
             f"{count} pictures do not fit in {target.path.name}; give --out a folder, or "
             "a name that ends in .gif, .webp or .mp4"
         )
+
+
+def check_pixels(cameras: Iterable["Camera"], samples: int) -> None:
+    """Refuse pictures that are too large. Raises UsageError."""
+    from world2minecraft.render.picture import MAX_PIXELS
+    from world2minecraft.types.capture import MAX_SIDE_PX
+
+    for width, height in {(camera.width_px, camera.height_px) for camera in cameras}:
+        rays = width * height * samples**2
+        if rays > MAX_PIXELS or max(width, height) * samples > MAX_SIDE_PX:
+            raise UsageError(
+                f"{width}x{height} with --samples {samples} is too large; a picture may have "
+                f"{MAX_PIXELS:,} samples in all and {MAX_SIDE_PX:,} on a side"
+            )
 
 
 def one_size(shots: Iterable["Shot"], target: Target) -> None:

@@ -77,10 +77,14 @@ class Look:
 
     def options_of(self, kind: "Kind", medium: "Medium", outputs: tuple[str, ...]) -> "DrawOptions":
         """Return how pictures are drawn; lone pictures get more rays than those of a data set."""
+        from world2minecraft.render.lamps import PAPER
         from world2minecraft.render.views import DrawOptions
 
         usual = 1 if medium == "folder" and kind != "turntable" else STILL_SAMPLES
-        return DrawOptions(outputs, self.light_of(kind), self.samples or usual, self.threads)
+        # From above one sees no sky; a build stands out best on paper, but not at night.
+        paper = PAPER if kind == "orbit" and self.hour is None else None
+        light, samples = self.light_of(kind), self.samples or usual
+        return DrawOptions(outputs, light, samples, self.threads, paper)
 
     def looks(self) -> "LookSource | None":
         """Return the user's packs before our own looks; None for our own alone.

@@ -1,7 +1,7 @@
 """From where ``w2m render`` looks: the shots of poses, an orbit, a tour or a turntable."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -74,10 +74,6 @@ def plan_of(view: View, source: Source, choice: CameraChoice, medium: Medium) ->
     Raises:
         UsageError: a tour finds nowhere to stand. InputError: the file of poses cannot be read.
     """
-    if view.kind == "spawn" and source.spawn is None:
-        note = "this build says no spawn, so it is seen from outside; --tour walks in"
-        plan = _orbit(view, source, choice, medium)
-        return Plan(plan.shots, plan.volume_of, [note, *plan.notes])
     if view.kind == "tour":
         return _tour(view, source, choice, medium)
     if view.kind == "orbit":
@@ -94,6 +90,14 @@ def plan_of(view: View, source: Source, choice: CameraChoice, medium: Medium) ->
         lambda shot: source.volume,
         note if view.kind == "spawn" else [],
     )
+
+
+def settled(view: View, source: Source) -> View:
+    """Return the view, with one from outside for a build that says no spawn."""
+    if view.kind != "spawn" or source.spawn is not None:
+        return view
+    source.notes.append("this build says no spawn, so it is seen from outside; --tour walks in")
+    return replace(view, kind="orbit")
 
 
 def turntable_count(view: View, medium: Medium) -> int:

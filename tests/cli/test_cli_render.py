@@ -1,0 +1,275 @@
+"""``w2m render``: what is written, what is told, and one line for whatever is wrong."""
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from world2minecraft import cli
+from world2minecraft.coordinates import block_to_room
+from world2minecraft.exchange.scene import scene_of, write_scene
+from world2minecraft.minecraft.formats import WriteOptions, write_blocks
+from world2minecraft.types import AIR, BlockVolume
+
+PALETTE = (AIR, "minecraft:stone", "minecraft:red_concrete")
+
+
+def room(scale=1.0):
+    """A closed room of stone, 6 x 3 x 5 blocks inside, with a red chair in a corner."""
+    states = np.ones((8, 5, 7), np.uint16)
+    states[1:7, 1:4, 1:6] = 0
+    semantic = np.where(states > 0, 3, 0).astype(np.uint8)
+    semantic[:, 0], semantic[:, 4] = 2, 1
+    states[1, 1, 1], semantic[1, 1, 1] = 2, 5
+    instance = np.where(semantic == 5, 4, 0).astype(np.uint16)
+    corner = block_to_room(np.array([0.0, 0.0]), scale)
+    return BlockVolume(states, PALETTE, semantic, instance, (-1, 63, -1), corner)
+
+
+@pytest.fixture
+def schem(tmp_path):
+    write_blocks(room(), tmp_path / "room.schem")
+    return tmp_path / "room.schem"
+
+
+@pytest.fixture
+def build(tmp_path):
+    """A build as the program writes it: a world, and what its blocks are."""
+    volume, spawn = room(), (2.5, 64.0, 2.5)
+    folder = tmp_path / "build"
+    write_blocks(volume, folder / "world", WriteOptions(spawn=spawn, spawn_yaw_deg=90.0))
+    scene = scene_of(
+        volume, mc_version="1.20.1", data_version=3465, spawn=spawn, spawn_yaw_deg=90.0
+    )
+    write_scene(folder, scene)
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def render(*words, size="48x36"):
+    return cli.run(["render", *map(str, words), "--size", size, "--threads", "1"])
+
+
+def lines_of(path):
+    return [json.loads(line) for line in path.read_text().splitlines()]
+
+
+def image(path):
+    with Image.open(path) as opened:
+        return np.asarray(opened)
+
+
+POSE = "2.5,65.62,2.5,90,0,eye"
+
+
+def test_a_build_is_seen_from_where_its_player_starts(build, tmp_path, capsys):
+    assert render(build) == 0
+    (line,) = lines_of(tmp_path / "build.poses.jsonl")
+    assert (line["x"], line["y"], line["z"], line["yaw"], line["pitch"]) == (2.5, 65.62, 2.5, 90, 0)
+    assert (line["width"], line["height"], line["vertical_fov_deg"]) == (48, 36, 70)
+    assert line["image"] == "build.png" and line["scene_id"] == "build"
+    assert image(tmp_path / "build.png").shape == (36, 48, 3)
+    told = capsys.readouterr().out
+    assert "note: seen from where the player starts; --tour and --orbit show more" in told
+    assert f"  next   w2m render {build} --tour --out build_tour.gif" in told
+
+
+def test_a_file_is_seen_from_outside(schem, tmp_path, capsys):
+    assert render(schem) == 0
+    assert "this build says no spawn, so it is seen from outside" in capsys.readouterr().out
+    assert image(tmp_path / "room.png").shape == (36, 48, 3)
+
+
+def test_feet_are_lower_than_eyes_by_the_players_size(build, tmp_path):
+    assert render(build, "--pose", "2.5,64,2.5,90,0", "--out", "a.png") == 0
+    assert render(build, "--pose", POSE, "--out", "b.png") == 0
+    assert np.array_equal(image(tmp_path / "a.png"), image(tmp_path / "b.png"))
+
+
+def test_layers_agree_and_have_their_names(build, tmp_path):
+    assert render(build, "--pose", POSE, "--outputs", "all", "--out", "d/here.png") == 0
+    folder = tmp_path / "d"
+    names = json.loads((folder / "here.names.json").read_text())
+    seen = image(folder / "here.state.png")
+    assert {names["state"][str(n)] for n in np.unique(seen)} <= set(PALETTE)
+    classes, objects = image(folder / "here.class.png"), image(folder / "here.instance.png")
+    assert (classes == 5).any()
+    assert np.array_equal(classes == 5, objects == 4)
+    (red,) = [int(n) for n, state in names["state"].items() if state == PALETTE[2]]
+    assert np.array_equal(classes == 5, seen == red)
+    depth = image(folder / "here.depth.png")
+    assert depth[18, 24] == 2500  # The wall at x = 0 is 2.5 blocks, of a metre each, ahead.
+    (line,) = lines_of(folder / "here.poses.jsonl")
+    assert line["files"]["opaque_depth"] == "here.opaque_depth.png"
+    assert set(line["files"]) >= {"rgb", "depth", "block", "state", "class", "instance", "normal"}
+
+
+def test_depth_alone_is_called_as_it_was_asked_for(build, tmp_path):
+    assert render(build, "--pose", POSE, "--out", "z.npy") == 0
+    depth = np.load(tmp_path / "z.npy")
+    assert depth.dtype == np.float32 and depth[18, 24] == pytest.approx(2.5)
+    assert render(build, "--pose", POSE, "--out", "z.exr") == 0
+    assert (tmp_path / "z.exr").read_bytes()[:4] == b"\x76\x2f\x31\x01"
+
+
+def test_a_tour_to_a_folder_comes_again_from_its_poses(build, tmp_path):
+    assert render(build, "--tour", "--frames", "3", "--out", "walk", "--outputs", "rgb,id") == 0
+    folder = tmp_path / "walk"
+    assert sorted(path.name for path in folder.iterdir()) == sorted(
+        [f"{n:06d}{end}" for n in range(3) for end in
+         (".png", ".state.png", ".class.png", ".instance.png")] + ["names.json", "poses.jsonl"]
+    )  # fmt: skip
+    words = ("--outputs", "rgb,id", "--out", "again")
+    assert render(build, "--poses", folder / "poses.jsonl", *words, size="640x480") == 0
+    for path in folder.glob("*.class.png"):
+        assert np.array_equal(image(path), image(tmp_path / "again" / path.name))
+
+
+def test_an_orbit_and_a_turntable_move(build, tmp_path, capsys):
+    assert render(build, "--orbit", "--frames", "3", "--out", "orbit.gif") == 0
+    assert "ceilings and near walls are left out" in capsys.readouterr().out
+    assert render(build, "--turntable", "--frames", "2", "--out", "turn.webp") == 0
+    for name, count in (("orbit.gif", 3), ("turn.webp", 2)):
+        with Image.open(tmp_path / name) as opened:
+            assert opened.n_frames == count
+    assert len(lines_of(tmp_path / "orbit.poses.jsonl")) == 3
+
+
+def test_a_turntable_can_stand_still(build, tmp_path):
+    assert render(build, "--turntable", "--out", "still.jpg") == 0
+    assert image(tmp_path / "still.jpg").shape == (36, 48, 3)
+
+
+def test_what_lies_outside_of_the_box_is_not_drawn(schem, tmp_path):
+    words = ("--pose", POSE, "--out")
+    assert render(schem, "--box=-9,-9,-9,99,99,99", *words, "a.npy") == 0
+    assert render(schem, "--box=2,0,-9,99,99,99", *words, "b.npy") == 0
+    assert np.load(tmp_path / "a.npy").any()
+    assert not np.load(tmp_path / "b.npy")[18, 24]
+
+
+def test_a_world_without_a_scene_is_read_around_its_spawn(tmp_path, capsys):
+    write_blocks(room(), tmp_path / "plain", WriteOptions(spawn=(2.5, 64.0, 2.5)))
+    assert render("plain", "--outputs", "rgb,class") == 0
+    told = capsys.readouterr().out
+    assert "this world has no scene.json: drawing the blocks around its spawn (2 64 2)" in told
+    assert not image(tmp_path / "plain.class.png").any()
+
+
+def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
+    (build / "scene.npz").unlink()
+    assert render(build, "--outputs", "rgb,class") == 0
+    assert "scene.npz is not there: classes and objects are empty" in capsys.readouterr().out
+    assert not image(tmp_path / "build.class.png").any()
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["--pose", "1,2,3"], "--pose is x,y,z,yaw,pitch and perhaps ,eye, such as 4,64,-3,90,10; "
+                              "not '1,2,3'"),
+        (["--pose", "1,2,3,4,95"], "pitch is -90 (up) to 90 (down) degrees, not 95"),
+        (["--orbit", "--tour"], "--orbit and --tour are several views; give one of them a command"),
+        (["--orbit", "--pose", "1,2,3,4,5"],
+         "--orbit and --pose are several views; give one of them a command"),
+        (["--pose", "1,2,3,4,5", "--frames", "3"],
+         "--frames is for an orbit, a tour or a turntable, not for --pose"),
+        (["--vfov", "70", "--hfov", "90"],
+         "--vfov and --hfov are two words for one thing; give one of them"),
+        (["--vfov", "0"], "a field of view must be above 0 and up to 170 degrees, not 0"),
+        (["--frames", "0"], "--frames is 1 to 1,000,000, not 0"),
+        (["--fps", "0"], "--fps is 1 to 240, not 0"),
+        (["--box", "1,2,3"], "--box is six whole numbers x0,y0,z0,x1,y1,z1, not '1,2,3'"),
+        (["--box", "1,2,3,1,5,6"],
+         "--box ends after it begins on each axis; '1,2,3,1,5,6' does not"),
+        (["--box", "100,0,0,101,1,1"],
+         "--box lies beside the build, which is 8 x 5 x 7 blocks from"),
+        (["--format", "bmp"], "--format is png, jpg or webp, not 'bmp'"),
+        (["--depth-format", "tif"], "--depth-format is png, exr or npy, not 'tif'"),
+        (["--quality", "0"], "--quality is 1 to 100, not 0"),
+        (["--depth-scale", "0"], "--depth-scale is 1 to 65535, not 0"),
+        (["--outputs", "rbg"], "no output is named 'rbg'; did you mean 'rgb'?"),
+        (["--out", "a.tiff"], "a.tiff: --out ends in .png, .jpg, .jpeg, .webp, .exr, .npy, .gif, "
+                              ".apng, .mp4, .webm, or in nothing for a folder"),
+        (["--orbit", "--frames", "3", "--out", "a.png"],
+         "3 pictures do not fit in a.png; give --out a folder, or a name that ends in .gif, .webp "
+         "or .mp4"),
+        (["--tour", "--out", "a.gif", "--outputs", "rgb,depth"],
+         "a.gif: a moving picture holds rgb alone; give a folder for depth"),
+        (["--turntable", "--out", "a", "--outputs", "depth"],
+         "a turntable is colour alone; --orbit has depth and ids too"),
+        (["--samples", "9"], "--samples is 1 to 4, not 9"),
+        (["--textures", "24"], "--textures is 16, 32, 64 or 128, not 24"),
+        (["--light", "disco"],
+         "no such light: preset may be shader, game, neutral, not 'disco'"),
+        (["--exposure", "0"], "no such light: exposure may be 0.01 to 100, not 0.0"),
+        (["--device", "tpu"], "--device is auto, cpu or gpu, not 'tpu'"),
+        (["--photo-samples", "0"], "--photo-samples is 1 to 65,536, not 0"),
+    ],
+)  # fmt: skip
+def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
+    assert render(schem, *words) == 2
+    told = capsys.readouterr().err.splitlines()[-1]
+    assert told.startswith(f"error: {text}")
+
+
+@pytest.mark.parametrize(
+    ("size", "text"),
+    [
+        ("big", "--size is width and height in pixels, such as 1280x720, not 'big'"),
+        ("-3x4", "--size is width and height in pixels, such as 1280x720, not '-3x4'"),
+        ("0x4", "no such camera: width_px must be 1 to 20000, not 0"),
+        ("99999x4", "no such camera: width_px must be 1 to 20000, not 99999"),
+        ("9000x9000", "9000x9000 with --samples 2 is too large; a picture may have 64,000,000 "
+                      "samples in all and 20,000 on a side"),
+    ],
+)  # fmt: skip
+def test_a_wrong_size_is_told(schem, size, text, capsys):
+    assert render(schem, size=size) == 2
+    assert capsys.readouterr().err == f"error: {text}\n"
+
+
+def test_threads_are_counted(schem, capsys):
+    assert cli.run(["render", str(schem), "--threads", "0"]) == 2
+    assert capsys.readouterr().err == "error: --threads is 1 to 512, not 0\n"
+
+
+def test_bad_input_is_told(tmp_path, schem, capsys):
+    assert render("nowhere") == 3
+    assert capsys.readouterr().err == "error: nowhere: is not there\n"
+    (tmp_path / "poses.jsonl").write_text("{}\n")
+    assert render(schem, "--poses", "poses.jsonl") == 3
+    assert capsys.readouterr().err == "error: poses.jsonl: line 1 has no x\n"
+    (tmp_path / "file").write_text("")
+    assert render(schem, "--poses", "poses.jsonl", "--out", "file") == 3
+    assert "is a file; --out needs a folder, or a name such as" in capsys.readouterr().err
+    (tmp_path / "a.png").mkdir()
+    assert render(schem, "--out", "a.png") == 3
+    assert "error: a.png: is a folder; give another name" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("[]", "is no scene (no JSON object)"),
+        ("{", "is not JSON"),
+        ("{}", "is no scene ('corner')"),
+    ],
+)
+def test_a_broken_scene_is_told(build, text, reason, capsys):
+    (build / "scene.json").write_text(text)
+    assert render(build) == 3
+    assert reason in capsys.readouterr().err
+
+
+def test_a_tier_that_is_not_there_is_told(schem, monkeypatch, capsys):
+    from world2minecraft.cli import render_look
+
+    monkeypatch.setattr(render_look, "PHOTO", "world2minecraft.render.no_such_tier")
+    assert render(schem, "--photo") == 2
+    assert "error: --photo is not in this version; leave it out" in capsys.readouterr().err
