@@ -1,6 +1,7 @@
 """Packs that are broken or traps: a whole one is refused in a sentence, a file falls through."""
 
 import json
+import os
 import zipfile
 
 import pytest
@@ -157,12 +158,15 @@ def test_names_in_a_zip_are_only_keys(tmp_path):
     assert looks.model("evil") is None
 
 
-def test_links_in_a_folder_are_left_out(tmp_path):
+def test_links_and_pipes_in_a_folder_are_left_out(tmp_path):
     secret = tmp_path / "secret.png"
     secret.write_bytes(content(RED))
     pack = folder_pack(tmp_path / "pack", cube_files("stone", RED))
     (pack / PICTURE.format("linked")).symlink_to(secret)
-    assert PackLooks([pack]).texture("minecraft:block/linked") is None
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(pack / PICTURE.format("endless"))
+    for name in ("linked", "endless"):
+        assert PackLooks([pack]).texture(f"minecraft:block/{name}") is None
 
 
 def test_a_broken_file_falls_through_to_the_pack_below(tmp_path):

@@ -6,6 +6,7 @@ name can lead out of it. Sizes are checked before bytes are read.
 
 import os
 import re
+import stat
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -53,7 +54,7 @@ def open_pack(path: str | Path) -> PackFiles:
 
 
 def _folder(folder: Path) -> PackFiles:
-    """List a folder's files; links are left out, as they may lead anywhere."""
+    """List a folder's plain files; links are left out, as they may lead anywhere."""
     names: set[str] = set()
     seen = 0
     for parent, folders, files in os.walk(folder):
@@ -64,11 +65,19 @@ def _folder(folder: Path) -> PackFiles:
         inner = Path(parent).relative_to(folder).as_posix()
         for file in files:
             name = file if inner == "." else f"{inner}/{file}"
-            if _KEPT.fullmatch(name) and not os.path.islink(os.path.join(parent, file)):
+            if _KEPT.fullmatch(name) and _is_plain(Path(parent, file)):
                 names.add(name)
     return PackFiles(
         folder.name, frozenset(names), lambda name, most: read_bytes(folder / name, most)
     )
+
+
+def _is_plain(path: Path) -> bool:
+    """Return whether a path is a file, and no link or pipe."""
+    try:
+        return stat.S_ISREG(path.lstat().st_mode)
+    except OSError:
+        return False
 
 
 def _zip(path: Path) -> PackFiles:
