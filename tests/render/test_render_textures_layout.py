@@ -106,7 +106,7 @@ GOLDEN = {
     "own:plain#cfd3d4": "e404c610eb0ec986",
     "own:planks#a2824e": "2073c977137e9f8c",
     "own:bricks#96604f?rows=2": "68f71198ad65f381",
-    "own:wool#a12722": "eaa7dcf0965c590c",
+    "own:wool#a12722": "7c7a42b00c2481ca",
     "own:cobble#7f7f7f": "58f9d530cc0eaa9f",
     "own:books#7a6146": "4376116b08b46d21",
     "own:flower#874a2b?shape=tulip": "a8de86b5bb984d77",

@@ -3,6 +3,8 @@
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from PIL import Image
 
 from world2minecraft.errors import UnknownNameError, UsageError
@@ -87,6 +89,36 @@ def test_an_unknown_name_brings_the_nearest():
         texture_of("own:plank#a2824e")
     with pytest.raises(UnknownNameError, match="did you mean 'boards'"):
         texture_of("own:planks#a2824e?bords=4")
+
+
+PIECES = st.sampled_from(
+    [
+        "own:",
+        "planks",
+        "#a2824e",
+        ",",
+        "?",
+        "&",
+        "=",
+        "boards",
+        "4",
+        "seed",
+        "nan",
+        "1e999",
+        "#",
+        "é",
+    ]
+)
+
+
+@given(st.lists(PIECES, max_size=12).map("".join))
+def test_any_text_is_read_or_refused_with_words(text):
+    try:
+        recipe = parse_recipe(text)
+    except UsageError as fault:
+        assert str(fault)
+    else:
+        assert parse_recipe(recipe.text) == recipe
 
 
 def test_a_long_recipe_is_refused():

@@ -33,11 +33,11 @@ def wool(canvas: Canvas, recipe: Recipe) -> Surface:
     tufts = noise(canvas, 8, 8, 1) + 0.7 * noise(canvas, 16, 16, 2)
     row = np.floor(canvas.y / 2)
     loops = np.where((np.floor(canvas.x) + row) % 4 < 2, 1.0, -1.0)
-    tone = 0.055 * tufts + 0.035 * loops
+    tone = 0.065 * tufts + 0.035 * loops
     height = 0.2 * tufts
     if canvas.fineness:
         body, _ = _loops(canvas)
-        tone = tone - 0.035 * loops + canvas.fineness * 0.17 * (body - 0.6)
+        tone = tone - 0.035 * loops + canvas.fineness * 0.24 * (body - 0.6)
         tone = tone + 0.05 * fractal(canvas, 32, 32, 3)
         height = height + 0.45 * body
     return Surface(tone, height, roughness=1.0)

@@ -45,7 +45,7 @@ def _boarded(
 ) -> Surface:
     wood = bevel(canvas, pieces.edge, 0.4) * (1 - pieces.joint)
     height = 0.45 * gaps * wood + 0.05 * grain
-    tone = 0.1 * shade + 0.1 * grain - 0.46 * gaps * pieces.joint
+    tone = 0.1 * shade + (0.1 + 0.03 * canvas.fineness) * grain - 0.46 * gaps * pieces.joint
     tone = tone + 0.07 * gaps * relief(canvas, wood) * (1 - pieces.joint)
     roughness = 0.58 + 0.07 * grain + 0.2 * pieces.joint
     return Surface(tone, height, roughness=roughness)
