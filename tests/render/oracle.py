@@ -11,12 +11,13 @@ hole unless the texture is translucent; of two at one place the later listed cou
 blocks of one state whose model is a see-through cube, leaves apart, there is no face.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from world2minecraft.minecraft.displays import display_cubes
-from world2minecraft.render.elements import Element, LookSource
+from world2minecraft.render.elements import BlockModel, Element, LookSource
+from world2minecraft.render.texture import Texture
 from world2minecraft.types import BlockVolume, Camera
 
 NO_FACE = 255
@@ -39,6 +40,30 @@ class Hits:
         self.depth[rays], self.normal[rays] = depth[nearer], normal[nearer]
         self.index[rays] = np.broadcast_to(index, depth.shape)[nearer]
         self.thing[rays] = thing
+
+
+class WithoutGlass:
+    """Looks in which all that is translucent is not there: what lies behind glass is first."""
+
+    def __init__(self, looks: LookSource):
+        self.looks = looks
+
+    def model(self, state: str) -> BlockModel | None:
+        """Return the model with the faces that are not translucent."""
+        model = self.looks.model(state)
+        return model and replace(model, elements=tuple(map(self._seen_through, model.elements)))
+
+    def texture(self, name: str) -> Texture | None:
+        """Return a texture as it is."""
+        return self.looks.texture(name)
+
+    def _seen_through(self, element: Element) -> Element:
+        textures = [face and self.looks.texture(face.texture) for face in element.faces]
+        kept = (
+            None if texture is not None and texture.translucent else face
+            for face, texture in zip(element.faces, textures, strict=True)
+        )
+        return replace(element, faces=tuple(kept))
 
 
 def oracle_picture(

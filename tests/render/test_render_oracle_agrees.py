@@ -8,7 +8,7 @@ from benchmarks.check_render import LEAST_EQUAL, MOST_MEDIAN_M, compare, differe
 from benchmarks.odd_looks import OddLooks, odd_volume
 from benchmarks.render_scenes import camera_of, poses, scene_looks, storeys
 from benchmarks.rival_mesh import mesh_of
-from oracle import Hits, has_face, oracle_picture
+from oracle import Hits, WithoutGlass, has_face, oracle_picture
 from scenes import CAMERA
 
 from world2minecraft.render import LookLight, prepare_scene, render_volume
@@ -66,6 +66,21 @@ def lowered(element: Element) -> Element:
         low=(low[0], max(low[1] - 1 / 16, 0.0), low[2]),
         high=(high[0], max(high[1] - 1 / 16, 1 / 16), high[2]),
     )
+
+
+@pytest.mark.parametrize("seed", [0, 5])
+def test_what_lies_behind_glass_is_what_is_there_without_it(seed):
+    volume, looks = odd_volume(seed), OddLooks(seed)
+    scene = prepare_scene(volume, looks)
+    equal, errors = [], []
+    for pose in poses(volume, 4, seed, looks=looks):
+        picture = render_volume(scene, CAMERA, pose, outputs=("opaque",))
+        truth = oracle_picture(volume, WithoutGlass(looks), CAMERA, pose)
+        same = picture.opaque_index == truth.index
+        equal.append(same.mean())
+        errors.append(np.abs(picture.opaque_depth_m - truth.depth)[same & (truth.index >= 0)])
+    assert np.mean(equal) >= LEAST_EQUAL
+    assert np.median(np.concatenate(errors)) < MOST_MEDIAN_M
 
 
 def test_normals_are_those_of_the_oracle():
