@@ -1,10 +1,11 @@
 """The ray caster and the virtual scan: milliseconds of CPU a picture, seconds a capture.
 
-``python -m benchmarks.bench_render`` prints more: wall time and spread, beside the rival. Pictures
+``python -m benchmarks.bench_render`` prints it as a table, with wall time and spread. Pictures
 are of a furnished room built at 4 and 2 blocks a metre, and of flats of 0.14 and 4.2 million cells;
 cameras stand at random places indoors. The rival is ``benchmarks.rivals_render``.
 """
 
+import argparse
 import gc
 import io
 import resource
@@ -20,6 +21,7 @@ from PIL import Image
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks.__main__ import machine
 from benchmarks.render_scenes import camera_of, large, poses, room, scene_looks, small
 from benchmarks.render_timing import Timing, time_all
 from benchmarks.rival_mesh import mesh_of
@@ -37,7 +39,7 @@ SCENES: dict[str, Callable[[], BlockVolume]] = {
     "flats 256x64x256": large,
 }
 # Width, height, CPU milliseconds of the issue, poses a round.
-SIZES = ((224, 224, 5.0, 16), (640, 480, 15.0, 12), (1920, 1129, 120.0, 4))
+SIZES = ((224, 224, 5.0, 8), (640, 480, 15.0, 10), (1920, 1129, 120.0, 4))
 RGB_DEPTH_IDS = ("colour", "depth", "semantic", "instance")
 LIGHT, SUNNY = LookLight(), LookLight(sun_shadow=True)
 # What is measured: the outputs and the light. "depth, ids" is what the way of the rays takes.
@@ -188,21 +190,43 @@ def _least(work: Callable[[], object], rounds: int) -> float:
     return min(times)
 
 
+COLUMNS = (
+    "scene", "size", "ours", "with sun", "no colour", "rival", "culled", "culled/ours",
+    "spread", "wall: ours", "culled",
+)  # fmt: skip
+
+
+def line(group: list[Measured]) -> list[str]:
+    """Return one line of the table: a scene at a size, in milliseconds."""
+    one, timing = group[0], {measured.what: measured.timing for measured in group}
+    ours = [timing[what] for what in ("rgb, depth, ids", "rgb, depth, ids, sun shadow")]
+    ours.append(timing["depth, blocks"])
+    rivals = [timing[what] for what in RIVALS if what in timing]
+    cells = [one.scene, f"{one.width}x{one.height}", *(f"{each.cpu_ms:.1f}" for each in ours)]
+    if not rivals:
+        return [*cells, "-", "-", "-", f"+{ours[0].spread:.0%}", f"{ours[0].wall_ms:.1f}", "-"]
+    ratio = f"{rivals[1].cpu_ms / ours[0].cpu_ms:.2f}"
+    spread = f"+{max(ours[0].spread, rivals[1].spread):.0%}"
+    walls = f"{ours[0].wall_ms:.1f}", f"{rivals[1].wall_ms:.1f}"
+    return [*cells, *(f"{each.cpu_ms:.1f}" for each in rivals), ratio, spread, *walls]
+
+
 def main() -> None:
-    """Print a table of everything that is timed."""
-    table = Table("scene", "size", "what", "CPU ms", "spread", "wall ms", box=None)
-    reason = why_not()
+    """Print a table of everything that is timed; ``--only TEXT`` takes the scenes with a text."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--only", default="", metavar="TEXT")
+    chosen = parser.parse_args()
+    table = Table(*COLUMNS, box=None)
     for name, make in SCENES.items():
-        for one in measure(name, make()):
-            table.add_row(
-                one.scene, f"{one.width}x{one.height}", one.what, f"{one.timing.cpu_ms:.1f}",
-                f"+{one.timing.spread:.0%}", f"{one.timing.wall_ms:.1f}",
-            )  # fmt: skip
-        gc.collect()
-    console = Console(width=110)
+        if chosen.only in name:
+            for group in _of_size(measure(name, make())):
+                table.add_row(*line(group))
+            gc.collect()
+    console = Console(width=130)
+    console.print(machine())
     console.print(table)
-    if reason:
-        console.print(f"The rival was skipped: {reason}.")
+    if why_not():
+        console.print(f"The rival was skipped: {why_not()}.")
 
 
 if __name__ == "__main__":
