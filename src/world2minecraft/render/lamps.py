@@ -1,10 +1,12 @@
 """What the kernels read of a light, made from what a user chose and what a scene is like."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from world2minecraft.render.light import LookLight
 from world2minecraft.render.scene import BlockScene
-from world2minecraft.render.shade import Lamp
+from world2minecraft.render.shade import Lamp, corner_lights, shades_of
 
 Paper = tuple[tuple[int, int, int], tuple[int, int, int]]
 
@@ -23,14 +25,20 @@ def lamp_of(light: LookLight, scene: BlockScene, background: Paper | None = None
         background: sRGB colours of the first and last row; None for the sky of the hour, or for
             paper where the light knows no hour.
     """
-    parameters, tone = light.parameters(scene.exposure), light.tone
+    return _lamp(light, scene.exposure, background)
+
+
+@lru_cache(maxsize=64)
+def _lamp(light: LookLight, exposure: float, background: Paper | None) -> Lamp:
+    parameters, tone = light.parameters(exposure), light.tone
     if background is None and light.preset == "neutral":
         background = PAPER
-    paper = np.array(background or PAPER)
     return Lamp(
         lit=parameters,
+        corners=corner_lights(parameters),
+        shades=shades_of(parameters),
         tone=tone,
-        background=light.background(scene.exposure),
-        paper=tone.decode[paper].astype(np.float64),
+        background=light.background(exposure),
+        paper=tone.decode[np.array(background or PAPER)].astype(np.float64),
         by_row=background is not None,
     )

@@ -47,6 +47,7 @@ def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scr
     width = out.depth.shape[1]
     corners, memo = scratch[:24].reshape((4, 6)), scratch[24:]
     memo[0] = -1.0
+    memo[4] = np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)
     for v_tile in range(first, last, TILE):
         v_end = min(v_tile + TILE, last)
         for u_tile in range(0, width, TILE):
@@ -75,6 +76,8 @@ def draw_pixel(
     ox, oy, oz, dx, dy, dz = ray_of_pixel(pose, x, y, spread)
     dx, dy, dz = steep(dx), steep(dy), steep(dz)
     rx, ry, rz = 1.0 / dx, 1.0 / dy, 1.0 / dz
+    scale = memo[4]  # Blocks a metre.
+    block_px = rays[0] / scale
     length = np.sqrt((x * x + y * y) * spread + 1.0)
     t, i, j, k = 0.0, 0, 0, 0
     element = -1
@@ -98,8 +101,8 @@ def draw_pixel(
         glass = element >= 0 and tables.translucent[tables.layers[element, side]]
         if out.wanted & COLOUR:
             r, g, b, alpha = shade_hit(
-                tables, side_px, lamp, memo, rays, spread, t, i, j, k, side, element,
-                ox, oy, oz, dx, dy, dz, length,
+                tables, side_px, lamp, memo, block_px / t if spread > 0 else block_px,
+                t, i, j, k, side, element, ox, oy, oz, dx, dy, dz, length * scale,
             )  # fmt: skip
             share = clear * alpha if glass else clear
             red, green, blue = red + share * r, green + share * g, blue + share * b

@@ -87,13 +87,15 @@ def begin(shape, ox, oy, oz, dx, dy, dz, rx, ry, rz):
 @inlined
 def walk(space, bounds, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face):
     """Cross air from a cell on; return ``(t, i, j, k, face, kind)`` of the first that is none."""
-    nx, ny, nz = space.shape
-    while 0 <= i < nx and 0 <= j < ny and 0 <= k < nz:
-        row = space[i, j, k]
+    nx, ny, nz = np.uint64(space.shape[0]), np.uint64(space.shape[1]), np.uint64(space.shape[2])
+    # Whole numbers without a sign: no code for counting from the end, and one comparison each.
+    while np.uint64(i) < nx and np.uint64(j) < ny and np.uint64(k) < nz:
+        row = space[np.uint64(i), np.uint64(j), np.uint64(k)]
         if row < 0:
             return t, i, j, k, face, row
-        x0, y0, z0 = int(bounds[row, 0]), int(bounds[row, 1]), int(bounds[row, 2])
-        x1, y1, z1 = int(bounds[row, 3]), int(bounds[row, 4]), int(bounds[row, 5])
+        box = bounds[np.uint64(row)]
+        x0, y0, z0 = np.int64(box[0]), np.int64(box[1]), np.int64(box[2])
+        x1, y1, z1 = np.int64(box[3]), np.int64(box[4]), np.int64(box[5])
         tx = ((x1 if dx > 0 else x0) - ox) * rx
         ty = ((y1 if dy > 0 else y0) - oy) * ry
         tz = ((z1 if dz > 0 else z0) - oz) * rz

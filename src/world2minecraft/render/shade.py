@@ -31,6 +31,7 @@ from world2minecraft.render.tables import (
 
 MEMO = 20  # Numbers; see ``find_light``.
 MOST_GLASS = 32  # Panes that one ray goes through.
+MOST_TEXELS = 2.25  # For a pixel, before the next mip level takes over.
 _OFF = 1e-5  # Blocks: how far before a surface a ray to the sun begins.
 _NEAR_EDGE = 1e-3  # Blocks: a face so near its cell's boundary is lit from beyond it.
 
@@ -39,6 +40,8 @@ class Lamp(NamedTuple):
     """What the kernels know of light and of how it becomes sRGB."""
 
     lit: LitParameters
+    corners: np.ndarray  # float32 [16384, 3]: the light that each entry of the lattice stands for
+    shades: np.ndarray  # float64 [6]: of each face of a block
     tone: Tone
     background: Background
     paper: np.ndarray  # float64 [2, 3]: linear colours of the first and last row
@@ -47,51 +50,94 @@ class Lamp(NamedTuple):
 
 @inlined
 def shade_hit(
-    tables, side_px, lamp, memo, rays, spread, t, i, j, k, side, element,
-    ox, oy, oz, dx, dy, dz, length,
+    tables, side_px, lamp, memo, block_px, t, i, j, k, side, element, ox, oy, oz, dx, dy, dz, speed
 ):  # fmt: skip
-    """Return ``(red, green, blue, alpha)`` of what ``first_hit`` gave, linear."""
+    """Return ``(red, green, blue, alpha)`` of what ``first_hit`` gave, linear.
+
+    ``block_px`` is how many pixels a block would cover there, seen straight on; ``speed`` is the
+    length of the direction; ``memo`` float64 [MEMO] is the band's own.
+    """
     gx, gy, gz = ox + t * dx, oy + t * dy, oz + t * dz
-    n = element
+    px, py, pz = gx - i, gy - j, gz - k
+    n = np.int64(element)
     if element < 0:
-        n = tables.refs[tables.look_start[tables.looks[i, j, k]]]
-    flags, turn = tables.traits[n, FLAGS], tables.traits[n, TURN]
-    ex, ey, ez = gx - i, gy - j, gz - k
+        look = tables.looks[np.uint64(i), np.uint64(j), np.uint64(k)]
+        n = np.int64(tables.refs[np.uint64(tables.look_start[np.uint64(look)])])
+    traits = tables.traits[np.uint64(n)]
+    flags, turn = traits[FLAGS], traits[TURN]
+    ex, ey, ez, face = px, py, pz, side
     if flags & ABSOLUTE:
         ex, ey, ez = gx, gy, gz
     if turn >= 0:
         ex, ey, ez = carried(tables.turns, turn, ex, ey, ez, 1.0)
-    nx, ny, nz = normal_of(tables, turn, side)
-    face = main_face(nx, ny, nz)
-    speed = np.sqrt(dx * dx + dy * dy + dz * dz)
-    cosine = abs(nx * dx + ny * dy + nz * dz) / speed
-    cell_px = rays[0] * length / (speed * (t * spread + 1 - spread))
-    r, g, b, alpha = texel_colour(tables, side_px, lamp.tone, n, side, ex, ey, ez, cell_px, cosine)
-    find_light(tables.light, lamp.lit, memo, i, j, k, face, flags & EVEN, gx - i, gy - j, gz - k)
-    p, q = (gy - j if face < 2 else gx - i), (gy - j if face >= 4 else gz - k)
+        nx, ny, nz = normal_of(tables, turn, side)
+        face = main_face(nx, ny, nz)
+        cosine = abs(nx * dx + ny * dy + nz * dz) / speed
+        shade = turned_shade(nx, ny, nz, cosine, lamp.lit)
+    else:
+        cosine = abs(dx if side < 2 else (dy if side < 4 else dz)) / speed
+        shade = lamp.shades[np.uint64(side)]
+        if lamp.lit.headlight > 0:
+            nx, ny, nz = normal_of(tables, -1, side)
+            shade = turned_shade(nx, ny, nz, cosine, lamp.lit)
+    if flags & UNSHADED:
+        shade = 1.0
+    r, g, b, alpha = texel_colour(tables, side_px, lamp.tone, n, side, ex, ey, ez, block_px, cosine)
+    find_light(tables.light, lamp.corners, memo, i, j, k, face, flags & EVEN, px, py, pz)
+    p, q = (py if face < 2 else px), (py if face >= 4 else pz)
     p, q = min(max(p, 0.0), 1.0), min(max(q, 0.0), 1.0)
-    shade = 1.0
-    if not flags & UNSHADED:
-        shade = direction_shade(nx, ny, nz, cosine, lamp.lit)
-        if lamp.lit.screen > 0:
-            shade = to_linear(shade)
     red = shade * between(memo, 8, p, q)
     green = shade * between(memo, 12, p, q)
     blue = shade * between(memo, 16, p, q)
     if lamp.lit.sun_r > 0:
-        sun = nx * lamp.lit.sun_x + ny * lamp.lit.sun_y + nz * lamp.lit.sun_z
-        if sun > 0 and sun_reaches(
-            tables, side_px, lamp.lit, gx + _OFF * nx, gy + _OFF * ny, gz + _OFF * nz
-        ):
-            red, green, blue = (
-                red + sun * lamp.lit.sun_r,
-                green + sun * lamp.lit.sun_g,
-                blue + sun * lamp.lit.sun_b,
-            )
+        sun = sun_on(tables, side_px, lamp.lit, turn, side, gx, gy, gz)
+        red, green, blue = (
+            red + sun * lamp.lit.sun_r,
+            green + sun * lamp.lit.sun_g,
+            blue + sun * lamp.lit.sun_b,
+        )
     if tables.emission[n] > 0:
         own = glow_light(15.0 * tables.emission[n], lamp.lit)
         red, green, blue = max(own, red), max(own, green), max(own, blue)
     return r * red, g * green, b * blue, alpha
+
+
+@inlined
+def turned_shade(nx, ny, nz, cosine, lit):
+    """Return the shade of a face by its normal, linear."""
+    shade = direction_shade(nx, ny, nz, cosine, lit)
+    return to_linear(shade) if lit.screen > 0 else shade
+
+
+def shades_of(lit: LitParameters) -> np.ndarray:
+    """Return the shade of each face of a block, linear, float64 [6]."""
+    return np.array([turned_shade(*map(float, normal), 1.0, lit) for normal in FACE_NORMALS])
+
+
+def corner_lights(lit: LitParameters) -> np.ndarray:
+    """Return the linear light of each entry of the light lattice, float32 [16384, 3]."""
+    result = np.empty((1 << 14, 3), np.float32)
+    _fill_corners(result, lit)
+    return result
+
+
+@lean
+def _fill_corners(result, lit):
+    for word in range(len(result)):
+        sky, block, dark = (word & 63) * 0.25, (word >> 6 & 63) * 0.25, float(word >> 12)
+        r, g, b = lit_colour(sky, block, dark, 1.0, 0.0, lit)
+        result[word, 0], result[word, 1], result[word, 2] = r, g, b
+
+
+@inlined
+def sun_on(tables, side_px, lit, turn, side, gx, gy, gz):
+    """Return the cosine of the sun on a face, 0 where it does not shine."""
+    nx, ny, nz = normal_of(tables, turn, side)
+    cosine = nx * lit.sun_x + ny * lit.sun_y + nz * lit.sun_z
+    if cosine <= 0:
+        return 0.0
+    free = sun_reaches(tables, side_px, lit, gx + _OFF * nx, gy + _OFF * ny, gz + _OFF * nz)
+    return cosine if free else 0.0
 
 
 @inlined
@@ -128,34 +174,33 @@ def between(memo, at, p, q):
 
 
 @inlined
-def texel_colour(tables, side_px, tone, n, side, x, y, z, cell_px, cosine):
-    """Return linear red, green, blue and alpha of the texture at a point of an element.
-
-    ``cell_px`` is how many pixels a block would cover there, seen straight on.
-    """
+def texel_colour(tables, side_px, tone, n, side, x, y, z, block_px, cosine):
+    """Return linear red, green, blue and alpha of the texture at a point of an element."""
+    n, side = np.uint64(n), np.uint64(side)
     m = tables.uv[n, side]
     u = m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3]
     v = m[1, 0] * x + m[1, 1] * y + m[1, 2] * z + m[1, 3]
     size, start = side_px, 0
-    fine = side_px / (cell_px * np.sqrt(max(cosine, 0.04)))  # Texels a pixel.
-    while fine > 1.5 and size > 1:
+    many = side_px / block_px  # Texels a pixel; a face seen edge-on has more one way.
+    many = many * many / max(cosine, 0.04)
+    while many > MOST_TEXELS and size > 1:
         start += size * size
         size //= 2
-        fine *= 0.5
+        many *= 0.25
     column, row = int((u - np.floor(u)) * size), int((v - np.floor(v)) * size)
     at = start + min(row, size - 1) * size + min(column, size - 1)
-    texel = tables.texels[tables.layers[n, side], at]
+    texel = tables.texels[np.uint64(tables.layers[n, side]), np.uint64(at)]
     tint = tables.tints[n, side]
     return (
-        tone.decode[texel[0]] * tint[0],
-        tone.decode[texel[1]] * tint[1],
-        tone.decode[texel[2]] * tint[2],
-        texel[3] / 255.0,
+        tone.decode[np.uint64(texel[0])] * tint[0],
+        tone.decode[np.uint64(texel[1])] * tint[1],
+        tone.decode[np.uint64(texel[2])] * tint[2],
+        texel[3] * (1 / 255),
     )
 
 
 @inlined
-def find_light(light, lit, memo, i, j, k, face, even, px, py, pz):
+def find_light(light, corners, memo, i, j, k, face, even, px, py, pz):
     """Fill the memo with the light at the corners of a block's face, unless it has them.
 
     ``memo``: the cell, face and layer that it belongs to, then red at four corners from 8 on,
@@ -174,15 +219,13 @@ def find_light(light, lit, memo, i, j, k, face, even, px, py, pz):
     for corner in range(4):
         a, b = corner // 2, corner % 2
         if face < 2:
-            word = int(light[0, i + step + 1, j + a, k + b])
+            word = light[0, np.uint64(i + step + 1), np.uint64(j + a), np.uint64(k + b)]
         elif face < 4:
-            word = int(light[1, i + a, j + step + 1, k + b])
+            word = light[1, np.uint64(i + a), np.uint64(j + step + 1), np.uint64(k + b)]
         else:
-            word = int(light[2, i + a, j + b, k + step + 1])
-        dark = 0.0 if even else float(word >> 12)
-        memo[8 + corner], memo[12 + corner], memo[16 + corner] = lit_colour(
-            (word & 63) * 0.25, (word >> 6 & 63) * 0.25, dark, 1.0, 0.0, lit
-        )
+            word = light[2, np.uint64(i + a), np.uint64(j + b), np.uint64(k + step + 1)]
+        colour = corners[np.uint64(word) & np.uint64(0xFFF if even else 0x3FFF)]
+        memo[8 + corner], memo[12 + corner], memo[16 + corner] = colour[0], colour[1], colour[2]
 
 
 @lean

@@ -80,9 +80,9 @@ def finish(r, g, b, tone):
         r, g, b = r * keep + white, g * keep + white, b * keep + white
     last = ENCODE_STEPS - 1
     return (
-        tone.encode[int(min(max(r, 0.0), 1.0) * last + 0.5)],
-        tone.encode[int(min(max(g, 0.0), 1.0) * last + 0.5)],
-        tone.encode[int(min(max(b, 0.0), 1.0) * last + 0.5)],
+        tone.encode[np.uint64(min(max(r, 0.0), 1.0) * last + 0.5)],
+        tone.encode[np.uint64(min(max(g, 0.0), 1.0) * last + 0.5)],
+        tone.encode[np.uint64(min(max(b, 0.0), 1.0) * last + 0.5)],
     )
 
 
