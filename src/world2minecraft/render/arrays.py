@@ -7,11 +7,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.render.pixels import COLOUR, NORMAL, OPAQUE, SCRATCH, TILE, draw_rows
+from world2minecraft.render.pixels import (
+    COLOUR,
+    INSTANCE,
+    NORMAL,
+    OPAQUE,
+    SCRATCH,
+    SEMANTIC,
+    TILE,
+    draw_rows,
+)
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.shade import Lamp
 
-WANTED = {"colour": COLOUR, "opaque": OPAQUE, "normal": NORMAL}
+WANTED = {
+    "colour": COLOUR,
+    "opaque": OPAQUE,
+    "normal": NORMAL,
+    "semantic": SEMANTIC,
+    "instance": INSTANCE,
+}
 
 
 class PixelArrays(NamedTuple):
@@ -26,6 +41,8 @@ class PixelArrays(NamedTuple):
     opaque_index: np.ndarray  # int32 [H, W]
     opaque_thing: np.ndarray  # int32 [H, W]
     normal: np.ndarray  # float32 [H, W, 3]
+    semantic: np.ndarray  # uint8 [H, W]
+    instance: np.ndarray  # uint16 [H, W]
     colour: np.ndarray  # uint8 [H, W, 3]
     wanted: int
 
@@ -35,7 +52,7 @@ def pixel_arrays(size: tuple[int, int], outputs: Collection[str]) -> PixelArrays
 
     Args:
         size: height and width.
-        outputs: names; of them colour, opaque and normal matter here.
+        outputs: names of pictures' outputs.
     """
     wanted = sum(bit for name, bit in WANTED.items() if name in outputs)
 
@@ -52,6 +69,8 @@ def pixel_arrays(size: tuple[int, int], outputs: Collection[str]) -> PixelArrays
         opaque_index=np.empty(room(OPAQUE), np.int32),
         opaque_thing=np.empty(room(OPAQUE), np.int32),
         normal=np.zeros((*room(NORMAL), 3), np.float32),
+        semantic=np.empty(room(SEMANTIC), np.uint8),
+        instance=np.empty(room(INSTANCE), np.uint16),
         colour=np.empty((*room(COLOUR), 3), np.uint8),
         wanted=wanted,
     )

@@ -120,7 +120,7 @@ def _draw(
         many = pixel_arrays((size[0] * samples, size[1] * samples), ("colour",))
         draw_into(many, scene, pose, rays * samples, spread, lamp, threads)
         arrays = arrays._replace(colour=_mean_of_squares(many.colour, samples))
-    picture = picture_of(scene, arrays, outputs)
+    picture = picture_of(arrays, outputs)
     if "free" in outputs:
         picture = replace(picture, free=crossed_air(scene.tables, pose, rays, spread, arrays.depth))
     return picture
@@ -136,10 +136,9 @@ def _check(outputs: Collection[str], size: tuple[int, int], samples: int) -> Non
         raise ValueError(f"a picture may have {MAX_PIXELS:,} samples, not {size[1]}x{size[0]}")
 
 
-def picture_of(scene: BlockScene, arrays: PixelArrays, outputs: Collection[str]) -> Picture:
+def picture_of(arrays: PixelArrays, outputs: Collection[str]) -> Picture:
     """Return what drawn arrays show; the picture shares their memory."""
     opaque = "opaque" in outputs
-    things = scene.things
     return Picture(
         depth_m=arrays.depth,
         range_m=arrays.distance,
@@ -147,27 +146,13 @@ def picture_of(scene: BlockScene, arrays: PixelArrays, outputs: Collection[str])
         face=arrays.face,
         cube_index=arrays.thing,
         colour=arrays.colour if "colour" in outputs else None,
-        semantic=_labels(scene.semantic, things.semantic, arrays)
-        if "semantic" in outputs
-        else None,
-        instance=_labels(scene.instance, things.instance, arrays)
-        if "instance" in outputs
-        else None,
+        semantic=arrays.semantic if "semantic" in outputs else None,
+        instance=arrays.instance if "instance" in outputs else None,
         opaque_depth_m=arrays.opaque_depth if opaque else None,
         opaque_index=arrays.opaque_index if opaque else None,
         opaque_cube_index=arrays.opaque_thing if opaque else None,
         normal=arrays.normal if "normal" in outputs else None,
     )
-
-
-def _labels(values: np.ndarray, thing_values: np.ndarray, arrays: PixelArrays) -> np.ndarray:
-    """Return the values of the cells and things of a picture, 0 where there is neither."""
-    found = values.reshape(-1)[np.maximum(arrays.index, 0)]
-    found[arrays.index < 0] = 0
-    if len(thing_values):
-        shown = arrays.thing >= 0
-        found[shown] = thing_values[arrays.thing[shown]]
-    return found
 
 
 def _mean_of_squares(colour: np.ndarray, samples: int) -> np.ndarray:

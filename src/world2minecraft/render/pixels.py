@@ -22,7 +22,7 @@ from world2minecraft.render.tables import NO_FACE, OWNER, TURN
 
 TILE = 8
 # Bits of what is wanted.
-COLOUR, OPAQUE, NORMAL = 1, 2, 4
+COLOUR, OPAQUE, NORMAL, SEMANTIC, INSTANCE = 1, 2, 4, 8, 16
 SCRATCH = 64  # Numbers that a band of rows needs for itself; see ``draw_rows``.
 
 
@@ -127,9 +127,18 @@ def write_hit(tables, out, v, u, t, length, i, j, k, side, element):
     if side == NO_FACE:
         out.depth[v, u], out.distance[v, u] = 0.0, 0.0
         out.index[v, u], out.thing[v, u], out.face[v, u] = -1, -1, NO_FACE
+        if out.wanted & SEMANTIC:
+            out.semantic[v, u] = 0
+        if out.wanted & INSTANCE:
+            out.instance[v, u] = 0
         return
     out.depth[v, u], out.distance[v, u] = t, t * length
-    out.index[v, u], out.thing[v, u] = owner_of_hit(tables, element, i, j, k)
+    at, owner = owner_of_hit(tables, element, i, j, k)
+    out.index[v, u], out.thing[v, u] = at, owner
+    if out.wanted & SEMANTIC:
+        out.semantic[v, u] = tables.semantic[at] if owner < 0 else tables.thing_semantic[owner]
+    if out.wanted & INSTANCE:
+        out.instance[v, u] = tables.instance[at] if owner < 0 else tables.thing_instance[owner]
     turn = tables.traits[element, TURN] if element >= 0 else -1
     out.face[v, u] = side
     if turn >= 0:

@@ -72,6 +72,10 @@ def prepare_scene(
         tables=_tables(table, *empty_boxes(kinds), cell_looks, start, refs)._replace(
             light=light_field(states, volume.palette).lattice,
             window=np.array([margin[0], volume.states.shape], np.int64),
+            semantic=volume.semantic.reshape(-1),
+            instance=volume.instance.reshape(-1),
+            thing_semantic=things.semantic,
+            thing_instance=things.instance,
         ),
         material=table.atlas.material,
         side_px=texture_px,
@@ -126,4 +130,8 @@ def _tables(
         translucent=table.atlas.translucent,
         light=np.empty((3, 0, 0, 0), np.uint16),
         window=np.zeros((2, 3), np.int64),
+        semantic=np.zeros(1, np.uint8),
+        instance=np.zeros(1, np.uint16),
+        thing_semantic=np.zeros(1, np.uint8),
+        thing_instance=np.zeros(1, np.uint16),
     )

@@ -50,6 +50,10 @@ class SceneTables(NamedTuple):
     translucent: np.ndarray  # bool [L]
     light: np.ndarray  # uint16 [3, X + 2, Y + 2, Z + 2]
     window: np.ndarray  # int64 [2, 3]: the volume's first cell in this grid, and its shape
+    semantic: np.ndarray  # uint8 [N]: class of each cell of the volume
+    instance: np.ndarray  # uint16 [N]: object of each cell
+    thing_semantic: np.ndarray  # uint8 [S]: class of each standing thing
+    thing_instance: np.ndarray  # uint16 [S]
 
 
 def owner_of_cell(index: int) -> int:
