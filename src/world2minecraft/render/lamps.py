@@ -5,18 +5,25 @@ from functools import lru_cache
 import numpy as np
 
 from world2minecraft.render.light import LookLight
+from world2minecraft.render.light.exposure import scene_exposure
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.shade import Lamp, corner_lights, shades_of
 
 Paper = tuple[tuple[int, int, int], tuple[int, int, int]]
 
+LUMP_CELLS = 8  # Eyes so near to each other see by one exposure.
 DAY = LookLight()
 NEUTRAL = LookLight(preset="neutral")
 # A quiet, warm light grey, a little darker towards the bottom.
 PAPER: Paper = ((238, 238, 236), (214, 214, 212))
 
 
-def lamp_of(light: LookLight, scene: BlockScene, background: Paper | None = None) -> Lamp:
+def lamp_of(
+    light: LookLight,
+    scene: BlockScene,
+    background: Paper | None = None,
+    eyes: np.ndarray | None = None,
+) -> Lamp:
     """Return a light as the kernels read it.
 
     Args:
@@ -24,8 +31,24 @@ def lamp_of(light: LookLight, scene: BlockScene, background: Paper | None = None
         scene: its exposure counts where the light names none.
         background: sRGB colours of the first and last row; None for the sky of the hour, or for
             paper where the light knows no hour.
+        eyes: float64 [N, 3], where the cameras stand, in cells of the scene; None for anywhere.
     """
-    return _lamp(light, scene.exposure, background)
+    return _lamp(light, exposure_of(light, scene, eyes), background)
+
+
+def exposure_of(light: LookLight, scene: BlockScene, eyes: np.ndarray | None = None) -> float:
+    """Return the exposure of pictures from some eyes; those in a lump of cells share one."""
+    if light.exposure is not None:
+        return light.exposure
+    if eyes is None:
+        key: object = light
+    else:
+        lumps = np.unique(np.floor(np.asarray(eyes) / LUMP_CELLS).astype(int), axis=0)
+        key = (light, lumps.tobytes())
+        eyes = np.unique(np.floor(np.asarray(eyes)) + 0.5, axis=0)
+    if key not in scene.exposures:
+        scene.exposures[key] = scene_exposure(scene.light, light, eyes)
+    return scene.exposures[key]
 
 
 @lru_cache(maxsize=64)

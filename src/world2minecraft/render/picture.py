@@ -112,7 +112,7 @@ def _draw(
     _check(outputs, size, samples)
     scene = prepare_scene(volume) if isinstance(volume, BlockVolume) else volume
     pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
-    lamp = lamp_of(light, scene, background)
+    lamp = lamp_of(light, scene, background, pose[:, 3][None] if spread else None)
     fine = "colour" in outputs and samples > 1
     arrays = pixel_arrays(size, [name for name in outputs if not (fine and name == "colour")])
     draw_into(arrays, scene, pose, rays, spread, lamp, threads)

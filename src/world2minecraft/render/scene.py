@@ -5,15 +5,15 @@ scene once and passes it in the volume's place.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from world2minecraft.render.bake import AIR, Baker, ElementTable, joins, kind_of, models_of
 from world2minecraft.render.elements import BlockModel, LookSource
 from world2minecraft.render.empties import empty_boxes
-from world2minecraft.render.light import light_field
-from world2minecraft.render.plain_looks import PlainLooks
+from world2minecraft.render.light import LightField, light_field
+from world2minecraft.render.looks import OwnLooks
 from world2minecraft.render.standing_boxes import (
     StandingThings,
     margin_of,
@@ -37,11 +37,16 @@ class BlockScene:
     things: StandingThings
     room_to_grid: np.ndarray  # float64 [4, 4]: room metres to cells of this grid
     cells_per_metre: float
-    exposure: float = 1.0  # what makes its light a good picture
+    light: LightField
+    exposures: dict[object, float] = field(default_factory=dict)  # found so far, see render.lamps
 
 
 def prepare_scene(
-    volume: BlockVolume, looks: LookSource | None = None, *, texture_px: int = 16
+    volume: BlockVolume,
+    looks: LookSource | None = None,
+    *,
+    texture_px: int = 16,
+    reach: float = 1.0,
 ) -> BlockScene:
     """Return the scene of a volume.
 
@@ -49,8 +54,12 @@ def prepare_scene(
         volume: the blocks, with display entities.
         looks: where models and textures come from; our own set where None.
         texture_px: the side of a texture, 16, 32, 64 or 128.
+        reach: how many blocks light goes for each level that it loses; 1 is the game's.
+
+    Raises:
+        ValueError: the size of the textures or the reach is out of range.
     """
-    looks = looks or PlainLooks()
+    looks = looks or OwnLooks(texture_px)
     baker = Baker(looks, texture_px)
     models, guests = overhanging(models_of(volume.palette, looks), volume.states)
     things, more = standing_things(volume, looks)
@@ -67,10 +76,10 @@ def prepare_scene(
     kinds[hosts] = BOXES
     grid_to_world = np.eye(4)
     grid_to_world[:3, 3] = volume.corner - margin[0]
-    table = baker.table()
+    table, light = baker.table(), light_field(states, volume.palette, reach)
     return BlockScene(
         tables=_tables(table, *empty_boxes(kinds), cell_looks, start, refs)._replace(
-            light=light_field(states, volume.palette).lattice,
+            light=light.lattice,
             window=np.array([margin[0], volume.states.shape], np.int64),
             semantic=volume.semantic.reshape(-1),
             instance=volume.instance.reshape(-1),
@@ -84,6 +93,7 @@ def prepare_scene(
         things=things,
         room_to_grid=np.linalg.inv(volume.block_to_room @ grid_to_world),
         cells_per_metre=volume.blocks_per_metre,
+        light=light,
     )
 
 
