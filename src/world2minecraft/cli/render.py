@@ -152,7 +152,7 @@ def _pictures(
         shots = list(run_of)
         volume = plan.volume_of(shots[0])
         scene = prepare_scene(volume, looks, texture_px=look.texture_px)
-        scene = exposed(scene, volume, options.light, shots)
+        scene = exposed(scene, options.light, shots)
         pictures = take(scene, volume, shots, look, options)
         for shot, picture in zip(shots, pictures, strict=True):
             yield shot, picture, volume

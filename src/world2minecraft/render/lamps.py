@@ -38,8 +38,9 @@ def lamp_of(
 
 def exposure_of(light: LookLight, scene: BlockScene, eyes: np.ndarray | None = None) -> float:
     """Return the exposure of pictures from some eyes; those in a lump of cells share one."""
-    if light.exposure is not None:
-        return light.exposure
+    for stated in (light.exposure, scene.exposure):
+        if stated is not None:
+            return stated
     if eyes is None:
         key: object = light
     else:

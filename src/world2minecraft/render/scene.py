@@ -38,6 +38,7 @@ class BlockScene:
     room_to_grid: np.ndarray  # float64 [4, 4]: room metres to cells of this grid
     cells_per_metre: float
     light: LightField
+    exposure: float | None = None  # of all its pictures; None: by what lies around the camera
     exposures: dict[object, float] = field(default_factory=dict)  # found so far, see render.lamps
 
 

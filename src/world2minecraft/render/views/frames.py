@@ -10,13 +10,13 @@ from itertools import repeat
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, invert
-from world2minecraft.render.lamps import DAY, Paper
-from world2minecraft.render.light import LookLight, light_field, scene_exposure
+from world2minecraft.coordinates import apply
+from world2minecraft.render.lamps import DAY, Paper, exposure_of
+from world2minecraft.render.light import LookLight
 from world2minecraft.render.picture import Picture, render_volume
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.views.poses import Shot
-from world2minecraft.types import BlockVolume, Camera
+from world2minecraft.types import Camera
 
 
 @dataclass(frozen=True)
@@ -70,22 +70,15 @@ def frames_of(
     return frames(scene, cameras, poses, options)
 
 
-def exposed(
-    scene: BlockScene, volume: BlockVolume, light: LookLight, shots: Sequence[Shot]
-) -> BlockScene:
+def exposed(scene: BlockScene, light: LookLight, shots: Sequence[Shot]) -> BlockScene:
     """Return the scene, opened up as far as the light around the cameras wants it.
 
     One exposure for all shots: pictures of one tour belong together.
 
     Args:
-        scene: ``prepare_scene`` of the volume.
-        volume: the blocks.
+        scene: ``prepare_scene`` of a volume.
         light: how it is lit.
         shots: from where; cameras outside of the volume do not count.
     """
-    if light.exposure is not None or light.preset == "neutral":
-        return scene
-    to_block = invert(volume.block_to_room)
-    eyes = np.array([apply(to_block, shot.camera_to_room[:3, 3]) for shot in shots])
-    field = light_field(volume.states, volume.palette)
-    return replace(scene, exposure=scene_exposure(field, light, eyes - np.array(volume.corner)))
+    eyes = np.array([apply(scene.room_to_grid, shot.camera_to_room[:3, 3]) for shot in shots])
+    return replace(scene, exposure=exposure_of(light, scene, eyes))

@@ -58,7 +58,7 @@ def turntable(
         seen = volume if inside is None else inside.seen_by(shot.camera_to_room)
         if id(seen) not in scenes:  # The opened build keeps what it made, so ids are its own.
             scene = prepare_scene(seen, looks, texture_px=texture_px)
-            scenes[id(seen)] = exposed(scene, seen, how.light, [shot])
+            scenes[id(seen)] = exposed(scene, how.light, [shot])
         picture = next(frames(scenes[id(seen)], fine, [shot.camera_to_room], how))
         if picture.colour is None:
             raise ValueError("the picture has no colour")
