@@ -12,9 +12,10 @@ from world2minecraft.minecraft.rules.flood import SHUT, SOLID, steps_of
 from world2minecraft.render.light.field import LightField
 from world2minecraft.render.light.look import LookLight
 
-# The light that surfaces shall have, by what they have most of: a night stays a night.
-DAY_KEY, LAMP_KEY, NIGHT_KEY = 1.05, 0.80, 0.30
-ADAPTS = 0.75  # How much of the way there: dim rooms stay a little dimmer than bright ones.
+# The light that surfaces shall have by day, at night under lamps, at night without: a night stays
+# a night.
+DAY_KEY, LAMP_KEY, NIGHT_KEY = 1.20, 0.70, 0.32
+ADAPTS = 0.80  # How much of the way there: dim rooms stay a little dimmer than bright ones.
 LEAST, MOST = 0.6, 4.0
 REACH_BLOCKS = 24  # Steps from an eye: at 4 blocks per metre, a room.
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -42,8 +43,8 @@ def scene_exposure(field: LightField, look: LookLight, eyes: np.ndarray | None =
     sky, lamps = _surface_light(field, look, cells)
     light = np.exp(np.log(sky + lamps).mean())
     daylight = min(float(LUMINANCE @ look.sky.light), 1.0)
-    key = NIGHT_KEY + (DAY_KEY - NIGHT_KEY) * daylight
-    key += (LAMP_KEY - key) * lamps.sum() / (sky + lamps).sum()
+    at_night = NIGHT_KEY + (LAMP_KEY - NIGHT_KEY) * lamps.sum() / (sky + lamps).sum()
+    key = at_night + (DAY_KEY - at_night) * daylight
     return float(np.clip((key / light) ** ADAPTS, LEAST, MOST))
 
 

@@ -8,7 +8,13 @@ import numpy as np
 from world2minecraft.render.light.background import Background
 from world2minecraft.render.light.hours import Sky, sky_at
 from world2minecraft.render.light.lit import LitParameters
-from world2minecraft.render.light.tone import Tone, filmic_tone, screen_tone, srgb_to_linear
+from world2minecraft.render.light.tone import (
+    SCREEN_POWER,
+    Tone,
+    filmic_tone,
+    screen_tone,
+    srgb_to_linear,
+)
 
 PRESETS = ("shader", "game", "neutral")
 DEFAULT_HOUR = 11.0  # Late morning: a high sun with shadows that still have a direction.
@@ -44,7 +50,7 @@ class LookLight:
     exposure: float | None = None  # None: from the scene's own light, see exposure.scene_exposure
     brightness: float = 0.5  # the game's option, 0 (moody) to 1 (bright): lifts the dark
     sun_shadow: bool = False  # ask for a ray towards the sun at each pixel
-    reach: float = 1.0  # blocks a light level, 1 is the game's
+    soft_shade: bool = True  # of ``shader``: faces differ less than in the game, as rooms want
 
     def __post_init__(self):
         if self.preset not in PRESETS:
@@ -82,11 +88,17 @@ class LookLight:
             *sky.sun_direction,
             3.0 if screen else 3.0 - 2.0 * self.brightness,
             0.2 if screen else CORNER,
-            *(GAME_SHADE if screen else SOFT_SHADE),
+            *self._shades(),
             0.0,
             1.0 if screen else GLOW,
             float(screen),
         ])  # fmt: skip
+
+    def _shades(self) -> tuple[float, ...]:
+        """Return the shades of faces: x, up, down, z."""
+        if self.preset == "game":
+            return GAME_SHADE
+        return SOFT_SHADE if self.soft_shade else tuple(v**SCREEN_POWER for v in GAME_SHADE)
 
     def background(self, exposure: float = 1.0) -> Background:
         """Return the sky that the kernel draws; a sky is exposed half as far as what it lights."""

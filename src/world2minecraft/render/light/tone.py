@@ -1,7 +1,8 @@
 """From light to screen: tables for the kernel, a tone map that keeps hues, and numpy's versions.
 
-Colours up to ``SHOULDER`` come through as they are; what is brighter is pressed together below
-white by its brightest channel, so that hues stay, and pales a little, as film does.
+Light up to ``SHOULDER`` comes through as it is; what is brighter is pressed together below white by
+its brightest channel, so that hues stay, and pales a little, as film does. A little contrast then
+goes on top.
 """
 
 from typing import NamedTuple
@@ -14,6 +15,7 @@ SCREEN_POWER = 2.2  # Products of colours then equal products of screen values.
 ENCODE_STEPS = 4096  # The darkest step of sRGB is 0.8 of a screen value.
 SHOULDER = 0.60  # Linear; 0.79 on the screen.
 PALING = 0.18  # How fast light over white loses colour.
+CONTRAST = 1.12  # A power of linear light: what fog the even light of rooms leaves is lifted.
 NEVER = 1e30
 
 
@@ -29,7 +31,7 @@ def filmic_tone() -> Tone:
     """Return the tone of pictures with light: sRGB, and a soft shoulder."""
     return Tone(
         srgb_to_linear(np.arange(256) / 255).astype(np.float32),
-        _screen_values(linear_to_srgb(np.linspace(0, 1, ENCODE_STEPS))),
+        _screen_values(linear_to_srgb(np.linspace(0, 1, ENCODE_STEPS) ** CONTRAST)),
         SHOULDER,
     )
 
@@ -56,7 +58,7 @@ def linear_to_srgb(light: np.ndarray) -> np.ndarray:
 
 
 def tone_map(light: np.ndarray, shoulder: float = SHOULDER) -> np.ndarray:
-    """Return linear colours [..., 3] pressed below 1, float64: what ``finish`` does to a pixel."""
+    """Return linear colours [..., 3] pressed below 1, float64."""
     light = np.maximum(np.asarray(light, np.float64), 0)
     peak = light.max(axis=-1, keepdims=True)
     room = 1 - shoulder
@@ -65,6 +67,12 @@ def tone_map(light: np.ndarray, shoulder: float = SHOULDER) -> np.ndarray:
     scaled = light * np.where(over > 0, pressed / np.maximum(peak, 1e-12), 1)
     pale = 1 - 1 / (1 + PALING * (peak - pressed))
     return scaled + (pressed - scaled) * pale
+
+
+def develop(light: np.ndarray, tone: Tone) -> np.ndarray:
+    """Return screen colours, uint8 [..., 3], of linear light: ``finish`` for whole pictures."""
+    pressed = tone_map(light, tone.shoulder) if tone.shoulder < 1 else np.maximum(light, 0)
+    return tone.encode[(np.minimum(pressed, 1) * (ENCODE_STEPS - 1) + 0.5).astype(np.int64)]
 
 
 @inlined
