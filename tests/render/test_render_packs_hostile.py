@@ -277,6 +277,15 @@ def test_problems_are_counted_and_only_some_are_kept(tmp_path):
         assert all(looks.model(f"thing_{index}") is None for index in range(70))
     assert looks.problem_count == 70
     assert len(looks.problems) == resources.MOST_PROBLEMS
+    assert looks.summary.startswith(
+        "70 things of the packs could not be read, the first: assets/minecraft/blockstates/thing_0"
+    )
+
+
+def test_nothing_is_said_of_a_good_pack(tmp_path):
+    looks = PackLooks([folder_pack(tmp_path / "pack", cube_files("stone", RED))])
+    assert looks.model("stone") is not None
+    assert (looks.summary, looks.problems) == ("", [])
 
 
 @pytest.mark.parametrize(

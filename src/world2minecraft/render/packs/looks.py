@@ -72,6 +72,14 @@ class PackLooks:
         return self._resources.problem_count
 
     @property
+    def summary(self) -> str:
+        """One sentence on what could not be read, for whoever made pictures; "" for nothing."""
+        if not self.problem_count:
+            return ""
+        first, count = self._resources.problems[0], self.problem_count
+        return f"{count} things of the packs could not be read, the first: {first}"
+
+    @property
     def texture_px(self) -> int:
         """The side that most of the packs' textures have, 16 to ``most_px``: a size for a scene."""
         return self._textures.usual_px()
