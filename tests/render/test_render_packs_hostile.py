@@ -42,6 +42,8 @@ def problem(tmp_path, files, state="minecraft:thing") -> str:
     looks = PackLooks([folder_pack(tmp_path / "pack", files)])
     assert looks.model(state) is None
     assert looks.problem_count == len(looks.problems) == 1
+    told = "1 thing of the packs could not be read, the first: " + looks.problems[0]
+    assert looks.summary == told
     return looks.problems[0]
 
 

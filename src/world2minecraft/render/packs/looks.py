@@ -77,7 +77,8 @@ class PackLooks:
         if not self.problem_count:
             return ""
         first, count = self._resources.problems[0], self.problem_count
-        return f"{count} things of the packs could not be read, the first: {first}"
+        things = "1 thing" if count == 1 else f"{count} things"
+        return f"{things} of the packs could not be read, the first: {first}"
 
     @property
     def texture_px(self) -> int:
