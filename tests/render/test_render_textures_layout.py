@@ -108,7 +108,7 @@ GOLDEN = {
     "own:bricks#96604f?rows=2": "68f71198ad65f381",
     "own:wool#a12722": "7c7a42b00c2481ca",
     "own:cobble#7f7f7f": "58f9d530cc0eaa9f",
-    "own:books#7a6146": "4376116b08b46d21",
+    "own:books#7a6146": "77f7fa13a2d63b70",
     "own:flower#874a2b?shape=tulip": "a8de86b5bb984d77",
     "own:glass#d2e8ee": "3d34d695b461a7a9",
 }

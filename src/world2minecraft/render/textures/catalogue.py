@@ -214,12 +214,13 @@ PLANTS = {
 FACES = {
     "books": Generator(
         faces.books,
-        "#7a6146",
+        "#76613e",
         (
-            Accent("first spines", "#a0443a"),
-            Accent("second", "#41597a"),
-            Accent("third", "#5c7038"),
-            Accent("fourth", "#c09a5c"),
+            Accent("first spines", "#963c2e"),
+            Accent("second", "#3a4f72"),
+            Accent("third", "#52682e"),
+            Accent("fourth", "#b08c4c"),
+            Accent("boards", 0.2),
         ),
     ),
     "drawers": Generator(

@@ -65,9 +65,8 @@ def books(canvas: Canvas, recipe: Recipe) -> Surface:
         board, 0.1 * fibre(canvas, canvas.x, canvas.y, 5) + 0.12 * (y < 0.5) - 0.06, tone
     )
     which = (identity * 3 + identity // 4 + recipe.seed % 4) % 4  # Never two alike side by side.
-    paints = tuple(
-        (recipe.ink(index + 1), (spine & (which == index)).astype(np.float64)) for index in range(4)
-    )
+    covers = [(recipe.ink(index + 1), (spine & (which == index)) * 1.0) for index in range(4)]
+    paints = (*covers, (recipe.ink(5), board * 1.0))
     height = np.where(spine, 0.5 + 0.5 * smooth(edge, 0.0, 0.7), np.where(board, 1.2, 0.0))
     return Surface(tone, height, paints, roughness=0.75)
 

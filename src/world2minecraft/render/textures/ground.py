@@ -7,6 +7,7 @@ from world2minecraft.render.textures.canvas import (
     Canvas,
     contour,
     fractal,
+    hashed,
     noise,
     pick,
     relief,
@@ -17,6 +18,8 @@ from world2minecraft.render.textures.recipe import Recipe
 from world2minecraft.render.textures.stamps import scatter
 from world2minecraft.render.textures.surface import Surface
 
+# Flames: foot, height and half width, in sixteenths.
+FLAMES = ((2.0, 8.0, 2.2), (5.0, 12.5, 2.6), (8.5, 15.5, 3.0), (11.5, 10.5, 2.6), (14.0, 8.5, 2.0))
 TURF = 260  # Blades of grass on a block, seen from above.
 
 
@@ -178,14 +181,20 @@ def furrows(canvas: Canvas, recipe: Recipe) -> Surface:
 
 
 def fire(canvas: Canvas, recipe: Recipe) -> Surface:
-    """Flames that stand up, bright at their heart, the accent; holes around. They glow."""
+    """Flames that stand up and glow, bright at their heart, the accent; holes around."""
     rise = SIDE - canvas.y
-    bend = canvas.x + 0.9 * noise(canvas, 4, 8, 1) * smooth(rise, 2, 10)
-    reach = 8.5 + 5.5 * noise(canvas, 6, 1, 2, bend) + 1.5 * noise(canvas, 16, 1, 3, bend)
-    part = rise / np.maximum(reach, 1.0)
-    gap = (noise(canvas, 8, 4, 4, bend) > 0.45) & (part > 0.35)
-    solid = (part < 1) & ~gap
-    heart = 1 - smooth(part, 0.25, 0.8)
-    tone = 0.15 - 0.45 * smooth(part, 0.55, 1.0)
-    paints = ((recipe.ink(1), 0.9 * heart),)
-    return Surface(tone, 0.0, paints, solid, roughness=1.0, emission=solid * (0.75 + 0.25 * heart))
+    solid, heart = np.zeros(rise.shape, bool), np.zeros(rise.shape)
+    edge = np.zeros(rise.shape)
+    random = hashed(canvas.seed, 1, np.arange(len(FLAMES) * 2)).reshape(-1, 2)
+    for (foot, tall, wide), (lean, phase) in zip(FLAMES, random, strict=True):
+        part = np.clip(rise / tall, 0, 1)
+        sway = (1.2 * lean + 0.9 * np.sin(rise * 0.55 + 3 * phase)) * part
+        away = np.abs(canvas.x - foot - sway) / (wide * np.sqrt(1 - part) + 1e-6)
+        here = (away < 1) & (rise < tall)
+        inner = (1 - away) * (1 - part)
+        heart, edge = np.maximum(heart, here * inner), np.maximum(edge, here * (1 - away))
+        solid |= here
+    core = smooth(heart, 0.1, 0.5)
+    tone = 0.1 - 0.3 * (1 - smooth(edge, 0.0, 0.35)) - 0.2 * smooth(rise, 6, 14)
+    paints = ((recipe.ink(1), 0.9 * core),)
+    return Surface(tone, 0.0, paints, solid, roughness=1.0, emission=solid * (0.75 + 0.25 * core))

@@ -169,7 +169,7 @@ def marble(canvas: Canvas, recipe: Recipe) -> Surface:
         contour(canvas, noise(canvas, 2, 3, 5, x, y)),
         contour(canvas, noise(canvas, 4, 4, 6, x, y)),
     )
-    width = 0.9 if canvas.size_px == 16 else 0.5
+    width = 1.4 if canvas.size_px == 16 else 0.5
     strong = (1 - smooth(lines[0], 0.0, width)) * smooth(noise(canvas, 4, 4, 9), -0.6, 0.6)
     thin = (1 - smooth(lines[1], 0.0, 0.6 * width)) * smooth(noise(canvas, 4, 4, 10), -0.2, 0.9)
     tone = 0.05 * fractal(canvas, 4, 4, 7) + 0.015 * fractal(canvas, 16, 16, 8)

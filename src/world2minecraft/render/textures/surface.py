@@ -18,6 +18,7 @@ MEAN_MARGIN = 1.0  # White and black may miss their mean by this, so that they a
 # Shares of the way to black or white that the main colour goes to make room for accents: in light,
 # and apart from it in each of red, green and blue.
 MOST_LIGHT, MOST_HUE = 0.4, 0.08
+LEAST_MAIN = 0.2  # Of all texels; fewer of the main colour would be too far from it.
 ROUNDS = 24  # Of a bisection over -1 to 1.
 SLOPE = 0.6  # Of the normals, times the height's.
 
@@ -110,6 +111,7 @@ def settle_mean(
     if not bold:
         light = np.clip(share.mean(), -MOST_LIGHT, MOST_LIGHT)
         share = light + np.clip(share - share.mean(), -MOST_HUE, MOST_HUE)
+        share = share * (give.mean() > LEAST_MAIN)
     moved = _moved(colour, share, give[:, None])
     every = np.ones((len(give), 1))
     return _moved(moved, _share(moved, every, goal), every)
