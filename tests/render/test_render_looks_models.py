@@ -203,6 +203,15 @@ def test_a_block_that_no_rule_knows_is_drawn_and_marked():
     assert stand_in_share([]) == 0
 
 
+def test_blocks_of_newer_games_are_known_by_their_names():
+    newer = (
+        "short_grass pale_oak_planks pale_oak_stairs tuff_bricks crafter copper_grate heavy_core"
+    )
+    assert stand_ins(newer.split()) == []
+    half = model_of("mod:cherry_brick_slab[type=top,waterlogged=false]")
+    assert [element.low[1] for element in half.elements] == [0.5]
+
+
 def test_real_builds_have_no_stand_in(shared_data):
     from world2minecraft.minecraft.formats import read_blocks
 

@@ -80,7 +80,9 @@ def test_pictures_are_square_and_all_letters_are_known():
         assert letters.ndim == 2, name
         assert letters.shape[0] == letters.shape[1], name
         assert 16 % letters.shape[0] == 0, name
-        picture_of(f"own:picture#808080,#102030,#405060?name={name}", 16)
+        for size_px in (16, 64):
+            made = picture_of(f"own:picture#808080,#102030,#405060?name={name}", size_px)
+            assert made.colour.shape == (size_px, size_px, 4), name
 
 
 def test_a_picture_keeps_its_place_at_any_size():

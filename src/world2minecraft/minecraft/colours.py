@@ -1,10 +1,10 @@
 """What colour a block is, seen from afar, and which block comes nearest to a colour.
 
 The table ``data/block_colours.json`` holds our own estimates of the mean sRGB colour of the
-blocks of 1.20.1. Slabs, stairs, fences and the like take the colour of what they are made of; a
-block that neither the table nor a rule knows (of a mod) takes the colour of the wood or dye that
-its name begins with, else one of its own that depends on its name alone, so that it stays
-recognisable from picture to picture.
+blocks of 1.20.1 and of newer games. Slabs, stairs, fences and the like take the colour of what they
+are made of; a block that neither the table nor a rule knows (of a mod) takes the colour of the wood
+or dye that its name begins with, else one of its own that depends on its name alone, so that it
+stays recognisable from picture to picture.
 """
 
 import json

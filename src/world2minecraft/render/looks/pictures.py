@@ -17,6 +17,7 @@ from world2minecraft.errors import UnknownNameError
 from world2minecraft.render.looks.recipes import PREFIX, spell, split_recipe
 from world2minecraft.render.texture import Texture
 from world2minecraft.render.textures import texture_of
+from world2minecraft.render.textures.stencil import letters as stencil_letters
 
 PICTURE = "picture"
 # Letters that make the base darker or lighter, and inks that every picture may use.
@@ -57,13 +58,19 @@ def letters_of(picture: Mapping[str, Any]) -> np.ndarray:
     return np.array([list(row) for row in rows])
 
 
+def _enlarged(rows: np.ndarray, size_px: int, is_round: bool) -> np.ndarray:
+    """Return the letter of each texel; above a letter a texel, what is round gets round corners."""
+    if is_round:
+        return stencil_letters(" ".join("".join(row) for row in rows), size_px)
+    times = size_px // rows.shape[0]
+    return np.repeat(np.repeat(rows, times, axis=0), times, axis=1)
+
+
 def _painted(
     under: Texture, picture: Mapping[str, Any], colours: tuple[tuple[int, int, int], ...]
 ) -> Texture:
     size_px = under.colour.shape[0]
-    letters = letters_of(picture)
-    times = size_px // letters.shape[0]
-    letters = np.repeat(np.repeat(letters, times, axis=0), times, axis=1)
+    letters = _enlarged(letters_of(picture), size_px, bool(picture.get("round")))
     colour = under.colour.copy()
     emission = np.zeros((size_px, size_px), np.uint8)
     for letter in np.unique(letters):
