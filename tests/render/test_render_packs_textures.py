@@ -92,7 +92,7 @@ def test_textures_become_squares_of_a_power_of_two(tmp_path, shape, most_px, sid
 
 @pytest.mark.parametrize(
     ("sides", "most_px", "usual"),
-    [((16, 16, 64), 128, 16), ((16, 64, 64), 128, 64), ((512, 512), 128, 128), ((), 128, 16)],
+    [((16, 16, 64), 128, 16), ((16, 64, 64), 32, 64), ((512, 512), 256, 128), ((), 128, 16)],
 )
 def test_the_usual_size_is_that_of_most_textures(tmp_path, sides, most_px, usual):
     files = {PICTURE.format(f"t{n}"): plain(1, 2, 3, side=side) for n, side in enumerate(sides)}

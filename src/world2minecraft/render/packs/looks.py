@@ -20,12 +20,11 @@ from world2minecraft.render.packs.layering import merged
 from world2minecraft.render.packs.model_files import MOST_ELEMENTS, flatten, texture_of
 from world2minecraft.render.packs.resources import Resources
 from world2minecraft.render.packs.shapes import element_of
-from world2minecraft.render.packs.textures import CLEAR, PackTextures, is_clear
+from world2minecraft.render.packs.textures import CLEAR, LARGEST_PX, PackTextures, is_clear
 from world2minecraft.render.packs.tints import Colour, checked_tints, tint_rule
 from world2minecraft.render.packs.turning import carry, quarter_turn
 from world2minecraft.render.texture import Texture
 
-TEXTURE_PX = 128  # The largest side of the renderer's textures; larger ones of packs are reduced.
 
 FULL_LIGHT = 15
 MOST_ELEMENTS_OF_ALL = 200_000  # A thousand states of the game have about 5,000.
@@ -51,7 +50,7 @@ class PackLooks:
         paths: Sequence[str | Path],
         *,
         tints: Mapping[str, Colour] | None = None,
-        most_px: int = TEXTURE_PX,
+        most_px: int = LARGEST_PX,
     ):
         if most_px < 1 or most_px & (most_px - 1):
             raise UsageError(f"most_px must be a power of two such as 64, not {most_px}")
@@ -82,7 +81,7 @@ class PackLooks:
 
     @property
     def texture_px(self) -> int:
-        """The side that most of the packs' textures have, 16 to ``most_px``: a size for a scene."""
+        """The side that most of the packs' textures have, 16 to 128: a size for a scene."""
         return self._textures.usual_px()
 
     def model(self, state: str) -> BlockModel | None:

@@ -23,7 +23,8 @@ from world2minecraft.render.texture import Texture
 
 MOST_PNG_BYTES = 32 << 20
 MOST_TEXTURES = 8192  # Of one run; the game has about 1,500 of blocks.
-LEAST_PX, SAMPLE = 16, 100  # The side of the game's textures; how many are looked at.
+LEAST_PX, LARGEST_PX = 16, 128  # The sides that the renderer's textures have.
+SAMPLE = 100  # How many textures are looked at for their usual size.
 CLEAR = "~clear"  # Ends the name of a texture that a block of clear stuff uses.
 _CLEAR_WORDS = re.compile(r"glass|(?<![a-z])ice(?![a-z])|slime|honey_block|water|portal|jelly")
 # A texture of clear stuff mixes with what is behind it where this share is neither hole nor solid.
@@ -59,13 +60,13 @@ class PackTextures:
         return self._read[name]
 
     def usual_px(self) -> int:
-        """Return the side that most textures of blocks have, by a sample of them: 16, 32, ..."""
+        """Return the side that most textures of blocks have, by a sample: 16, 32, 64 or 128."""
         names = self._resources.pictures()
         sides: Counter[int] = Counter()
         for name in names[:: max(1, len(names) // SAMPLE)]:
             for _, data in self._resources.versions(name, MOST_PNG_BYTES):
                 try:
-                    sides[min(max(_power(png_size(data)[0]), LEAST_PX), self._most_px)] += 1
+                    sides[min(max(_power(png_size(data)[0]), LEAST_PX), LARGEST_PX)] += 1
                 except ValueError:
                     continue  # It is said where it is used.
                 break
