@@ -25,7 +25,6 @@ from world2minecraft.render.packs.tints import Colour, checked_tints, tint_rule
 from world2minecraft.render.packs.turning import carry, quarter_turn
 from world2minecraft.render.texture import Texture
 
-
 FULL_LIGHT = 15
 MOST_ELEMENTS_OF_ALL = 200_000  # A thousand states of the game have about 5,000.
 
