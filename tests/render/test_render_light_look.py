@@ -72,6 +72,21 @@ def test_the_game_s_light_acts_on_screen_values():
     assert got == pytest.approx(200 * 0.6 * full, abs=1.6)
 
 
+@pytest.mark.parametrize("brightness", [0.0, 0.5, 1.0])
+def test_the_game_s_brightness_lifts_the_dark_as_in_the_game(brightness):
+    params = LookLight(preset="game", brightness=brightness, hour=12).parameters()
+    for level in range(1, 16):
+        moody = (level / 15) / (4 - 3 * level / 15)
+        expected = moody + brightness * (1 - (1 - moody) ** 4 - moody)
+        green = light_of(level, 0, 0, 1.0, 0.0, params)[1] ** (1 / 2.2) - params.ambient_g
+        assert green / params.sky_g == pytest.approx(expected, abs=0.09)
+
+
+def test_too_much_light_is_white_and_not_black():
+    params = LookLight(preset="game", exposure=20).parameters()
+    assert min(light_of(15, 15, 0, 1.0, 0.0, params)) > 1
+
+
 def test_a_place_is_brighter_with_more_light_and_darker_in_a_corner():
     for preset in ("shader", "game"):
         params = LookLight(preset=preset).parameters()

@@ -26,13 +26,14 @@ def scene_exposure(field: LightField, look: LookLight, eyes: np.ndarray | None =
 
     Args:
         field: the light of the volume.
-        look: how it is lit; its exposure is returned where it names one, and 1 for ``neutral``.
+        look: how it is lit; its exposure is returned where it names one. Only ``shader`` is
+            exposed; the others give 1.
         eyes: float [N, 3], where cameras stand, in cells of the volume: only what lies around
             them counts. None for all places where one can stand.
     """
     if look.exposure is not None:
         return look.exposure
-    if look.preset == "neutral":
+    if look.preset != "shader":
         return 1.0
     cells = _standing(field)
     if eyes is not None:

@@ -116,6 +116,7 @@ def glow_light(emission, params):
 @inlined
 def to_linear(value):
     """Return value ** 2.2 for 0 to 1.5, within 0.6 of 255 on the screen; cheap enough a pixel."""
+    value = min(value, 2.0)  # Beyond, where all is white anyway, the polynomial turns.
     square = value * value
     high = (0.61682 - value * 0.14103) * square
     return square * (0.55340 + value * 1.02762 - square * 1.05753 + high * value)

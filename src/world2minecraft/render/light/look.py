@@ -19,14 +19,14 @@ from world2minecraft.render.light.tone import (
 PRESETS = ("shader", "game", "neutral")
 DEFAULT_HOUR = 11.0  # Late morning: a high sun with shadows that still have a direction.
 WARM = (1.0, 0.86, 0.62)  # The game's torchlight.
-LAMP = 0.95  # Full block light beside full daylight.
-# The same as eyes see it, linear: paler beside the sun, golden in the dark.
+# Full block light as eyes see it, linear: paler beside the sun, golden in the dark.
 LAMP_BY_DAY, LAMP_BY_NIGHT = (0.58, 0.52, 0.42), (0.98, 0.72, 0.42)
 GLOW = 1.9  # A lamp's own face: past the shoulder, so that it looks lit.
 AMBIENT = 0.05
 DIM_BY_NIGHT = (0.45, 0.48, 0.60)  # Of the ambient light.
 CORNER = 0.28  # In linear light, what looks like the game's 0.2 on the screen.
 # Shades of faces: x (east, west), up, down, z (north, south).
+GAME_CORNER = 0.2
 GAME_SHADE = (0.6, 1.0, 0.5, 0.8)
 SOFT_SHADE = (0.74, 1.0, 0.70, 0.87)
 NEUTRAL_SHADE = (0.85, 1.0, 0.70, 0.94)
@@ -76,28 +76,23 @@ class LookLight:
         exposure = exposure if self.exposure is None else self.exposure
         if self.preset == "neutral":
             return _neutral(self.exposure or 1.0)
-        sky, screen = self.sky, self.preset == "game"
-        light = sky.shade if self.sun_shadow else sky.light
+        sky = self.sky
+        light = np.array(sky.shade if self.sun_shadow else sky.light)
         daylight = min(sky.light[1], 1.0)
-        lamp = LAMP * np.array(WARM) if screen else mixed(LAMP_BY_NIGHT, LAMP_BY_DAY, daylight)
+        lamp = mixed(LAMP_BY_NIGHT, LAMP_BY_DAY, daylight)
         ambient = AMBIENT * (0.4 + 1.2 * self.brightness) * mixed(DIM_BY_NIGHT, (1, 1, 1), daylight)
-        colours = np.array([light, lamp, ambient, sky.sun])
-        colours[3] *= self.sun_shadow
-        return LitParameters._make([
-            *(colours * exposure).reshape(-1).tolist(),
-            *sky.sun_direction,
-            3.0 if screen else 3.0 - 2.0 * self.brightness,
-            0.2 if screen else CORNER,
-            *self._shades(),
-            0.0,
-            1.0 if screen else GLOW,
-            float(screen),
-        ])  # fmt: skip
+        rest = [3.0 - 2.0 * self.brightness, CORNER, *self._shades(), 0.0, GLOW, 0.0]
+        if self.preset == "game":
+            light, lamp = light ** (1 / SCREEN_POWER), np.array(WARM)
+            # The game mixes b with 1 - (1 - b) ** 4 for b = l / (4 - 3 l); these come close.
+            curve = 3.0 - 6.6 * self.brightness + 3.3 * self.brightness**2
+            rest = [curve, GAME_CORNER, *GAME_SHADE, 0.0, 1.0, 1.0]
+        sun = np.array(sky.sun) * self.sun_shadow
+        colours = np.concatenate([light, lamp, ambient, sun]) * exposure
+        return LitParameters._make([*colours.tolist(), *sky.sun_direction, *rest])
 
     def _shades(self) -> tuple[float, ...]:
-        """Return the shades of faces: x, up, down, z."""
-        if self.preset == "game":
-            return GAME_SHADE
+        """Return the shades of faces in linear light: x, up, down, z."""
         return SOFT_SHADE if self.soft_shade else tuple(v**SCREEN_POWER for v in GAME_SHADE)
 
     def background(self, exposure: float = 1.0) -> Background:
