@@ -1,6 +1,7 @@
 """``w2m render``: what is written, what is told, and one line for whatever is wrong."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -203,6 +204,7 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
          "a.gif: a moving picture holds rgb alone; give a folder for depth"),
         (["--turntable", "--out", "a", "--outputs", "depth"],
          "a turntable is colour alone; --orbit has depth and ids too"),
+        (["--turntable", "--photo"], "a turntable is not traced; --orbit --photo is"),
         (["--samples", "9"], "--samples is 1 to 4, not 9"),
         (["--textures", "24"], "--textures is 16, 32, 64 or 128, not 24"),
         (["--light", "disco"],
@@ -273,3 +275,29 @@ def test_a_tier_that_is_not_there_is_told(schem, monkeypatch, capsys):
     monkeypatch.setattr(render_look, "PHOTO", "world2minecraft.render.no_such_tier")
     assert render(schem, "--photo") == 2
     assert "error: --photo is not in this version; leave it out" in capsys.readouterr().err
+
+
+def test_a_block_of_a_mod_is_drawn_and_told(tmp_path, capsys):
+    volume = room()
+    palette = (*PALETTE[:2], "mymod:chair")
+    write_blocks(replace(volume, palette=palette), tmp_path / "mod.schem")
+    assert render("mod.schem") == 0
+    assert (
+        "note: 1 of 3 block states (33.3%) have no look of their own and are drawn as plain "
+        "boxes: mymod:chair\n" in capsys.readouterr().out
+    )
+
+
+def test_a_pack_comes_before_our_own_textures(schem, tmp_path, capsys):
+    texture = tmp_path / "pack/assets/minecraft/textures/block/stone.png"
+    texture.parent.mkdir(parents=True)
+    (tmp_path / "pack/pack.mcmeta").write_text('{"pack": {"pack_format": 15, "description": ""}}')
+    Image.new("RGB", (16, 16), (0, 255, 0)).save(texture)
+    words = ("--pose", POSE, "--light", "neutral")
+    assert render(schem, *words, "--out", "own.png") == 0
+    assert render(schem, *words, "--pack", "pack", "--out", "green.png") == 0
+    own, green = (image(tmp_path / name).astype(int) for name in ("own.png", "green.png"))
+    assert np.ptp(own[18, 40]) < 20 and green[18, 40, 1] > green[18, 40, 0] + 100
+    capsys.readouterr()
+    assert render(schem, "--pack", "nothing") == 3
+    assert "nothing" in capsys.readouterr().err

@@ -1,6 +1,7 @@
 """``w2m render``: pictures of any build: from the game's poses, from outside, on a walk within."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -14,9 +15,10 @@ from world2minecraft.cli.render_files import (
     one_size,
     target_of,
 )
-from world2minecraft.cli.render_look import Look, take
+from world2minecraft.cli.render_look import Look, Looks, take
 from world2minecraft.cli.render_shots import Plan, View, plan_of, settled, turntable_count, view_of
 from world2minecraft.cli.render_source import Source, read_source
+from world2minecraft.errors import UsageError
 from world2minecraft.progress import Progress
 
 if TYPE_CHECKING:
@@ -61,7 +63,7 @@ def run(
     exposure: option.Exposure = None,
     sun_shadow: option.SunShadow = False,
     samples: option.Samples = None,
-    textures: option.Textures = 16,
+    textures: option.Textures = None,
     pack: option.Packs = None,
     photo: option.Photo = False,
     photo_samples: option.PhotoSamples = 16,
@@ -117,42 +119,47 @@ def draw(
     options = look.options_of(view.kind, target.medium, needs_of(target.layers))
     cameras = [shot.camera for shot in plan.shots] or [choice.camera(GAME_FOV_DEG)]
     check_pixels(cameras, options.samples)
-    for note in [*source.notes, *plan.notes]:
+    if look.photo and view.kind == "turntable":
+        raise UsageError("a turntable is not traced; --orbit --photo is")
+    looks = look.looks()
+    for note in [*source.notes, *plan.notes, *looks.notes(source.volume.palette)]:
         print(f"note: {note}")
     tour_id = f"{source.name}-{view.kind}"
     writer = Writer(target, source.volume.block_to_room, source.name, tour_id)
     began = perf_counter()
     with shown() as progress, writer.open(view.rate_hz):
         if view.kind == "turntable":
-            _draw_turntable(source, view, choice, writer, count, look, options, progress)
+            _draw_turntable(source, view, choice, writer, count, looks, options, progress)
         else:
-            _draw_plan(plan, writer, look, options, progress)
+            _draw_plan(plan, writer, look, looks, options, progress)
     writer.finish(plan.volume_of(plan.shots[0]) if plan.shots else source.volume)
     _say(writer, view, source, (perf_counter() - began) / count)
 
 
 def _draw_plan(
-    plan: Plan, writer: Writer, look: Look, options: "DrawOptions", progress: Progress
+    plan: Plan, writer: Writer, look: Look, looks: Looks, options: "DrawOptions", progress: Progress
 ) -> None:
     progress("render", 0, len(plan.shots))
-    for done, (shot, picture, volume) in enumerate(_pictures(plan, look, options), 1):
+    for done, (shot, picture, volume) in enumerate(_pictures(plan, look, looks, options), 1):
         writer.picture(shot, picture, volume)
         progress("render", done, len(plan.shots))
 
 
 def _pictures(
-    plan: Plan, look: Look, options: "DrawOptions"
+    plan: Plan, look: Look, looks: Looks, options: "DrawOptions"
 ) -> Iterator[tuple["Shot", "Picture", "BlockVolume"]]:
     """Take the pictures of a plan; each volume that is seen is made ready once at a time."""
     from world2minecraft.render import prepare_scene
     from world2minecraft.render.views import exposed
 
-    looks = look.looks()
+    exposure = None
     for _, run_of in groupby(plan.shots, key=lambda shot: id(plan.volume_of(shot))):
         shots = list(run_of)
         volume = plan.volume_of(shots[0])
-        scene = prepare_scene(volume, looks, texture_px=look.texture_px)
-        scene = exposed(scene, options.light, shots)
+        scene = prepare_scene(volume, looks.source, texture_px=looks.side_px)
+        if exposure is None:  # One for all, so that pictures of one plan belong together.
+            exposure = exposed(scene, options.light, shots).exposure
+        scene = replace(scene, exposure=exposure)
         pictures = take(scene, volume, shots, look, options)
         for shot, picture in zip(shots, pictures, strict=True):
             yield shot, picture, volume
@@ -160,9 +167,8 @@ def _pictures(
 
 def _draw_turntable(
     source: Source, view: View, choice: option.CameraChoice, writer: Writer, count: int,
-    look: Look, options: "DrawOptions", progress: Progress,
+    looks: Looks, options: "DrawOptions", progress: Progress,
 ) -> None:  # fmt: skip
-    from world2minecraft.errors import UsageError
     from world2minecraft.render.views.turntable import FOV_DEG, turntable
 
     if writer.target.layers != ("rgb",):
@@ -172,8 +178,8 @@ def _draw_turntable(
         choice.camera(FOV_DEG),
         count,
         options=options,
-        looks=look.looks(),
-        texture_px=look.texture_px,
+        looks=looks.source,
+        texture_px=looks.side_px,
         rate_hz=view.rate_hz,
         opened=view.opened,
     )

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from world2minecraft.cli.render_shots import Kind, Medium
     from world2minecraft.render import BlockScene, LookLight, Picture
     from world2minecraft.render.elements import LookSource
+    from world2minecraft.render.packs import PackLooks
     from world2minecraft.render.views import DrawOptions, Shot
     from world2minecraft.types import BlockVolume
 
@@ -21,6 +22,39 @@ DEVICES = ("auto", "cpu", "gpu")
 MOST_PHOTO_SAMPLES = 65_536
 PHOTO = "world2minecraft.render.photo"  # Loaded late: it compiles kernels of its own.
 STILL_SAMPLES = 2
+OWN_PX = 16  # The game's own; larger ones show more grain and less of the game.
+
+
+@dataclass(frozen=True, eq=False)
+class Looks:
+    """Where models and textures come from, and the side of a texture."""
+
+    source: "LookSource"
+    side_px: int
+    packs: "PackLooks | None" = None
+
+    def notes(self, palette: "Sequence[str]") -> list[str]:
+        """Return what a user should know: states without a look, files that cannot be read."""
+        from world2minecraft.render.looks import stand_ins
+
+        drawn = palette
+        if self.packs is not None:
+            drawn = [state for state in palette if self.packs.model(state) is None]
+        marked, notes = stand_ins(drawn), []
+        if marked:
+            share = len(marked) / len(palette)
+            names = ", ".join(state.partition("[")[0] for state in marked[:3])
+            more = " ..." if len(marked) > 3 else ""
+            notes.append(
+                f"{len(marked)} of {len(palette)} block states ({share:.1%}) have no look of "
+                f"their own and are drawn as plain boxes: {names}{more}"
+            )
+        if self.packs is not None and self.packs.problem_count:
+            notes.append(
+                f"{self.packs.problem_count} files of the packs cannot be read, such as "
+                f"{self.packs.problems[0]}"
+            )
+        return notes
 
 
 @dataclass(frozen=True)
@@ -33,7 +67,7 @@ class Look:
     exposure: float | None = None
     sun_shadow: bool = False
     samples: int | None = None
-    texture_px: int = 16
+    texture_px: int | None = None
     packs: tuple[Path, ...] = ()
     photo: bool = False
     photo_samples: int = 16
@@ -43,7 +77,7 @@ class Look:
     def __post_init__(self):
         if self.samples is not None and not 1 <= self.samples <= MOST_SAMPLES:
             raise UsageError(f"--samples is 1 to {MOST_SAMPLES}, not {self.samples}")
-        if self.texture_px not in TEXTURES_PX:
+        if self.texture_px is not None and self.texture_px not in TEXTURES_PX:
             raise UsageError(f"--textures is 16, 32, 64 or 128, not {self.texture_px}")
         if not 1 <= self.photo_samples <= MOST_PHOTO_SAMPLES:
             raise UsageError(
@@ -82,23 +116,27 @@ class Look:
 
         usual = 1 if medium == "folder" and kind != "turntable" else STILL_SAMPLES
         # From above one sees no sky; a build stands out best on paper, but not at night.
-        paper = PAPER if kind == "orbit" and self.hour is None else None
+        paper = PAPER if kind in ("orbit", "turntable") and self.hour is None else None
         light, samples = self.light_of(kind), self.samples or usual
         return DrawOptions(outputs, light, samples, self.threads, paper)
 
-    def looks(self) -> "LookSource | None":
-        """Return the user's packs before our own looks; None for our own alone.
+    def looks(self) -> "Looks":
+        """Return the user's packs, the last first, and then our own looks.
 
         Raises:
             InputError: a pack cannot be read.
         """
+        from world2minecraft.render.looks import OwnLooks
+
         if not self.packs:
-            return None
+            side_px = self.texture_px or OWN_PX
+            return Looks(OwnLooks(side_px), side_px)
         from world2minecraft.render.elements import LookStack
         from world2minecraft.render.packs import PackLooks
-        from world2minecraft.render.plain_looks import PlainLooks
 
-        return LookStack((PackLooks(self.packs), PlainLooks()))
+        packs = PackLooks(self.packs)
+        side_px = self.texture_px or packs.texture_px
+        return Looks(LookStack((packs, OwnLooks(side_px))), side_px, packs)
 
 
 def take(

@@ -100,7 +100,11 @@ SunShadow = Annotated[
 Samples = Annotated[
     int | None, _option("--samples", text="1 to 4 rays across each pixel; stills have 2.")
 ]
-Textures = Annotated[int, _option("--textures", metavar="16|32|64|128", text="Their side.")]
+Textures = Annotated[
+    int | None,
+    _option("--textures", metavar="16|32|64|128",
+            text="Pixels a block; 16, or what a --pack has."),
+]  # fmt: skip
 Packs = Annotated[
     list[Path] | None,
     _option("--pack", metavar="PATH",

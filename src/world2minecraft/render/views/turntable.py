@@ -51,6 +51,7 @@ def turntable(
     elevation = CLOSED_ELEVATION_DEG if inside is None else OPEN_ELEVATION_DEG
     studio = studio_of(shown)
     scenes: dict[int, BlockScene] = {}
+    exposure: float | None = None
     start = TURN_DEG if inside is None else inside.best_start_deg(elevation)
     for shot in orbit_shots(
         shown, camera, count, elevation_deg=elevation, start_deg=start, rate_hz=rate_hz
@@ -58,7 +59,9 @@ def turntable(
         seen = volume if inside is None else inside.seen_by(shot.camera_to_room)
         if id(seen) not in scenes:  # The opened build keeps what it made, so ids are its own.
             scene = prepare_scene(seen, looks, texture_px=texture_px)
-            scenes[id(seen)] = exposed(scene, how.light, [shot])
+            if exposure is None:  # One for the whole turn.
+                exposure = exposed(scene, how.light, [shot]).exposure
+            scenes[id(seen)] = replace(scene, exposure=exposure)
         picture = next(frames(scenes[id(seen)], fine, [shot.camera_to_room], how))
         if picture.colour is None:
             raise ValueError("the picture has no colour")
