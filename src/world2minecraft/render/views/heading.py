@@ -28,8 +28,10 @@ def best_headings(
     eyes: np.ndarray,
     ways: np.ndarray,
     half_fov_deg: float,
-) -> np.ndarray:
-    """Return a smooth sequence of game yaws, in degrees and not wrapped, float64 [N].
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return a smooth sequence of game yaws, in degrees and not wrapped, and how good each view is.
+
+    Both are float64 [N]; a view's worth is about 0 for a wall before one's nose, 1 for a good one.
 
     Args:
         floor: what hides the view.
@@ -47,8 +49,10 @@ def best_headings(
     middle_m = far_m[:, 1:].min(axis=1)
     rating = _windows(column, half_fov_deg)
     rating -= WALL_COST * _windows(np.clip(1 - middle_m / WALL_M, 0, 1), half_fov_deg / 2)
+    views = rating.copy()
     rating += AHEAD_WORTH * np.cos(np.radians(yaws_deg[None] - ways[:, None]))
-    return np.degrees(np.unwrap(np.radians(yaws_deg[_best_sequence(rating)])))
+    best = _best_sequence(rating)
+    return np.degrees(np.unwrap(np.radians(yaws_deg[best]))), views[np.arange(len(best)), best]
 
 
 def _windows(column: np.ndarray, half_deg: float) -> np.ndarray:

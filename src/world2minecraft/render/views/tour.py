@@ -19,6 +19,7 @@ TURN_SMOOTH_M = 0.5  # and turns of the head.
 WALK_M_S, TURN_DEG_S = 1.0, 50.0  # One slows down to turn.
 LONGEST_S = 40.0  # Of a moving picture, where nobody says how many frames it has.
 PITCH_DEG = 9.0  # Furniture lies lower than the eye.
+LEAST_SHARE = 0.08  # Of stills, where a view is bad; 1 where it is good.
 SHORT_M = 0.4  # A way that is shorter is none: one turns round on the spot.
 
 
@@ -40,7 +41,9 @@ def plan_tour(
     rate_hz: float = 24.0,
     start: tuple[float, float, float] | None = None,
 ) -> Tour:
-    """Return a walk past spread-out places of the rooms, shot evenly over its time.
+    """Return a walk past spread-out places of the rooms.
+
+    A moving picture of it is shot evenly over its time, stills more often where views are good.
 
     Args:
         volume: the blocks. Rooms are what is roofed and walled; without any, the walk is outside.
@@ -63,13 +66,14 @@ def plan_tour(
     feet = ways.feet(ways.way(None if start is None else np.array(start)))
     feet = _sampled(feet, SAMPLE_M * floor.blocks_per_metre)
     eyes = _smoothed(feet, floor, eye_blocks)
-    yaws_deg = _yaws_deg(eyes, floor, volume.semantic, camera)
+    yaws_deg, worth = _yaws_deg(eyes, floor, volume.semantic, camera)
     length_m = _length(eyes) / floor.blocks_per_metre
     if length_m < SHORT_M:
         eyes, yaws_deg = np.repeat(eyes[:1], 73, axis=0), yaws_deg[0] + np.arange(73) * 5.0
+        worth = np.ones(73)
     times = _times_s(eyes / floor.blocks_per_metre, yaws_deg)
     columns = np.column_stack([eyes, yaws_deg, _pitches_deg(eyes)])
-    moments = _moments_s(float(times[-1]), frames, rate_hz)
+    moments = _moments_s(times, worth, frames, rate_hz)
     rows = np.column_stack([np.interp(moments, times, column) for column in columns.T])
     if frames is None:  # A long walk is shown faster.
         moments = np.arange(len(moments)) / rate_hz
@@ -163,12 +167,14 @@ def _in_something(eyes: np.ndarray, floor: Floor) -> np.ndarray:
     return bad
 
 
-def _yaws_deg(eyes: np.ndarray, floor: Floor, semantic: np.ndarray, camera: Camera) -> np.ndarray:
+def _yaws_deg(
+    eyes: np.ndarray, floor: Floor, semantic: np.ndarray, camera: Camera
+) -> tuple[np.ndarray, np.ndarray]:
     going = np.gradient(eyes, axis=0)
     ways = np.degrees(np.arctan2(-going[:, 0], going[:, 2]))
     half = np.degrees(np.arctan(camera.width_px / 2 / camera.fx_px))
-    yaws_deg = best_headings(floor, semantic, eyes, ways, float(half))
-    return gaussian_filter1d(yaws_deg, TURN_SMOOTH_M / SAMPLE_M, mode="nearest")
+    yaws_deg, worth = best_headings(floor, semantic, eyes, ways, float(half))
+    return gaussian_filter1d(yaws_deg, TURN_SMOOTH_M / SAMPLE_M, mode="nearest"), worth
 
 
 def _pitches_deg(eyes: np.ndarray) -> np.ndarray:
@@ -185,9 +191,18 @@ def _times_s(eyes_m: np.ndarray, yaws_deg: np.ndarray) -> np.ndarray:
     return np.r_[0, np.cumsum(np.hypot(walk, turn) + 1e-6)]
 
 
-def _moments_s(seconds: float, frames: int | None, rate_hz: float) -> np.ndarray:
-    count = round(min(seconds, LONGEST_S) * rate_hz) + 1 if frames is None else frames
-    return np.linspace(0, seconds, count) if count > 1 else np.array([seconds / 2])
+def _moments_s(
+    times: np.ndarray, worth: np.ndarray, frames: int | None, rate_hz: float
+) -> np.ndarray:
+    """Return when pictures are taken: evenly for a moving one, else more where views are good."""
+    if frames is None:
+        seconds = float(times[-1])
+        return np.linspace(0, seconds, round(min(seconds, LONGEST_S) * rate_hz) + 1)
+    low, high = np.quantile(worth, (0.15, 0.6))
+    good = np.clip((worth - low) / max(high - low, 1e-6), LEAST_SHARE, 1)
+    gathered = np.r_[0, np.cumsum(np.diff(times) * (good[1:] + good[:-1]) / 2)]
+    wanted = (np.arange(frames) + 0.5) / frames * gathered[-1]
+    return np.interp(wanted, gathered, times)
 
 
 def _length(points: np.ndarray) -> float:
