@@ -5,7 +5,7 @@ scene once and passes it in the volume's place.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,7 +15,9 @@ from world2minecraft.render.empties import empty_boxes
 from world2minecraft.render.light import LightField, light_field
 from world2minecraft.render.looks import OwnLooks
 from world2minecraft.render.standing_boxes import (
+    GuestLists,
     StandingThings,
+    list_guests,
     margin_of,
     overhanging,
     place_guests,
@@ -60,8 +62,17 @@ def prepare_scene(
     Raises:
         ValueError: the size of the textures or the reach is out of range.
     """
-    looks = looks or OwnLooks(texture_px)
-    baker = Baker(looks, texture_px)
+    return bake_scene(volume, Baker(looks or OwnLooks(texture_px), texture_px), reach)[0]
+
+
+def bake_scene(
+    volume: BlockVolume, baker: Baker, reach: float = 1.0
+) -> tuple[BlockScene, GuestLists]:
+    """Return the scene of a volume, and the standing elements in each cell that has any.
+
+    Args: as ``prepare_scene``; the baker, which knows the looks, is empty before.
+    """
+    looks = baker.looks
     models, guests = overhanging(models_of(volume.palette, looks), volume.states)
     things, more = standing_things(volume, looks)
     guests += more
@@ -69,17 +80,24 @@ def prepare_scene(
     states = np.pad(volume.states, margin.T) if margin.any() else volume.states
     start, refs = _lists_of(volume.palette, models, baker)
     cell_looks = states.astype(np.int32)
-    start, refs, cells = place_guests(
-        [guest.moved(margin[0]) for guest in guests], cell_looks, start, refs, baker
-    )
+    lists = list_guests([guest.moved(margin[0]) for guest in guests], states.shape, baker)
+    start, refs = place_guests(lists, cell_looks, start, refs)
+    cells = np.array(list(lists), np.int64).reshape(-1, 3)
     kinds = np.array([kind_of(model, looks) for model in models], np.int8)[states]
     hosts = tuple(cells[kinds[tuple(cells.T)] == AIR].T)
     kinds[hosts] = BOXES
     grid_to_world = np.eye(4)
     grid_to_world[:3, 3] = volume.corner - margin[0]
     table, light = baker.table(), light_field(states, volume.palette, reach)
-    return BlockScene(
-        tables=_tables(table, *empty_boxes(kinds), cell_looks, start, refs)._replace(
+    space, bounds = empty_boxes(kinds)
+    scene = BlockScene(
+        tables=SceneTables(
+            space=space,
+            bounds=bounds,
+            looks=cell_looks,
+            look_start=start,
+            refs=refs,
+            **_of_elements(table),
             light=light.lattice,
             window=np.array([margin[0], volume.states.shape], np.int64),
             semantic=volume.semantic.reshape(-1),
@@ -88,7 +106,7 @@ def prepare_scene(
             thing_instance=things.instance,
         ),
         material=table.atlas.material,
-        side_px=texture_px,
+        side_px=baker.side_px,
         semantic=volume.semantic,
         instance=volume.instance,
         things=things,
@@ -96,6 +114,7 @@ def prepare_scene(
         cells_per_metre=volume.blocks_per_metre,
         light=light,
     )
+    return scene, lists
 
 
 def _lists_of(
@@ -104,45 +123,50 @@ def _lists_of(
     """Bake the models of a palette; return ``look_start`` and ``refs``."""
     refs, counts = [], []
     for state, model in zip(palette, models, strict=True):
-        flags = JOINS * joins(state, model)
-        refs += [
-            baker.add(element, flags, even=not model.ambient_occlusion)
-            for element in model.elements
-        ]
+        refs += bake_model(state, model, baker)
         counts.append(len(model.elements))
     start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
     return start, np.array(refs, np.int32)
 
 
-def _tables(
-    table: ElementTable,
-    space: np.ndarray,
-    bounds: np.ndarray,
-    looks: np.ndarray,
-    start: np.ndarray,
-    refs: np.ndarray,
-) -> SceneTables:
-    """Return the tables, without light and window."""
-    return SceneTables(
-        space=space,
-        bounds=bounds,
-        looks=looks,
-        look_start=start,
-        refs=refs,
-        boxes=table.boxes,
-        traits=table.traits,
-        turns=table.turns,
-        normals=table.normals,
-        layers=table.layers,
-        uv=table.uv,
-        tints=table.tints,
-        emission=table.emission,
-        texels=table.atlas.texels,
-        translucent=table.atlas.translucent,
-        light=np.empty((3, 0, 0, 0), np.uint16),
-        window=np.zeros((2, 3), np.int64),
-        semantic=np.zeros(1, np.uint8),
-        instance=np.zeros(1, np.uint16),
-        thing_semantic=np.zeros(1, np.uint8),
-        thing_instance=np.zeros(1, np.uint16),
-    )
+def with_looks(scene: BlockScene, baker: Baker, looks: Sequence[tuple[int, ...]]) -> BlockScene:
+    """Return the scene with all elements of a baker, and with these rows of elements.
+
+    Args:
+        scene: its cells stay as they are.
+        baker: that the scene was baked with, and that may have more elements by now.
+        looks: the elements of each row, the scene's own rows first.
+    """
+    tables = scene.tables
+    if len(looks) > len(tables.look_start) - 1:
+        start = np.concatenate([[0], np.cumsum([len(look) for look in looks])]).astype(np.int32)
+        refs = np.array([number for look in looks for number in look], np.int32)
+        tables = tables._replace(look_start=start, refs=refs)
+    if len(baker.elements) == len(tables.boxes):
+        return replace(scene, tables=tables)
+    table = baker.table()
+    tables = tables._replace(**_of_elements(table))
+    return replace(scene, tables=tables, material=table.atlas.material)
+
+
+def bake_model(state: str, model: BlockModel, baker: Baker) -> list[int]:
+    """Bake the elements of a state's model and return their numbers."""
+    flags = JOINS * joins(state, model)
+    even = not model.ambient_occlusion
+    return [baker.add(element, flags, even=even) for element in model.elements]
+
+
+def _of_elements(table: ElementTable) -> dict[str, np.ndarray]:
+    """Return the fields of ``SceneTables`` that elements and their textures fill."""
+    return {
+        "boxes": table.boxes,
+        "traits": table.traits,
+        "turns": table.turns,
+        "normals": table.normals,
+        "layers": table.layers,
+        "uv": table.uv,
+        "tints": table.tints,
+        "emission": table.emission,
+        "texels": table.atlas.texels,
+        "translucent": table.atlas.translucent,
+    }

@@ -5,7 +5,6 @@ with such guests has a look of its own: the elements of its block, then those of
 grid grows by what reaches out of it.
 """
 
-from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -22,6 +21,8 @@ MOST_CELLS = 4_000_000  # That one thing is listed in.
 MOST_MARGIN = 64  # Cells by which the grid grows on a side.
 _FLAT = 1e-9  # Blocks: a box thinner than this has no inside that a ray could enter.
 _TOUCH = 1e-6
+
+GuestLists = dict[tuple[int, ...], list[int]]  # cell of the grid to numbers of elements
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +112,10 @@ def margin_of(guests: Sequence[Guest], shape: tuple[int, ...]) -> np.ndarray:
 def cells_of(element: Element, shape: tuple[int, ...]) -> np.ndarray:
     """Return the cells, int64 [N, 3], that a box in grid coordinates may reach."""
     corners = element_corners(element)
-    low = np.clip(np.floor(corners.min(axis=0) - _TOUCH), 0, shape).astype(np.int64)
-    high = np.clip(np.floor(corners.max(axis=0) + _TOUCH) + 1, 0, shape).astype(np.int64)
+    low = np.floor(corners.min(axis=0) + _TOUCH)
+    high = np.maximum(np.floor(corners.max(axis=0) - _TOUCH), low) + 1  # A plate may have no depth.
+    low = np.clip(low, 0, shape).astype(np.int64)
+    high = np.clip(high, 0, shape).astype(np.int64)
     if (high <= low).any() or np.prod((high - low).astype(float)) > MOST_CELLS:
         return np.empty((0, 3), np.int64)
     spans = [np.arange(first, last) for first, last in zip(low, high, strict=True)]
@@ -126,31 +129,31 @@ def cells_of(element: Element, shape: tuple[int, ...]) -> np.ndarray:
     return cells[inside.all(axis=1)]
 
 
+def list_guests(guests: Sequence[Guest], shape: tuple[int, ...], baker: Baker) -> GuestLists:
+    """Bake guests and return the numbers of their elements in each cell that they reach."""
+    lists: GuestLists = {}
+    for guest in guests:
+        cells = cells_of(guest.element, shape)
+        number = baker.add(guest.element, ABSOLUTE, guest.owner) if len(cells) else -1
+        for cell in map(tuple, cells.tolist()):
+            lists.setdefault(cell, []).append(number)
+    return lists
+
+
 def place_guests(
-    guests: Sequence[Guest],
-    looks: np.ndarray,
-    start: np.ndarray,
-    refs: np.ndarray,
-    baker: Baker,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    lists: GuestLists, looks: np.ndarray, start: np.ndarray, refs: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Give cells with guests looks of their own.
 
     Args:
-        guests: elements and whose they are.
+        lists: the guests of each cell.
         looks: int32 [X, Y, Z], changed in place.
         start: int32 [R + 1], see ``SceneTables``.
         refs: int32 [N].
-        baker: takes the elements.
 
     Returns:
-        ``start`` and ``refs`` with the new rows, and the cells, int64 [M, 3], that have guests.
+        ``start`` and ``refs`` with the new rows.
     """
-    lists: dict[tuple[int, int, int], list[int]] = defaultdict(list)
-    for guest in guests:
-        cells = cells_of(guest.element, looks.shape)
-        number = baker.add(guest.element, ABSOLUTE, guest.owner) if len(cells) else -1
-        for cell in map(tuple, cells.tolist()):
-            lists[cell].append(number)
     rows: dict[tuple[int, tuple[int, ...]], int] = {}
     parts, ends = [refs], []
     end = len(refs)
@@ -163,9 +166,7 @@ def place_guests(
             end += len(own) + len(elements)
             ends.append(end)
         looks[cell] = rows[key]
-    cells = np.array(list(lists), np.int64).reshape(-1, 3)
     return (
         np.concatenate([start, np.array(ends, np.int32)]).astype(np.int32),
         np.concatenate(parts).astype(np.int32),
-        cells,
     )
