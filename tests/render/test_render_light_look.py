@@ -82,6 +82,11 @@ def test_the_game_s_brightness_lifts_the_dark_as_in_the_game(brightness):
         assert green / params.sky_g == pytest.approx(expected, abs=0.09)
 
 
+def test_the_game_s_lamps_add_nothing_to_full_daylight():
+    params = LookLight(preset="game", hour=12).parameters()
+    assert max(light_of(15, 15, 0, 1.0, 0.0, params)) == pytest.approx(1, abs=0.01)
+
+
 def test_too_much_light_is_white_and_not_black():
     params = LookLight(preset="game", exposure=20).parameters()
     assert min(light_of(15, 15, 0, 1.0, 0.0, params)) > 1

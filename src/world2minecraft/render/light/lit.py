@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 from world2minecraft.jit import inlined
 
+SCREEN_MOST = 2.0  # Beyond, where all is white anyway, the polynomial of ``to_linear`` turns.
+
 
 class LitParameters(NamedTuple):
     """What a ``LookLight`` comes to for the kernel: floats alone, which numba keeps at hand."""
@@ -34,7 +36,7 @@ class LitParameters(NamedTuple):
     shade_z: float  # shade of faces to the north and south
     headlight: float  # what a face loses that the camera sees edge-on
     glow: float  # how bright a surface is that shines by itself at level 15
-    screen: float  # 1: multipliers act on the screen's own values, as in the game; 0: on light
+    screen: float  # 0: multipliers act on light; else on screen values, and go up to this one
 
 
 @inlined
@@ -90,6 +92,8 @@ def lit_colour(sky, block, occluders, shade, sun, params):
     green = m * (params.ambient_g + params.sky_g * s + params.block_g * b) + params.sun_g * sun
     blue = m * (params.ambient_b + params.sky_b * s + params.block_b * b) + params.sun_b * sun
     if params.screen > 0.0:
+        most = params.screen
+        red, green, blue = min(red, most), min(green, most), min(blue, most)
         red, green, blue = to_linear(red), to_linear(green), to_linear(blue)
     return red, green, blue
 
@@ -116,7 +120,7 @@ def glow_light(emission, params):
 @inlined
 def to_linear(value):
     """Return value ** 2.2 for 0 to 1.5, within 0.6 of 255 on the screen; cheap enough a pixel."""
-    value = min(value, 2.0)  # Beyond, where all is white anyway, the polynomial turns.
+    value = min(value, SCREEN_MOST)
     square = value * value
     high = (0.61682 - value * 0.14103) * square
     return square * (0.55340 + value * 1.02762 - square * 1.05753 + high * value)

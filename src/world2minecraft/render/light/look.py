@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.render.light.background import Background
 from world2minecraft.render.light.hours import Sky, sky_at
-from world2minecraft.render.light.lit import LitParameters
+from world2minecraft.render.light.lit import SCREEN_MOST, LitParameters
 from world2minecraft.render.light.tone import (
     SCREEN_POWER,
     Tone,
@@ -86,7 +86,7 @@ class LookLight:
             light, lamp = light ** (1 / SCREEN_POWER), np.array(WARM)
             # The game mixes b with 1 - (1 - b) ** 4 for b = l / (4 - 3 l); these come close.
             curve = 3.0 - 6.6 * self.brightness + 3.3 * self.brightness**2
-            rest = [curve, GAME_CORNER, *GAME_SHADE, 0.0, 1.0, 1.0]
+            rest = [curve, GAME_CORNER, *GAME_SHADE, 0.0, 1.0, min(exposure, SCREEN_MOST)]
         sun = np.array(sky.sun) * self.sun_shadow
         colours = np.concatenate([light, lamp, ambient, sun]) * exposure
         return LitParameters._make([*colours.tolist(), *sky.sun_direction, *rest])
@@ -116,5 +116,5 @@ def _neutral(exposure: float) -> LitParameters:
     """Return a grey light at the camera, with the shades of the preview."""
     light = NEUTRAL_EXPOSURE * exposure
     colours = [*[0.0] * 6, light, light, light, *[0.0] * 3]
-    rest = [3.0, NEUTRAL_CORNER, *NEUTRAL_SHADE, NEUTRAL_HEADLIGHT, NEUTRAL_GLOW, 1.0]
+    rest = [3.0, NEUTRAL_CORNER, *NEUTRAL_SHADE, NEUTRAL_HEADLIGHT, NEUTRAL_GLOW, SCREEN_MOST]
     return LitParameters._make([*colours, 0.0, 1.0, 0.0, *rest])
