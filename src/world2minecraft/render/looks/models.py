@@ -4,17 +4,16 @@ from functools import lru_cache
 
 import numpy as np
 
+from world2minecraft.minecraft.blocks import block_table
 from world2minecraft.minecraft.glow import is_luminous
 from world2minecraft.minecraft.rules.light import BRIGHTEST, light_of
 from world2minecraft.minecraft.states import BlockState, complete, parse_state
 from world2minecraft.minecraft.visual import visual_boxes_of
 from world2minecraft.render.elements import BlockModel, Element
-from world2minecraft.render.looks.parts import Dress, box_element, elements_of
+from world2minecraft.render.looks.parts import PLAIN, Dress, box_element, elements_of
 from world2minecraft.render.looks.recipes import values_of
 from world2minecraft.render.looks.rules import LookRule, rule_for
 from world2minecraft.render.looks.turning import along, quarter, sixteenth, tipped, turned
-
-UNKNOWN_SKIN = "plain self"  # Of blocks that no rule knows.
 
 
 @lru_cache(maxsize=1 << 16)
@@ -41,10 +40,17 @@ def model_of(state: str) -> BlockModel:
 
 
 def _dress(state: BlockState, rule: LookRule | None) -> Dress:
-    values = values_of(state.name, dict(state.properties))
+    values = values_of(state.name, _known_values(state))
     light = BRIGHTEST if is_luminous(str(state)) else light_of(str(state))
-    skin = UNKNOWN_SKIN if rule is None or rule.skin is None else rule.skin
+    skin = PLAIN if rule is None or rule.skin is None else rule.skin
     return Dress(state.name, values, skin, {} if rule is None else rule.skins, light)
+
+
+def _known_values(state: BlockState) -> dict[str, str]:
+    """Return a state's properties; a value that the game does not know is the default's."""
+    values = dict(state.properties)
+    block = block_table().blocks.get(state.name)
+    return values if block is None else values | block.values_at(block.index_of(values))
 
 
 def _seen_boxes(state: BlockState, dress: Dress, glows: bool) -> list[Element]:

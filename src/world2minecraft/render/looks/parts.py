@@ -17,14 +17,17 @@ of a block. Keys of a part:
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from world2minecraft.render.elements import FACE_NAMES, Element, FaceLook, face_uv
+from world2minecraft.render.looks.pictures import is_painted
 from world2minecraft.render.looks.recipes import Values, recipe_of
 from world2minecraft.render.looks.turning import QUARTERS, quarter, spun, turned
 
+PLAIN = "plain self"
 WHOLE = (0.0, 0.0, 16.0, 16.0)
 _GROUPS = {
     "west": "side",
@@ -128,11 +131,25 @@ def _face(side: int, low, high, part: Mapping[str, Any], dress: Dress) -> FaceLo
     words = _known(words, part, dress)
     if words is None:
         return None
+    if not is_painted(words := words.format_map(Values(dress.values))):
+        words = PLAIN  # A property of a mod's block has a value that the rule does not foresee.
     place = _of_face(part.get("uv", "place"), name) or "place"
     rect = None if place == "place" else WHOLE if place == "fit" else tuple(place)
-    spin = part.get("spin", {}).get(name, 0)
-    matrix = face_uv(side, low, high, rect, spin)
-    return FaceLook(recipe_of(words, dress.name, dress.values), matrix)
+    matrix = _matrix(side, low, high, rect, part.get("spin", {}).get(name, 0))
+    return FaceLook(_recipe(words, dress.name), matrix)
+
+
+@lru_cache(maxsize=1 << 14)
+def _matrix(side: int, low, high, rect, rotation_deg: int) -> np.ndarray:
+    """Return ``face_uv``, read-only: many states share a box."""
+    matrix = face_uv(side, low, high, rect, rotation_deg)
+    matrix.flags.writeable = False
+    return matrix
+
+
+@lru_cache(maxsize=1 << 14)
+def _recipe(words: str, name: str) -> str:
+    return recipe_of(words, name, {})
 
 
 def _known(skin: Any, part: Mapping[str, Any], dress: Dress) -> Any:

@@ -7,7 +7,7 @@ colour is that of the base, the others are the inks 1, 2, 3.
 
 import json
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Any
 
@@ -16,7 +16,7 @@ import numpy as np
 from world2minecraft.errors import UnknownNameError
 from world2minecraft.render.looks.recipes import PREFIX, spell, split_recipe
 from world2minecraft.render.texture import Texture
-from world2minecraft.render.textures import texture_of
+from world2minecraft.render.textures import GENERATORS, texture_of
 from world2minecraft.render.textures.stencil import letters as stencil_letters
 
 PICTURE = "picture"
@@ -41,6 +41,17 @@ def picture_of(recipe: str, size_px: int) -> Texture:
         raise UnknownNameError("picture", name, pictures())
     under = texture_of(f"{PREFIX}{options.get('base', 'plain')}{spell(colours[0])}", size_px)
     return _painted(under, pictures()[name], colours)
+
+
+@lru_cache(maxsize=1 << 14)
+def is_painted(words: str) -> bool:
+    """Tell whether a generator, and a picture where one is named, is there for a skin's words."""
+    generator, *rest = words.split()
+    if generator != PICTURE:
+        return generator in GENERATORS
+    pairs = [word.partition("=") for word in rest]
+    options = {key: value for key, _, value in pairs}
+    return options.get("name") in pictures() and options.get("base", "plain") in GENERATORS
 
 
 @cache
