@@ -211,7 +211,7 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
          "no such light: preset may be shader, game, neutral, not 'disco'"),
         (["--exposure", "0"], "no such light: exposure may be 0.01 to 100, not 0.0"),
         (["--device", "tpu"], "--device is auto, cpu or gpu, not 'tpu'"),
-        (["--photo-samples", "0"], "--photo-samples is 1 to 65,536, not 0"),
+        (["--photo-samples", "0"], "--photo-samples is 1 to 4,096, not 0"),
     ],
 )  # fmt: skip
 def test_wrong_words_are_told_in_one_line(schem, words, text, capsys):
@@ -301,3 +301,80 @@ def test_a_pack_comes_before_our_own_textures(schem, tmp_path, capsys):
     capsys.readouterr()
     assert render(schem, "--pack", "nothing") == 3
     assert "nothing" in capsys.readouterr().err
+
+
+class FakePhoto:
+    """A tier that takes a plain picture in passes, and says how it was asked."""
+
+    def __init__(self):
+        self.asked = []
+
+    def lamps_of(self, scene):
+        return "lamps"
+
+    def render_photo(self, scene, camera, camera_to_room, *, light, samples, threads, lamps,
+                     progress):  # fmt: skip
+        from world2minecraft.render import render_volume
+
+        self.asked.append((light.exposure, samples, threads, lamps))
+        progress(samples // 2, samples, 1.0)
+        picture = render_volume(scene, camera, camera_to_room)
+        object.__setattr__(picture, "exposure", 2.5)
+        return picture
+
+
+def test_photos_are_taken_by_their_tier_at_one_exposure(build, tmp_path, monkeypatch):
+    from world2minecraft.cli import render_look
+
+    tier = FakePhoto()
+    monkeypatch.setattr(render_look, "photo_module", lambda: tier)
+    monkeypatch.setattr("world2minecraft.cli.render.photo_module", lambda: tier)
+    words = ("--pose", POSE, "--pose", POSE, "--photo", "--photo-samples", "8", "--out", "p")
+    assert render(build, *words) == 0
+    assert tier.asked == [(None, 8, 1, "lamps"), (2.5, 8, 1, "lamps")]
+    assert sorted(path.name for path in (tmp_path / "p").glob("*.png")) == [
+        "000000.png", "000001.png",
+    ]  # fmt: skip
+
+
+def test_a_device_draws_and_is_let_go(build, monkeypatch):
+    from world2minecraft.render import render_volume
+    from world2minecraft.render.views import frames as module
+
+    told = []
+
+    class Renderer:
+        def __init__(self, scene):
+            self.scene = scene
+
+        def render(self, camera, pose, **words):
+            told.append("render")
+            return render_volume(self.scene, camera, pose, **words)
+
+        def close(self):
+            told.append("close")
+
+    class Gpu:
+        @staticmethod
+        def renderer_for(device, scene, *, threads):
+            told.append(device)
+            return Renderer(scene)
+
+    import sys
+
+    frames_module = sys.modules["world2minecraft.render.views.frames"]
+    assert module is not frames_module  # The package's name is the function.
+    monkeypatch.setattr(frames_module, "_gpu_module", lambda device: Gpu)
+    assert render(build, "--pose", POSE, "--pose", POSE, "--device", "gpu", "--out", "g") == 0
+    assert told == ["gpu", "render", "render", "close"]
+
+
+def test_without_a_gpu_tier_auto_draws_and_gpu_is_told(build, monkeypatch, capsys):
+    import sys
+
+    monkeypatch.setattr(
+        sys.modules["world2minecraft.render.views.frames"], "GPU", "world2minecraft.render.none"
+    )
+    assert render(build, "--device", "auto") == 0
+    assert render(build, "--device", "gpu") == 2
+    assert "error: device 'gpu' is not in this version; cpu is\n" in capsys.readouterr().err

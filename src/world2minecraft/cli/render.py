@@ -1,6 +1,6 @@
 """``w2m render``: pictures of any build: from the game's poses, from outside, on a walk within."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
@@ -15,7 +15,7 @@ from world2minecraft.cli.render_files import (
     one_size,
     target_of,
 )
-from world2minecraft.cli.render_look import Look, Looks, take
+from world2minecraft.cli.render_look import Look, Looks, photo_module, take
 from world2minecraft.cli.render_shots import Plan, View, plan_of, settled, turntable_count, view_of
 from world2minecraft.cli.render_source import Source, read_source
 from world2minecraft.errors import UsageError
@@ -121,6 +121,8 @@ def draw(
     check_pixels(cameras, options.samples)
     if look.photo and view.kind == "turntable":
         raise UsageError("a turntable is not traced; --orbit --photo is")
+    if look.photo:
+        photo_module()  # What is not there is said before any work.
     looks = look.looks()
     for note in [*source.notes, *plan.notes, *looks.notes(source.volume.palette)]:
         print(f"note: {note}")
@@ -139,14 +141,23 @@ def draw(
 def _draw_plan(
     plan: Plan, writer: Writer, look: Look, looks: Looks, options: "DrawOptions", progress: Progress
 ) -> None:
-    progress("render", 0, len(plan.shots))
-    for done, (shot, picture, volume) in enumerate(_pictures(plan, look, looks, options), 1):
+    total = len(plan.shots) * (look.photo_samples if look.photo else 1)
+    done = 0
+
+    def step(count: int) -> None:
+        nonlocal done
+        done += count
+        if done < total:  # The last step is the writing of the last picture.
+            progress("render", done, total)
+
+    progress("render", 0, total)
+    for shot, picture, volume in _pictures(plan, look, looks, options, step):
         writer.picture(shot, picture, volume)
-        progress("render", done, len(plan.shots))
+    progress("render", total, total)
 
 
 def _pictures(
-    plan: Plan, look: Look, looks: Looks, options: "DrawOptions"
+    plan: Plan, look: Look, looks: Looks, options: "DrawOptions", step: Callable[[int], None]
 ) -> Iterator[tuple["Shot", "Picture", "BlockVolume"]]:
     """Take the pictures of a plan; each volume that is seen is made ready once at a time."""
     from world2minecraft.render import prepare_scene
@@ -160,7 +171,7 @@ def _pictures(
         if exposure is None:  # One for all, so that pictures of one plan belong together.
             exposure = exposed(scene, options.light, shots).exposure
         scene = replace(scene, exposure=exposure)
-        pictures = take(scene, volume, shots, look, options)
+        pictures = take(scene, shots, look, options, step)
         for shot, picture in zip(shots, pictures, strict=True):
             yield shot, picture, volume
 

@@ -1,9 +1,10 @@
 """How ``w2m render`` draws: the light, the textures, the tier and the device that words choose."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 from world2minecraft.errors import UsageError
@@ -14,12 +15,11 @@ if TYPE_CHECKING:
     from world2minecraft.render.elements import LookSource
     from world2minecraft.render.packs import PackLooks
     from world2minecraft.render.views import DrawOptions, Shot
-    from world2minecraft.types import BlockVolume
 
 TEXTURES_PX = (16, 32, 64, 128)
 MOST_SAMPLES = 4
 DEVICES = ("auto", "cpu", "gpu")
-MOST_PHOTO_SAMPLES = 65_536
+MOST_PHOTO_SAMPLES = 4096
 PHOTO = "world2minecraft.render.photo"  # Loaded late: it compiles kernels of its own.
 STILL_SAMPLES = 2
 OWN_PX = 16  # The game's own; larger ones show more grain and less of the game.
@@ -85,8 +85,6 @@ class Look:
             )
         if self.device not in DEVICES:
             raise UsageError(f"--device is auto, cpu or gpu, not {self.device!r}")
-        if self.device == "gpu":
-            raise UsageError("--device gpu is not in this version; leave it out to use the CPU")
 
     def light_of(self, kind: "Kind") -> "LookLight":
         """Return the light of a kind of view: a turntable stands in an even light of its own.
@@ -118,7 +116,7 @@ class Look:
         # From above one sees no sky; a build stands out best on paper, but not at night.
         paper = PAPER if kind in ("orbit", "turntable") and self.hour is None else None
         light, samples = self.light_of(kind), self.samples or usual
-        return DrawOptions(outputs, light, samples, self.threads, paper)
+        return DrawOptions(outputs, light, samples, self.threads, paper, self.device)
 
     def looks(self) -> "Looks":
         """Return the user's packs, the last first, and then our own looks.
@@ -141,22 +139,72 @@ class Look:
 
 def take(
     scene: "BlockScene",
-    volume: "BlockVolume",
     shots: "Sequence[Shot]",
     look: Look,
     options: "DrawOptions",
+    step: Callable[[int], None],
 ) -> "Iterator[Picture]":
     """Take the pictures of shots, by the tier that the look names.
 
+    Args:
+        scene: what they show.
+        shots: from where.
+        look: says the tier.
+        options: how they are drawn.
+        step: called with 1 for each picture, or for each path a pixel of a photo.
+
     Raises:
-        UsageError: this version has no such tier.
+        UsageError: this version has no such tier, or it cannot do what is asked for.
     """
     from world2minecraft.render.views import frames_of
 
-    if not look.photo:
-        return frames_of(scene, shots, options)
+    if look.photo:
+        yield from _photos(scene, shots, look, options, step)
+        return
+    for picture in frames_of(scene, shots, options):
+        step(1)
+        yield picture
+
+
+def _photos(
+    scene: "BlockScene", shots: "Sequence[Shot]", look: Look, options: "DrawOptions",
+    step: Callable[[int], None],
+) -> "Iterator[Picture]":  # fmt: skip
+    """Trace photos; the first one's exposure is that of all."""
+    photo = photo_module()
+    lamps, light = photo.lamps_of(scene), options.light
+    for shot in shots:
+        done = 0
+
+        def tell(samples: int, _all: int, _left_s: float) -> None:
+            nonlocal done
+            step(samples - done)
+            done = samples
+
+        try:
+            picture = photo.render_photo(
+                scene, shot.camera, shot.camera_to_room, light=light, lamps=lamps,
+                samples=look.photo_samples, threads=look.threads, progress=tell,
+            )  # fmt: skip
+        except ValueError as error:
+            raise UsageError(f"--photo cannot do this: {error}") from error
+        step(look.photo_samples - done)
+        light = replace(light, exposure=within(picture.exposure))
+        yield picture
+
+
+def within(exposure: float) -> float:
+    """Return an exposure within what a light may have."""
+    return min(max(exposure, 0.01), 100.0)
+
+
+def photo_module() -> ModuleType:
+    """Return the tier that traces paths.
+
+    Raises:
+        UsageError: this version has none.
+    """
     try:
-        render_photo = import_module(PHOTO).render_photo
+        return import_module(PHOTO)
     except ImportError:
         raise UsageError("--photo is not in this version; leave it out") from None
-    return render_photo(scene, volume, shots, samples=look.photo_samples, options=options)

@@ -4,13 +4,18 @@ This is the one door to the renderer: whoever overlaps work with writing, or spr
 processes, does so behind it.
 """
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
+from importlib import import_module
 from itertools import repeat
+from types import ModuleType
 
 import numpy as np
 
 from world2minecraft.coordinates import apply
+from world2minecraft.errors import UsageError
 from world2minecraft.render.lamps import DAY, Paper, exposure_of
 from world2minecraft.render.light import LookLight
 from world2minecraft.render.picture import Picture, render_volume
@@ -18,16 +23,22 @@ from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.views.poses import Shot
 from world2minecraft.types import Camera
 
+GPU = "world2minecraft.render.gpu"  # Loaded late: most machines have no use for it.
+
 
 @dataclass(frozen=True)
 class DrawOptions:
-    """How pictures are drawn; each means what it means in ``render_volume``."""
+    """How pictures are drawn; each means what it means in ``render_volume``.
+
+    ``device`` is ``cpu``, ``gpu``, or ``auto``: a graphics card where there is one.
+    """
 
     outputs: tuple[str, ...] = ("colour",)
     light: LookLight = DAY
     samples: int = 1
     threads: int = 1
     background: Paper | None = None
+    device: str = "cpu"
 
 
 def frames(
@@ -45,21 +56,44 @@ def frames(
         options: what to make, and how it looks.
 
     Raises:
-        ValueError: what ``render_volume`` raises.
+        ValueError: what ``render_volume`` raises. UsageError: there is no such device here.
     """
     how = options or DrawOptions()
     each = repeat(cameras) if isinstance(cameras, Camera) else cameras
-    for camera, camera_to_room in zip(each, poses, strict=False):
-        yield render_volume(
-            scene,
-            camera,
-            camera_to_room,
-            outputs=how.outputs,
-            light=how.light,
-            samples=how.samples,
-            threads=how.threads,
-            background=how.background,
-        )
+    with _drawing(scene, how) as draw:
+        for camera, camera_to_room in zip(each, poses, strict=False):
+            yield draw(
+                camera,
+                camera_to_room,
+                outputs=how.outputs,
+                light=how.light,
+                samples=how.samples,
+                background=how.background,
+            )
+
+
+@contextmanager
+def _drawing(scene: BlockScene, how: DrawOptions) -> Iterator[Callable[..., Picture]]:
+    """Give what takes a picture of a scene on the device that is asked for."""
+    module = None if how.device == "cpu" else _gpu_module(how.device)
+    if module is None:
+        yield partial(render_volume, scene, threads=how.threads)
+        return
+    renderer = module.renderer_for(how.device, scene, threads=how.threads)
+    try:
+        yield renderer.render
+    finally:
+        renderer.close()
+
+
+def _gpu_module(device: str) -> ModuleType | None:
+    """Return what draws on a graphics card; None where ``auto`` may do without."""
+    try:
+        return import_module(GPU)
+    except ImportError:
+        if device == "auto":
+            return None
+        raise UsageError(f"device {device!r} is not in this version; cpu is") from None
 
 
 def frames_of(

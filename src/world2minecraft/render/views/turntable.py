@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 
 from world2minecraft.render.elements import LookSource
 from world2minecraft.render.lamps import NEUTRAL
-from world2minecraft.render.scene import BlockScene, prepare_scene
+from world2minecraft.render.scene import prepare_scene
 from world2minecraft.render.views.frames import DrawOptions, exposed, frames
 from world2minecraft.render.views.opened import OpenedBuild, has_ceiling
 from world2minecraft.render.views.orbit import TURN_DEG, orbit_shots
@@ -50,22 +51,24 @@ def turntable(
     fine = camera.resized(camera.width_px * samples, camera.height_px * samples)
     elevation = CLOSED_ELEVATION_DEG if inside is None else OPEN_ELEVATION_DEG
     studio = studio_of(shown)
-    scenes: dict[int, BlockScene] = {}
     exposure: float | None = None
     start = TURN_DEG if inside is None else inside.best_start_deg(elevation)
-    for shot in orbit_shots(
+    shots = orbit_shots(
         shown, camera, count, elevation_deg=elevation, start_deg=start, rate_hz=rate_hz
-    ):
-        seen = volume if inside is None else inside.seen_by(shot.camera_to_room)
-        if id(seen) not in scenes:  # The opened build keeps what it made, so ids are its own.
-            scene = prepare_scene(seen, looks, texture_px=texture_px)
-            if exposure is None:  # One for the whole turn.
-                exposure = exposed(scene, how.light, [shot]).exposure
-            scenes[id(seen)] = replace(scene, exposure=exposure)
-        picture = next(frames(scenes[id(seen)], fine, [shot.camera_to_room], how))
-        if picture.colour is None:
-            raise ValueError("the picture has no colour")
-        yield shot, _on_ground(picture.colour, picture.depth_m > 0, studio, shot, samples)
+    )
+    volumes = [volume if inside is None else inside.seen_by(one.camera_to_room) for one in shots]
+    for _, run in groupby(range(count), key=lambda n: id(volumes[n])):
+        some = [shots[n] for n in run]
+        scene = prepare_scene(volumes[shots.index(some[0])], looks, texture_px=texture_px)
+        if exposure is None:  # One for the whole turn.
+            exposure = exposed(scene, how.light, some).exposure
+        pictures = frames(
+            replace(scene, exposure=exposure), fine, [one.camera_to_room for one in some], how
+        )
+        for shot, picture in zip(some, pictures, strict=True):
+            if picture.colour is None:
+                raise ValueError("the picture has no colour")
+            yield shot, _on_ground(picture.colour, picture.depth_m > 0, studio, shot, samples)
 
 
 def _on_ground(
