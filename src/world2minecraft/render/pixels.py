@@ -8,9 +8,11 @@ by ``render.shade``. Glass is gone through front to back, so that nothing needs 
 import numpy as np
 
 from world2minecraft.jit import inlined, lean
-from world2minecraft.render.beam import ALONE, NOTHING, follow
+from world2minecraft.render.beam import ALONE, NOTHING, PLANE, follow
+from world2minecraft.render.planes import draw_plane
 from world2minecraft.render.ray import begin, first_hit, ray_of_pixel, steep, within
 from world2minecraft.render.shade import (
+    MEMO,
     MOST_GLASS,
     main_face,
     normal_of,
@@ -23,7 +25,7 @@ from world2minecraft.render.tables import NO_FACE, OWNER, TURN
 TILE = 8
 # Bits of what is wanted.
 COLOUR, OPAQUE, NORMAL, SEMANTIC, INSTANCE = 1, 2, 4, 8, 16
-SCRATCH = 64  # Numbers that a band of rows needs for itself; see ``draw_rows``.
+SCRATCH = 96  # Numbers that a band of rows needs for itself; see ``draw_rows``.
 
 
 @lean
@@ -47,6 +49,10 @@ def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scr
     width = out.depth.shape[1]
     corners, memo = scratch[:24].reshape((4, 6)), scratch[24:]
     memo[0] = -1.0
+    face = scratch[24 + MEMO :]
+    lit = lamp.lit
+    plain = spread == 1 and not out.wanted & (OPAQUE | NORMAL)
+    plain = plain and lit.sun_r == 0 and lit.headlight == 0
     memo[4] = np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)
     for v_tile in range(first, last, TILE):
         v_end = min(v_tile + TILE, last)
@@ -59,6 +65,13 @@ def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scr
                 row = corners[corner]
                 row[0], row[1], row[2], row[3], row[4], row[5] = ox, oy, oz, dx, dy, dz
             mode, side, layer = follow(tables.space, tables.bounds, corners, cells)
+            if mode == PLANE and plain:
+                draw_plane(
+                    tables, side_px, pose, rays, lamp, memo[4], face, cells, side, layer,
+                    u_tile, u_end, v_tile, v_end, out.wanted & COLOUR != 0,
+                    out.wanted & SEMANTIC != 0, out.wanted & INSTANCE != 0, out,
+                )  # fmt: skip
+                continue
             for v in range(v_tile, v_end):
                 for u in range(u_tile, u_end):
                     draw_pixel(
