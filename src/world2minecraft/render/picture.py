@@ -109,7 +109,7 @@ def render_parallel(
 def _draw(
     volume, rays, spread, camera_to_room, size, outputs, light, samples, threads, background
 ) -> Picture:
-    _check(outputs, size, samples)
+    check_request(outputs, size, samples)
     scene = prepare_scene(volume) if isinstance(volume, BlockVolume) else volume
     pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
     lamp = lamp_of(light, scene, background, pose[:, 3][None] if spread else None)
@@ -126,7 +126,8 @@ def _draw(
     return picture
 
 
-def _check(outputs: Collection[str], size: tuple[int, int], samples: int) -> None:
+def check_request(outputs: Collection[str], size: tuple[int, int], samples: int) -> None:
+    """Raise ``ValueError`` where a picture cannot be asked for so; see ``render_volume``."""
     unknown = sorted(set(outputs) - set(OUTPUTS))
     if unknown:
         raise ValueError(f"outputs may be {', '.join(OUTPUTS)}, not {unknown[0]!r}")
