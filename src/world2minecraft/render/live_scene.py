@@ -33,14 +33,15 @@ class LiveScene:
         looks: LookSource | None = None,
         *,
         texture_px: int = 16,
-        reach: float = 1.0,
+        reach: float | None = None,
+        hidden_lamps: bool | None = None,
     ):
         """Make the scene; the volume itself never changes.
 
         Args: as ``prepare_scene``.
         """
         self._baker = Baker(looks or OwnLooks(texture_px), texture_px)
-        scene, self._guests = bake_scene(volume, self._baker, reach)
+        scene, self._guests = bake_scene(volume, self._baker, reach, hidden_lamps)
         self.scene = _with_own_labels(scene)
         self._palette = list(volume.palette)
         self._states = volume.states.copy()

@@ -13,6 +13,8 @@ from world2minecraft.render.bake import AIR, Baker, ElementTable, joins, kind_of
 from world2minecraft.render.elements import BlockModel, LookSource
 from world2minecraft.render.empties import empty_boxes
 from world2minecraft.render.light import LightField, light_field
+from world2minecraft.render.light.exposure import standing_cells
+from world2minecraft.render.light.flood import MOST_REACH
 from world2minecraft.render.looks import OwnLooks
 from world2minecraft.render.standing_boxes import (
     GuestLists,
@@ -25,6 +27,10 @@ from world2minecraft.render.standing_boxes import (
 )
 from world2minecraft.render.tables import BOXES, JOINS, SceneTables
 from world2minecraft.types import BlockVolume
+
+HIDDEN_LAMPS = {"minecraft:light"}
+# A build is dark where fewer of the places where one can stand have light of so many levels.
+DIM, LIT_SHARE = 4, 0.6
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +55,8 @@ def prepare_scene(
     looks: LookSource | None = None,
     *,
     texture_px: int = 16,
-    reach: float = 1.0,
+    reach: float | None = None,
+    hidden_lamps: bool | None = None,
 ) -> BlockScene:
     """Return the scene of a volume.
 
@@ -57,16 +64,23 @@ def prepare_scene(
         volume: the blocks, with display entities.
         looks: where models and textures come from; our own set where None.
         texture_px: the side of a texture, 16, 32, 64 or 128.
-        reach: how many blocks light goes for each level that it loses; 1 is the game's.
+        reach: how many blocks light goes for each level that it loses; the game's 1 where None,
+            but farther where blocks are smaller than half a metre, so that rooms are lit.
+        hidden_lamps: whether the game's invisible light blocks shine; where None, only in builds
+            that would be dark without them.
 
     Raises:
         ValueError: the size of the textures or the reach is out of range.
     """
-    return bake_scene(volume, Baker(looks or OwnLooks(texture_px), texture_px), reach)[0]
+    baker = Baker(looks or OwnLooks(texture_px), texture_px)
+    return bake_scene(volume, baker, reach, hidden_lamps)[0]
 
 
 def bake_scene(
-    volume: BlockVolume, baker: Baker, reach: float = 1.0
+    volume: BlockVolume,
+    baker: Baker,
+    reach: float | None = None,
+    hidden_lamps: bool | None = None,
 ) -> tuple[BlockScene, GuestLists]:
     """Return the scene of a volume, and the standing elements in each cell that has any.
 
@@ -88,7 +102,7 @@ def bake_scene(
     kinds[hosts] = BOXES
     grid_to_world = np.eye(4)
     grid_to_world[:3, 3] = volume.corner - margin[0]
-    table, light = baker.table(), light_field(states, volume.palette, reach)
+    table, light = baker.table(), _light_of(volume, states, reach, hidden_lamps)
     space, bounds = empty_boxes(kinds)
     scene = BlockScene(
         tables=SceneTables(
@@ -115,6 +129,24 @@ def bake_scene(
         light=light,
     )
     return scene, lists
+
+
+def _light_of(
+    volume: BlockVolume, states: np.ndarray, reach: float | None, hidden_lamps: bool | None
+) -> LightField:
+    """Return the light of a volume's states, which may have a margin; see ``prepare_scene``."""
+    if reach is None:
+        reach = min(max(1.0, volume.blocks_per_metre / 2), MOST_REACH)
+    light = light_field(states, volume.palette, reach, hidden_lamps=bool(hidden_lamps))
+    if hidden_lamps is not None or not HIDDEN_LAMPS & {
+        state.partition("[")[0] for state in volume.palette
+    }:
+        return light
+    where = standing_cells(light)
+    bright = np.maximum(light.sky, light.block).reshape(-1)[where] >= DIM * reach
+    if len(where) == 0 or bright.mean() >= LIT_SHARE:
+        return light
+    return light_field(states, volume.palette, reach)
 
 
 def _lists_of(

@@ -35,7 +35,7 @@ def scene_exposure(field: LightField, look: LookLight, eyes: np.ndarray | None =
         return look.exposure
     if look.preset != "shader":
         return 1.0
-    cells = _standing(field)
+    cells = standing_cells(field)
     if eyes is not None:
         near = _around(field, np.atleast_2d(np.asarray(eyes, np.float64)))
         cells = near if len(near) else cells
@@ -69,8 +69,8 @@ def _surface_light(field: LightField, look: LookLight, cells: np.ndarray) -> np.
     return np.array([sky_light, block * shines[1]])
 
 
-def _standing(field: LightField) -> np.ndarray:
-    """Return the flat cells, with the margin counted, that are free and have something below."""
+def standing_cells(field: LightField) -> np.ndarray:
+    """Return where one can stand: free flat cells over something, int64 [N], margin counted."""
     words = field.words[field.kinds]
     free = words & (SHUT | SOLID) == 0
     below = np.zeros_like(free)
