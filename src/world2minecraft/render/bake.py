@@ -158,6 +158,11 @@ def element_corners(element: Element) -> np.ndarray:
     return corners @ element.turn[:3, :3].T + element.turn[:3, 3]
 
 
+def is_pane(state: str) -> bool:
+    """Whether a state is glass, whose surface counts where its texture is clear."""
+    return "glass" in state.partition("[")[0].partition(":")[2]
+
+
 def models_of(palette: Sequence[str], looks: LookSource) -> list[BlockModel]:
     """Return the model of each state; nothing for a state that no source knows."""
     return [looks.model(state) or BlockModel() for state in palette]

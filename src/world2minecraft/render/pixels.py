@@ -10,7 +10,7 @@ import numpy as np
 from world2minecraft.jit import inlined, lean
 from world2minecraft.render.beam import ALONE, NOTHING, PLANE, follow
 from world2minecraft.render.planes import draw_plane
-from world2minecraft.render.ray import begin, first_hit, ray_of_pixel, steep, within
+from world2minecraft.render.ray import begin, first_hit, is_clear, ray_of_pixel, steep, within
 from world2minecraft.render.shade import (
     MEMO,
     MOST_GLASS,
@@ -111,7 +111,7 @@ def draw_pixel(
     for _ in range(MOST_GLASS):
         if side == NO_FACE:
             break
-        glass = element >= 0 and tables.translucent[tables.layers[element, side]]
+        glass = is_clear(tables, side_px, t, i, j, k, side, element, ox, oy, oz, dx, dy, dz)
         if out.wanted & COLOUR:
             r, g, b, alpha = shade_hit(
                 tables, side_px, lamp, memo, block_px / t if spread > 0 else block_px,

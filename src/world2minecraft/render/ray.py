@@ -16,11 +16,13 @@ from world2minecraft.render.tables import (
     FULL,
     JOINS,
     NO_FACE,
+    PANE,
     SEE_THROUGH,
     TURN,
 )
 
 OUTSIDE = -3  # What ``walk`` gives as kind where the ray has left the grid.
+SOLID = 250  # Alpha of a texel of glass from which on nothing is seen behind it.
 _TINY = 1e-12
 _SLACK = 1e-9  # Cells: how far a standing box may be met outside the cell that lists it.
 
@@ -186,7 +188,7 @@ def meet_cell(
                 continue
             if flags & JOINS and joined(looks, i, j, k, face):
                 continue
-            if not translucent[layer]:
+            if not (translucent[layer] or flags & PANE):
                 column, row = texel_at(uv, n, face, px + t * ex, py + t * ey, pz + t * ez, side_px)
                 if texels[layer, row * side_px + column, 3] < 128:
                     continue
@@ -253,3 +255,20 @@ def first_hit(
             if side != NO_FACE:
                 return near, i, j, k, side, element
         t, i, j, k, face = until, a, b, c, ahead
+
+
+@inlined
+def is_clear(tables, side_px, t, i, j, k, face, element, ox, oy, oz, dx, dy, dz):
+    """Tell whether one sees through a hit: it is glass, and its texture is not solid there."""
+    if element < 0:
+        return False
+    layer, flags = tables.layers[element, face], tables.traits[element, FLAGS]
+    if not (tables.translucent[layer] or flags & PANE):
+        return False
+    x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
+    if not flags & ABSOLUTE:
+        x, y, z = x - i, y - j, z - k
+    if tables.traits[element, TURN] >= 0:
+        x, y, z = carried(tables.turns, tables.traits[element, TURN], x, y, z, 1.0)
+    column, row = texel_at(tables.uv, element, face, x, y, z, side_px)
+    return tables.texels[layer, row * side_px + column, 3] < SOLID

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from world2minecraft.render.bake import AIR, Baker, ElementTable, joins, kind_of, models_of
+from world2minecraft.render.bake import AIR, Baker, ElementTable, is_pane, joins, kind_of, models_of
 from world2minecraft.render.elements import BlockModel, LookSource
 from world2minecraft.render.empties import empty_boxes
 from world2minecraft.render.light import LightField, light_field
@@ -25,7 +25,7 @@ from world2minecraft.render.standing_boxes import (
     place_guests,
     standing_things,
 )
-from world2minecraft.render.tables import BOXES, JOINS, SceneTables
+from world2minecraft.render.tables import BOXES, JOINS, PANE, SceneTables
 from world2minecraft.types import BlockVolume
 
 HIDDEN_LAMPS = {"minecraft:light"}
@@ -183,7 +183,7 @@ def with_looks(scene: BlockScene, baker: Baker, looks: Sequence[tuple[int, ...]]
 
 def bake_model(state: str, model: BlockModel, baker: Baker) -> list[int]:
     """Bake the elements of a state's model and return their numbers."""
-    flags = JOINS * joins(state, model)
+    flags = JOINS * joins(state, model) | PANE * is_pane(state)
     even = not model.ambient_occlusion
     return [baker.add(element, flags, even=even) for element in model.elements]
 

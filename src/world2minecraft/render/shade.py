@@ -18,7 +18,7 @@ from world2minecraft.render.light.lit import (
     to_linear,
 )
 from world2minecraft.render.light.tone import Tone, finish
-from world2minecraft.render.ray import begin, carried, first_hit, steep
+from world2minecraft.render.ray import begin, carried, first_hit, is_clear, steep
 from world2minecraft.render.tables import (
     ABSOLUTE,
     EVEN,
@@ -242,7 +242,7 @@ def sun_reaches(tables, side_px, lit, ox, oy, oz):
         )
         if face == NO_FACE:
             return True
-        if element < 0 or not tables.translucent[tables.layers[element, face]]:
+        if not is_clear(tables, side_px, t, i, j, k, face, element, ox, oy, oz, dx, dy, dz):
             return False
         face = NO_FACE
     return False

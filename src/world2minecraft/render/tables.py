@@ -19,6 +19,7 @@ SEE_THROUGH = 2  # Some face has holes or is translucent, or is not there.
 UNSHADED = 4  # The same light on every side.
 JOINS = 8  # Glass and its like: no face towards a neighbour of the same look.
 EVEN = 16  # Corners are not darkened: its model has no ambient occlusion.
+PANE = 32  # Glass: where its texture has holes one sees through, and yet there is a surface.
 # Columns of ``traits``. An owner is the number of a standing thing, -1 for the cell that an element
 # was met in, or -2 - n for cell n of the volume, from which it reaches out.
 TURN, FLAGS, OWNER = 0, 1, 2
