@@ -14,7 +14,7 @@ from world2minecraft.coordinates import apply, block_to_room, look_at
 from world2minecraft.find import FindParameters, find_objects
 from world2minecraft.furnish import FurnishParameters, furnish
 from world2minecraft.render.elements import LookSource
-from world2minecraft.render.plain_looks import PlainLooks
+from world2minecraft.render.looks.own import OwnLooks
 from world2minecraft.rooms import generate_room
 from world2minecraft.types import BlockVolume, Camera, OccupancyGrid
 
@@ -148,7 +148,7 @@ def _put_storey(states: np.ndarray, floor: int, furnished: float, rng: np.random
 
 def scene_looks() -> LookSource:
     """Return where the models and textures of these scenes come from: the renderer's own."""
-    return PlainLooks()
+    return OwnLooks()
 
 
 def poses(

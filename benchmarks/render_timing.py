@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-ROUNDS = 4
+ROUNDS = 2
 
 
 class Timing(NamedTuple):
