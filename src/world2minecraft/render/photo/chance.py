@@ -1,0 +1,72 @@
+"""Random numbers by place: the same for a pixel, a sample and a use, whoever asks and when.
+
+The first uses of a path come from Sobol's sequence in two dimensions, its order and its values
+scrambled by hashes of the pixel (Owen scrambling), so that 16 samples lie evenly; later uses,
+where evenness is lost anyway, are plain hashes.
+"""
+
+import numpy as np
+
+from world2minecraft.jit import inlined, lean
+
+EVEN_USES = 12  # Pairs of numbers that are spread evenly over the samples of a pixel.
+_U = np.uint32
+_SHARE = 1.0 / 4294967296.0
+
+
+@inlined
+def mixed(x):
+    """Return a hash of a uint32."""
+    x = _U(x)
+    x = _U(x ^ _U(x >> _U(16)))
+    x = _U(x * _U(0x7FEB352D))
+    x = _U(x ^ _U(x >> _U(15)))
+    x = _U(x * _U(0x846CA68B))
+    return _U(x ^ _U(x >> _U(16)))
+
+
+@inlined
+def reversed_bits(x):
+    """Return a uint32 with its bits in reverse order."""
+    x = _U(_U(x >> _U(16)) | _U(x << _U(16)))
+    x = _U(_U((x & _U(0x00FF00FF)) << _U(8)) | _U((x & _U(0xFF00FF00)) >> _U(8)))
+    x = _U(_U((x & _U(0x0F0F0F0F)) << _U(4)) | _U((x & _U(0xF0F0F0F0)) >> _U(4)))
+    x = _U(_U((x & _U(0x33333333)) << _U(2)) | _U((x & _U(0xCCCCCCCC)) >> _U(2)))
+    return _U(_U((x & _U(0x55555555)) << _U(1)) | _U((x & _U(0xAAAAAAAA)) >> _U(1)))
+
+
+@inlined
+def scrambled(x, seed):
+    """Return a uint32, given with its bits reversed, scrambled as Owen does, in right order."""
+    x = _U(x ^ _U(x * _U(0x3D20ADEA)))
+    x = _U(x + seed)
+    x = _U(x * _U(_U(seed >> _U(16)) | _U(1)))
+    x = _U(x ^ _U(x * _U(0x05526C56)))
+    x = _U(x ^ _U(x * _U(0x53A22864)))
+    return reversed_bits(x)
+
+
+@lean
+def pair(pixel_key, sample, use):
+    """Return two numbers of [0, 1) for a use of a sample; uses count from 0.
+
+    Args:
+        pixel_key: uint32, a hash of the pixel and the seed.
+        sample: which sample of the pixel.
+        use: what the numbers are for; each use has numbers of its own.
+    """
+    key = mixed(_U(pixel_key) ^ mixed(_U(use) + _U(0x9E3779B9)))
+    if use >= EVEN_USES:
+        first = mixed(key ^ mixed(_U(sample) + _U(0x85EBCA6B)))
+        return first * _SHARE, mixed(first + key) * _SHARE
+    # A nested shuffle of the order lets pairs of different uses know nothing of each other.
+    place = scrambled(reversed_bits(_U(sample)), key)
+    column, row, step = reversed_bits(place), _U(0), _U(0x80000000)
+    while place != _U(0):
+        if place & _U(1):
+            row = _U(row ^ step)
+        step = _U(step ^ _U(step >> _U(1)))
+        place = _U(place >> _U(1))
+    x = scrambled(reversed_bits(column), mixed(key + _U(1)))
+    y = scrambled(reversed_bits(row), mixed(key + _U(2)))
+    return x * _SHARE, y * _SHARE

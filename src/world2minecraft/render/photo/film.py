@@ -1,0 +1,96 @@
+"""What the paths of a photo add up in, and what each pixel's middle looks at.
+
+Light that comes by a matt surface is kept apart by whether the sample met the surface that the
+pixel's middle looks at: the filter works surface by surface, and puts both parts of a pixel at an
+edge together again at the end.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.jit import inlined
+
+SAME_NORMAL = 0.9  # Cosine of two normals of one surface.
+SAME_PLANE, SAME_PLANE_FAR = 0.02, 0.002  # Cells off its plane, and the more per cell of distance.
+
+
+class Film(NamedTuple):
+    """Sums over samples, float32 [H, W, 3] where nothing else is said."""
+
+    seen: np.ndarray  # sky and lamps themselves
+    light: np.ndarray  # by the matt surface in the pixel's middle
+    share: np.ndarray  # of that surface: what it would send of light 1
+    other_light: np.ndarray  # by other matt surfaces in the pixel
+    other_share: np.ndarray
+    gloss: np.ndarray  # by glossy ones, and by the mirror of glass
+    gloss_share: np.ndarray
+    squares: np.ndarray  # [H, W, 2]: of the light over its share, matt and glossy, luminances
+    samples: np.ndarray  # [H, W, 2]: those of the middle's surface, and all
+    place: np.ndarray  # of the middle's surface, cells
+    normal: np.ndarray  # of its relief, 0 where there is none
+    out: np.ndarray  # of its face, 0 where there is none
+    far: np.ndarray  # [H, W]: how far it is, cells
+
+
+def new_film(height: int, width: int) -> Film:
+    """Return an empty film."""
+    depths = {"squares": (2,), "samples": (2,), "far": ()}
+    return Film(
+        *(np.zeros((height, width, *depths.get(name, (3,))), np.float32) for name in Film._fields)
+    )
+
+
+@inlined
+def luminance(r, g, b):
+    """Return how bright a linear colour is."""
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b
+
+
+@inlined
+def keep_middle(film, v, u, s):
+    """Write what a pixel's middle looks at."""
+    far = 0.0
+    for n in range(3):
+        film.place[v, u, n] = s.at[n]
+        film.normal[v, u, n] = s.normal[n]
+        film.out[v, u, n] = s.out[n]
+        far += (s.at[n] - s.o[n]) ** 2
+    film.far[v, u] = np.sqrt(far)
+
+
+@inlined
+def is_middle(film, v, u, s):
+    """Tell whether a sample's first surface is the one in the pixel's middle."""
+    cosine, off = 0.0, 0.0
+    for n in range(3):
+        cosine += film.out[v, u, n] * s.first_out[n]
+        off += film.out[v, u, n] * (s.first[n] - film.place[v, u, n])
+    return cosine > SAME_NORMAL and abs(off) < SAME_PLANE + SAME_PLANE_FAR * film.far[v, u]
+
+
+@inlined
+def add_sample(film, v, u, s):
+    """Add what a path has come to."""
+    film.samples[v, u, 1] += 1
+    for n in range(3):
+        film.seen[v, u, n] += s.seen[n]
+        film.gloss[v, u, n] += s.gloss[n]
+        film.gloss_share[v, u, n] += s.gloss_share[n]
+    share = luminance(s.gloss_share[0], s.gloss_share[1], s.gloss_share[2])
+    value = luminance(s.gloss[0], s.gloss[1], s.gloss[2]) / max(share, 0.02)
+    film.squares[v, u, 1] += value * value
+    if s.own == 0:
+        return
+    if not is_middle(film, v, u, s):
+        for n in range(3):
+            film.other_light[v, u, n] += s.spread[n]
+            film.other_share[v, u, n] += s.spread_share[n]
+        return
+    film.samples[v, u, 0] += 1
+    for n in range(3):
+        film.light[v, u, n] += s.spread[n]
+        film.share[v, u, n] += s.spread_share[n]
+    share = luminance(s.spread_share[0], s.spread_share[1], s.spread_share[2])
+    value = luminance(s.spread[0], s.spread[1], s.spread[2]) / max(share, 1e-4)
+    film.squares[v, u, 0] += value * value
