@@ -1,8 +1,6 @@
 """The arrays that a picture is drawn into: made once, and filled as often as one likes."""
 
 from collections.abc import Callable, Collection
-from itertools import pairwise
-from multiprocessing.pool import ThreadPool
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +17,7 @@ from world2minecraft.render.pixels import (
 )
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.shade import Lamp
+from world2minecraft.render.threads import bands, side_by_side
 
 WANTED = {
     "colour": COLOUR,
@@ -110,10 +109,5 @@ def draw_into(
 
 def run_bands(band: Callable[[tuple[int, int]], None], rows: int, threads: int) -> None:
     """Call ``band((first, last))`` for bands that cover ``rows``, on ``threads`` threads."""
-    if threads <= 1:
-        band((0, rows))
-        return
-    tiles = -(-rows // TILE)  # Bands begin with a tile, so that bundles do not depend on them.
-    edges = [min(rows, TILE * (tiles * n // threads)) for n in range(threads)] + [rows]
-    with ThreadPool(threads) as pool:
-        pool.map(band, pairwise(edges))
+    # Bands begin with a tile, so that bundles of rays do not depend on them.
+    side_by_side(band, bands(rows, max(threads, 1), TILE))
