@@ -32,6 +32,7 @@ GOLDEN = [
     (errors.OutputError("out", "is a file"), "out: is a file", 3),
     (errors.UsageError("give one"), "give one", 2),
     (errors.ServerError("gone"), "gone", 1),
+    (errors.WorkerError("ended"), "ended", 1),
     (errors.World2MinecraftError("failed"), "failed", 1),
 ]
 

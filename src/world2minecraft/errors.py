@@ -7,6 +7,7 @@
     │   ├── UnknownNameError        2   a name that no registry holds
     │   └── MissingExtraError       2   an optional dependency is not installed
     ├── ServerError                 1   a running server refuses, or cannot be reached
+    ├── WorkerError                 1   a process that shares the work has ended or failed
     └── InputError                  3   a file or folder cannot be used
         ├── DamagedFileError        3   a file is not what its format says
         ├── LimitError              3   a file asks for more than the program allows
@@ -53,6 +54,10 @@ class MissingExtraError(UsageError):
 
 class ServerError(World2MinecraftError):
     """A running server cannot be reached, refuses, or does not do what it was told."""
+
+
+class WorkerError(World2MinecraftError):
+    """A process that shares the work has ended, or failed with an error that cannot be sent."""
 
 
 class InputError(World2MinecraftError):
