@@ -100,15 +100,16 @@ def draw_pixel(
         t, i, j, k = on_plane(side, layer, cells, ox, oy, oz, dx, dy, dz, rx, ry, rz)
     else:
         t, i, j, k, side = begin(tables.space.shape, ox, oy, oz, dx, dy, dz, rx, ry, rz)
-    if mode == ALONE and i >= 0:
-        t, i, j, k, side, element = first_hit(
-            tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, side, 0.0
-        )
-    write_hit(tables, out, v, u, t, length, i, j, k, side, element)
-    if not out.wanted & (COLOUR | OPAQUE):
-        return
-    red, green, blue, clear = 0.0, 0.0, 0.0, 1.0
-    for _ in range(MOST_GLASS):
+    red, green, blue, clear, after = 0.0, 0.0, 0.0, 1.0, 0.0
+    for pane in range(MOST_GLASS):
+        if pane > 0 or (mode == ALONE and i >= 0):
+            t, i, j, k, side, element = first_hit(
+                tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, side, after
+            )
+        if pane == 0:
+            write_hit(tables, out, v, u, t, length, i, j, k, side, element)
+            if not out.wanted & (COLOUR | OPAQUE):
+                return
         if side == NO_FACE:
             break
         glass = is_clear(tables, side_px, t, i, j, k, side, element, ox, oy, oz, dx, dy, dz)
@@ -122,9 +123,7 @@ def draw_pixel(
             clear -= share
         if not glass:
             break
-        t, i, j, k, side, element = first_hit(
-            tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, NO_FACE, t
-        )
+        side, after = NO_FACE, t
     if out.wanted & OPAQUE:
         write_behind(tables, out, v, u, t, i, j, k, side, element)
     if out.wanted & COLOUR:

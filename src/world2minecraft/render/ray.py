@@ -152,7 +152,7 @@ def texel_at(uv, n, face, x, y, z, side_px):
     return min(column, side_px - 1), min(row, side_px - 1)
 
 
-@lean
+@inlined
 def meet_cell(
     looks, look_start, refs, boxes, traits, turns, layers, uv, texels, translucent, side_px,
     i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz, after, until,
