@@ -99,7 +99,7 @@ def draw_into(
     def band(rows: tuple[int, int]) -> None:
         draw_rows(
             scene.tables, scene.side_px, pose, rays, spread, rows[0], rows[1], lamp,
-            np.empty((4, 3), np.int64), np.empty(SCRATCH), arrays,
+            np.empty((8, 3), np.int64), np.empty(SCRATCH), arrays,
         )  # fmt: skip
 
     if arrays.wanted & NORMAL:

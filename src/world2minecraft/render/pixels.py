@@ -14,6 +14,7 @@ from world2minecraft.render.ray import begin, first_hit, is_clear, ray_of_pixel,
 from world2minecraft.render.shade import (
     MEMO,
     MOST_GLASS,
+    OFF,
     main_face,
     normal_of,
     shade_hit,
@@ -41,7 +42,7 @@ def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scr
         first: the first row, a whole number of tiles.
         last: past the last row.
         lamp: the light, see ``render.shade``.
-        cells: int64 [4, 3], this band's own.
+        cells: int64 [8, 3], this band's own.
         scratch: float64 [SCRATCH], this band's own.
         out: ``PixelArrays``; depth and distance are 0 where there is nothing, index and thing -1,
             face ``NO_FACE``.
@@ -52,7 +53,8 @@ def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scr
     face = scratch[24 + MEMO :]
     lit = lamp.lit
     plain = spread == 1 and not out.wanted & (OPAQUE | NORMAL)
-    plain = plain and lit.sun_r == 0 and lit.headlight == 0
+    plain = plain and lit.headlight == 0
+    sunny = lit.sun_r > 0 and out.wanted & COLOUR
     memo[4] = np.sqrt(pose[0, 2] ** 2 + pose[1, 2] ** 2 + pose[2, 2] ** 2)
     for v_tile in range(first, last, TILE):
         v_end = min(v_tile + TILE, last)
@@ -65,9 +67,12 @@ def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scr
                 row = corners[corner]
                 row[0], row[1], row[2], row[3], row[4], row[5] = ox, oy, oz, dx, dy, dz
             mode, side, layer = follow(tables.space, tables.bounds, corners, cells)
-            if mode == PLANE and plain:
+            sun = 0.0
+            if mode == PLANE and plain and sunny:
+                sun = sun_on_tile(tables, lit, corners, cells[4:], side, layer)
+            if mode == PLANE and plain and sun >= 0:
                 draw_plane(
-                    tables, side_px, pose, rays, lamp, memo[4], face, cells, side, layer,
+                    tables, side_px, pose, rays, lamp, memo[4], face, cells, sun, side, layer,
                     u_tile, u_end, v_tile, v_end, out.wanted & COLOUR != 0,
                     out.wanted & SEMANTIC != 0, out.wanted & INSTANCE != 0, out,
                 )  # fmt: skip
@@ -78,6 +83,30 @@ def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scr
                         tables, side_px, pose, rays, spread, lamp, memo, cells, mode, side, layer,
                         u, v, out,
                     )  # fmt: skip
+
+
+@inlined
+def sun_on_tile(tables, lit, corners, cells, side, layer):
+    """Return the cosine of the sun on a tile's plane, 0 in shadow, -1 where pixels differ.
+
+    The rays from the four corners' places towards the sun are a bundle like any other. ``corners``
+    are the tile's rays; they become those towards the sun.
+    """
+    nx, ny, nz = normal_of(tables, -1, side)
+    cosine = nx * lit.sun_x + ny * lit.sun_y + nz * lit.sun_z
+    if cosine <= 0:
+        return 0.0
+    axis = side // 2
+    for corner in range(4):
+        row = corners[corner]
+        t = (layer + side % 2 - row[axis]) / row[axis + 3]
+        row[0], row[1], row[2] = row[0] + t * row[3], row[1] + t * row[4], row[2] + t * row[5]
+        row[axis] = layer + side % 2 + (OFF if side % 2 else -OFF)
+        row[3], row[4], row[5] = lit.sun_x, lit.sun_y, lit.sun_z
+    mode, _, _ = follow(tables.space, tables.bounds, corners, cells)
+    if mode == ALONE:
+        return -1.0
+    return cosine if mode == NOTHING else 0.0
 
 
 @inlined

@@ -22,13 +22,14 @@ FACE_NUMBERS = 22
 
 @lean
 def draw_plane(
-    tables, side_px, pose, rays, lamp, scale, face, cells, side, layer, u_tile, u_end, v_tile,
+    tables, side_px, pose, rays, lamp, scale, face, cells, sun, side, layer, u_tile, u_end, v_tile,
     v_end, with_colour, with_semantic, with_instance, out,
 ):  # fmt: skip
     """Draw a tile of a pinhole camera; arguments as in ``draw_rows``, and what its tile has found.
 
-    ``scale`` is blocks a metre, ``face`` float64 [FACE_NUMBERS] is the band's own. For a sun or a
-    light at the camera, which differ from pixel to pixel, ``render.pixels`` has to do it.
+    ``scale`` is blocks a metre, ``face`` float64 [FACE_NUMBERS] is the band's own, ``sun`` the
+    cosine of the sun on all of the tile, or 0. Where the sun, or a light at the camera, differs
+    from pixel to pixel, ``render.pixels`` has to do it.
     """
     axis = side // 2
     p = 1 if axis == 0 else 0
@@ -55,7 +56,7 @@ def draw_plane(
                 i = layer if axis == 0 else cell_p
                 j = layer if axis == 1 else (cell_p if axis == 0 else cell_q)
                 k = layer if axis == 2 else cell_q
-                texture, index = face_of_cell(tables, lamp, face, side, i, j, k, with_colour)
+                texture, index = face_of_cell(tables, lamp, face, sun, side, i, j, k, with_colour)
                 semantic, instance = tables.semantic[index], tables.instance[index]
             length = np.sqrt(x * x + y * y + 1.0)
             out.depth[v, u], out.distance[v, u] = t, t * length
@@ -93,7 +94,7 @@ def draw_plane(
 
 
 @lean
-def face_of_cell(tables, lamp, face, side, i, j, k, with_colour):
+def face_of_cell(tables, lamp, face, sun, side, i, j, k, with_colour):
     """Fill ``face`` with what belongs to one face of a cell; return its texture and its index."""
     first, shape = tables.window[0], tables.window[1]
     index = np.int32(((i - first[0]) * shape[1] + j - first[1]) * shape[2] + k - first[2])
@@ -123,6 +124,9 @@ def face_of_cell(tables, lamp, face, side, i, j, k, with_colour):
         face[4 * channel], face[4 * channel + 1] = c00, c10 - c00
         face[4 * channel + 2], face[4 * channel + 3] = c01 - c00, c11 - c10 - c01 + c00
         face[19 + channel] = tables.tints[n, side, channel]
+    face[0] += sun * lamp.lit.sun_r
+    face[4] += sun * lamp.lit.sun_g
+    face[8] += sun * lamp.lit.sun_b
     p = 1 if axis == 0 else 0
     q = 1 if axis == 2 else 2
     for row in range(2):

@@ -242,11 +242,10 @@ def first_hit(
         )
         if kind == OUTSIDE:
             return 0.0, 0, 0, 0, NO_FACE, -1
+        if kind == FULL and face != NO_FACE and t > after:
+            return t, i, j, k, face, -1
         until, a, b, c, ahead = leave_cell(i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz)
-        if kind == FULL:
-            if face != NO_FACE and t > after:
-                return t, i, j, k, face, -1
-        elif kind == BOXES:
+        if kind == BOXES:
             near, side, element = meet_cell(
                 tables.looks, tables.look_start, tables.refs, tables.boxes, tables.traits,
                 tables.turns, tables.layers, tables.uv, tables.texels, tables.translucent, side_px,

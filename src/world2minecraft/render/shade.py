@@ -32,7 +32,7 @@ from world2minecraft.render.tables import (
 MEMO = 20  # Numbers; see ``find_light``.
 MOST_GLASS = 32  # Panes that one ray goes through.
 MOST_TEXELS = 2.25  # For a pixel, before the next mip level takes over.
-_OFF = 1e-5  # Blocks: how far before a surface a ray to the sun begins.
+OFF = 1e-5  # Blocks: how far before a surface a ray to the sun begins.
 _NEAR_EDGE = 1e-3  # Blocks: a face so near its cell's boundary is lit from beyond it.
 
 
@@ -136,7 +136,7 @@ def sun_on(tables, side_px, lit, turn, side, gx, gy, gz):
     cosine = nx * lit.sun_x + ny * lit.sun_y + nz * lit.sun_z
     if cosine <= 0:
         return 0.0
-    free = sun_reaches(tables, side_px, lit, gx + _OFF * nx, gy + _OFF * ny, gz + _OFF * nz)
+    free = sun_reaches(tables, side_px, lit, gx + OFF * nx, gy + OFF * ny, gz + OFF * nz)
     return cosine if free else 0.0
 
 
