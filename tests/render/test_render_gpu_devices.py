@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from gpu_for_tests import CAMERA, adapter_name
+from gpu_for_tests import CAMERA, adapter_name, assert_alike
 from scenes import random_pose, random_volume
 
 from world2minecraft.errors import MissingExtraError, UnknownNameError
@@ -163,7 +163,7 @@ def test_both_devices_are_asked_in_the_same_words(scene, monkeypatch):
     assert renderers[1].name
     for renderer in renderers:
         (picture,) = renderer.render_many(CAMERA, [pose], samples=2)
-        assert np.array_equal(picture.block_index, truth.block_index)
+        assert_alike(picture, truth)
         assert (renderer.render_parallel(9.0, (20, 24), pose).face == flat.face).mean() > 0.99
         renderer.update(scene)
         renderer.close()

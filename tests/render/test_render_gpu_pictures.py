@@ -14,6 +14,7 @@ from world2minecraft.coordinates import look_at
 from world2minecraft.render import LookLight, prepare_scene, render_parallel, render_volume
 from world2minecraft.render.gpu import GpuRenderer, slots
 from world2minecraft.render.lamps import NEUTRAL
+from world2minecraft.render.live_scene import LiveScene
 
 LIGHTS = {
     "day": LookLight(),
@@ -173,6 +174,19 @@ def test_an_update_shows_the_new_blocks():
     gpu.update(other)
     assert_alike(gpu.render(CAMERA, poses[0]), render_volume(other, CAMERA, poses[0]))
     gpu.close()
+
+
+def test_blocks_set_in_a_live_scene_are_there_after_an_update():
+    rng = np.random.default_rng(13)
+    volume = random_volume(rng)
+    live, pose = LiveScene(volume), random_pose(rng, volume)
+    gpu = gpu_of(live.scene)
+    cells = np.argwhere(volume.states == 0)[::3]
+    live.set_blocks(cells, ["minecraft:sea_lantern"] * len(cells), semantic=7)
+    gpu.update(live.scene)
+    ours = gpu.render(CAMERA, pose, outputs=EVERYTHING)
+    assert (ours.semantic == 7).any()
+    assert_alike(ours, render_volume(live.scene, CAMERA, pose, outputs=EVERYTHING))
 
 
 def test_a_lost_device_is_opened_anew_and_the_pictures_go_on():

@@ -74,14 +74,19 @@ def packed(scene: BlockScene) -> PackedScene:
 
 
 def bytes_of(scene: BlockScene) -> dict[str, int]:
-    """Return how many bytes the buffers of a scene take, near enough, before they are made."""
+    """Return how many bytes the buffers of a scene take, before they are made."""
     tables = scene.tables
+    words = (
+        3 * len(tables.bounds) + len(tables.look_start) + len(tables.refs)
+        + ELEMENT_WORDS * len(tables.boxes)
+        + TURN_WORDS * int((tables.traits[:, TURN] >= 0).sum()) + 1
+    )  # fmt: skip
     return {
         "cells": 4 * tables.space.size,
-        "light": 2 * tables.light.size,
-        "tables": 4 * (3 * len(tables.bounds) + ELEMENT_WORDS * len(tables.boxes)),
+        "light": 4 * ((tables.light.size + 1) // 2),
+        "tables": 4 * words,
         "texels": tables.texels.size,
-        "labels": 4 * len(tables.semantic),
+        "labels": 4 * (len(tables.semantic) + len(tables.thing_semantic)),
     }
 
 
