@@ -7,8 +7,9 @@ their block, and those of display entities, are tested against every ray.
 
 The rules: a surface is the face by which a ray enters an element from outside; an element that
 holds the camera is not seen; a face without texture is not there; a texel with alpha under 128 is a
-hole unless the texture is translucent; of two at one place the later listed counts; between two
-blocks of one state whose model is a see-through cube, leaves apart, there is no face.
+hole, unless the texture is translucent or the block is glass, whose clear parts count; of two at
+one place the later listed counts; between two blocks of one state whose model is a see-through
+cube, leaves apart, there is no face.
 """
 
 from dataclasses import dataclass, replace
@@ -113,15 +114,33 @@ def cast(volume: BlockVolume, looks: LookSource, origin: np.ndarray, rays: np.nd
         for element in filter(reaches_out, model):
             for cell in np.argwhere(volume.states == row):
                 number = np.ravel_multi_index(cell, volume.states.shape)
-                depth, normal = meet(element, looks, origin - cell, rays)
+                own = looks_of(volume.palette[row], looks)
+                depth, normal = meet(element, own, origin - cell, rays)
                 hits.keep_nearer(every, depth, normal, number, -1)
     for number, cube in enumerate(display_cubes(volume.entities)):
         turn = cube.cube_to_world.copy()
         turn[:3, 3] -= volume.corner
         for element in _elements(looks, cube.state):
-            depth, normal = meet(element, looks, origin, rays, turn)
+            depth, normal = meet(element, looks_of(cube.state, looks), origin, rays, turn)
             hits.keep_nearer(every, depth, normal, -1, number)
     return hits
+
+
+class Panes:
+    """Looks whose textures have no holes: those of glass."""
+
+    def __init__(self, looks: LookSource):
+        self._looks = looks
+        self.model = looks.model
+
+    def texture(self, name: str) -> Texture | None:
+        texture = self._looks.texture(name)
+        return texture and replace(texture, translucent=True)
+
+
+def looks_of(state: str, looks: LookSource) -> LookSource:
+    """Return what the textures of a state are taken from."""
+    return Panes(looks) if "glass" in state.partition("[")[0] else looks
 
 
 def _elements(looks: LookSource, state: str) -> tuple[Element, ...]:
@@ -206,7 +225,8 @@ def _walk(volume: BlockVolume, looks: LookSource, models, origin, rays, hits: Hi
             here = np.flatnonzero(states == row)
             number = np.ravel_multi_index(tuple(cell[here].T), tuple(shape))
             for element in models[row]:
-                depth, normal = meet(element, looks, origin - cell[here], rays[active[here]])
+                own = looks_of(volume.palette[row], looks)
+                depth, normal = meet(element, own, origin - cell[here], rays[active[here]])
                 if joined[row]:
                     depth[_faces_its_like(volume, cell[here], normal)] = np.inf
                 hits.keep_nearer(active[here], depth, normal, number, -1)

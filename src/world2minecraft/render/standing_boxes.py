@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from world2minecraft.minecraft.displays import display_cubes
-from world2minecraft.render.bake import Baker, element_corners, reaches_out
+from world2minecraft.render.bake import Baker, element_corners, is_pane, reaches_out
 from world2minecraft.render.elements import BlockModel, Element, LookSource
-from world2minecraft.render.tables import ABSOLUTE, owner_of_cell
+from world2minecraft.render.tables import ABSOLUTE, PANE, owner_of_cell
 from world2minecraft.types import BlockVolume
 
 MOST_THINGS = 200_000  # A house in display style has some thousands.
@@ -42,6 +42,7 @@ class Guest:
 
     element: Element
     owner: int
+    flags: int = 0  # of ``SceneTables.traits``, beside those that the baker finds
 
     @property
     def matrix(self) -> np.ndarray:
@@ -66,7 +67,8 @@ def standing_things(volume: BlockVolume, looks: LookSource) -> tuple[StandingThi
             matrix = to_grid @ cube.cube_to_world
             if element.turn is not None:
                 matrix = matrix @ element.turn
-            guests.append(Guest(replace(element, turn=matrix), len(semantic)))
+            flags = PANE * is_pane(cube.state)
+            guests.append(Guest(replace(element, turn=matrix), len(semantic), flags))
         semantic.append(cube.class_id)
         instance.append(cube.instance)
     things = StandingThings(np.array(semantic, np.uint8), np.array(instance, np.uint16))
@@ -134,7 +136,7 @@ def list_guests(guests: Sequence[Guest], shape: tuple[int, ...], baker: Baker) -
     lists: GuestLists = {}
     for guest in guests:
         cells = cells_of(guest.element, shape)
-        number = baker.add(guest.element, ABSOLUTE, guest.owner) if len(cells) else -1
+        number = baker.add(guest.element, ABSOLUTE | guest.flags, guest.owner) if len(cells) else -1
         for cell in map(tuple, cells.tolist()):
             lists.setdefault(cell, []).append(number)
     return lists
