@@ -10,6 +10,7 @@ import numpy as np
 from world2minecraft.jit import njit
 from world2minecraft.minecraft.rules.flood import SHUT, SOLID, steps_of
 from world2minecraft.render.light.field import LightField
+from world2minecraft.render.light.flood import BRIGHTEST, units
 from world2minecraft.render.light.look import LookLight
 
 # The light that surfaces shall have by day, at night under lamps, at night without: a night stays
@@ -29,7 +30,8 @@ def scene_exposure(field: LightField, look: LookLight, eyes: np.ndarray | None =
         look: how it is lit; its exposure is returned where it names one. Only ``shader`` is
             exposed; the others give 1.
         eyes: float [N, 3], where cameras stand, in cells of the volume: only what lies around
-            them counts. None for all places where one can stand.
+            them counts, and of a volume that is seen from outside the open air. None for all
+            places where one can stand.
     """
     if look.exposure is not None:
         return look.exposure
@@ -38,7 +40,7 @@ def scene_exposure(field: LightField, look: LookLight, eyes: np.ndarray | None =
     cells = standing_cells(field)
     if eyes is not None:
         near = _around(field, np.atleast_2d(np.asarray(eyes, np.float64)))
-        cells = near if len(near) else cells
+        cells = near if len(near) else _outdoors(field, cells)
     if not len(cells):
         return 1.0
     sky, lamps = _surface_light(field, look, cells)
@@ -77,6 +79,13 @@ def standing_cells(field: LightField) -> np.ndarray:
     below[:, 1:] = words[:, :-1] & (0b1111 << 12 | SOLID) != 0
     below[:, 1] = False  # The margin holds nobody.
     return np.flatnonzero(free & below)
+
+
+def _outdoors(field: LightField, cells: np.ndarray) -> np.ndarray:
+    """Return those of some flat cells that have the whole light of the sky, or all, if none has."""
+    sky = field.sky.reshape(-1)[cells]
+    open_air = cells[sky >= units(BRIGHTEST, field.reach)]
+    return open_air if len(open_air) else cells
 
 
 def _around(field: LightField, eyes: np.ndarray) -> np.ndarray:
