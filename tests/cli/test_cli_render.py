@@ -211,6 +211,13 @@ def test_a_scene_without_labels_keeps_its_scale(build, tmp_path, capsys):
          "no such light: preset may be shader, game, neutral, not 'disco'"),
         (["--exposure", "0"], "no such light: exposure may be 0.01 to 100, not 0.0"),
         (["--device", "tpu"], "--device is auto, cpu or gpu, not 'tpu'"),
+        (["--jobs", "0"], "--jobs is 1 to 256, not 0"),
+        (["--jobs", "2", "--photo"],
+         "--jobs is for plain pictures on the CPU, not for --photo"),
+        (["--jobs", "2", "--device", "gpu"],
+         "--jobs is for plain pictures on the CPU, not for --device gpu"),
+        (["--jobs", "2", "--turntable", "--out", "t.gif"],
+         "a turntable is drawn by one process; --jobs is for the other views"),
         (["--photo-samples", "0"], "--photo-samples is 1 to 4,096, not 0"),
     ],
 )  # fmt: skip
@@ -301,6 +308,23 @@ def test_a_pack_comes_before_our_own_textures(schem, tmp_path, capsys):
     capsys.readouterr()
     assert render(schem, "--pack", "nothing") == 3
     assert "nothing" in capsys.readouterr().err
+
+
+def test_processes_write_the_bytes_of_one(build, tmp_path):
+    words = ("--tour", "--frames", "8", "--outputs", "rgb,depth,state")
+    assert render(build, *words, "--out", "one") == 0
+    assert render(build, *words, "--out", "two", "--jobs", "2") == 0
+    first = {path.name: path.read_bytes() for path in (tmp_path / "one").iterdir()}
+    second = {path.name: path.read_bytes() for path in (tmp_path / "two").iterdir()}
+    assert len(first) == 3 * 8 + 2
+    assert first == second
+
+
+def test_what_cannot_be_written_ends_the_command(build, tmp_path, capsys):
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "000001.png").mkdir()
+    assert render(build, "--tour", "--frames", "3", "--out", "full") == 3
+    assert "000001.png" in capsys.readouterr().err
 
 
 class FakePhoto:

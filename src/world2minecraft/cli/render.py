@@ -1,6 +1,7 @@
 """``w2m render``: pictures of any build: from the game's poses, from outside, on a walk within."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
+from contextlib import closing
 from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from world2minecraft.render.views import DrawOptions, Shot
     from world2minecraft.types import BlockVolume
 
+MOST_WRITERS = 16  # Each holds a picture.
 EXAMPLES = """\
 w2m render OUT                                        from where the player starts
 w2m render house.schem --out house.png                a schematic, from outside
@@ -69,6 +71,7 @@ def run(
     photo_samples: option.PhotoSamples = 16,
     device: option.Device = "auto",
     threads: option.Threads = None,
+    jobs: option.Jobs = 1,
 ) -> None:
     """Draw a build, without the game, a display or a graphics card.
 
@@ -94,7 +97,7 @@ def run(
     target = target_of(out, source.resolve().stem, view.kind, wanted, files, count)
     look = Look(light, hour, brightness, exposure, sun_shadow, samples, textures,
                 tuple(pack or ()), photo, photo_samples, device,
-                option.threads_of(threads))  # fmt: skip
+                option.threads_of(threads), jobs)  # fmt: skip
     look.light_of(view.kind)  # What is out of range is said before any work.
     draw(read_source(source, option.box_of(box)), view, choice, target, look)
 
@@ -121,6 +124,8 @@ def draw(
     check_pixels(cameras, options.samples)
     if look.photo and view.kind == "turntable":
         raise UsageError("a turntable is not traced; --orbit --photo is")
+    if look.jobs > 1 and view.kind == "turntable":
+        raise UsageError("a turntable is drawn by one process; --jobs is for the other views")
     if look.photo:
         photo_module()  # What is not there is said before any work.
     looks = look.looks()
@@ -141,6 +146,8 @@ def draw(
 def _draw_plan(
     plan: Plan, writer: Writer, look: Look, looks: Looks, options: "DrawOptions", progress: Progress
 ) -> None:
+    from world2minecraft.render.batch.ahead import SPARE, done_behind
+
     total = len(plan.shots) * (look.photo_samples if look.photo else 1)
     done = 0
 
@@ -151,14 +158,19 @@ def _draw_plan(
             progress("render", done, total)
 
     progress("render", 0, total)
-    for shot, picture, volume in _pictures(plan, look, looks, options, step):
-        writer.picture(shot, picture, volume)
+    # Each picture is written while the next ones are drawn; a moving one takes them one by one.
+    most = 1 if writer.target.medium == "moving" else MOST_WRITERS
+    writers = min(max(look.threads, look.jobs), most)
+    with closing(_pictures(plan, look, looks, options, step)) as pictures:
+        written = (writer.later(*one) for one in pictures)
+        for _ in done_behind(written, lambda write: write(), writers, writers + SPARE):
+            pass
     progress("render", total, total)
 
 
 def _pictures(
     plan: Plan, look: Look, looks: Looks, options: "DrawOptions", step: Callable[[int], None]
-) -> Iterator[tuple["Shot", "Picture", "BlockVolume"]]:
+) -> Generator[tuple["Shot", "Picture", "BlockVolume"], None, None]:
     """Take the pictures of a plan; each volume that is seen is made ready once at a time."""
     from world2minecraft.render import prepare_scene
     from world2minecraft.render.views import exposed

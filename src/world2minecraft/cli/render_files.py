@@ -1,6 +1,6 @@
 """What ``w2m render`` writes: pictures, one or a folder or moving, and the poses beside them."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -102,18 +102,23 @@ class Writer:
         with moving_picture(self.target.path, rate_hz) as self._moving:
             yield
 
-    def picture(self, shot: "Shot", picture: "Picture", volume: "BlockVolume") -> None:
-        """Write all layers of a picture."""
+    def later(self, shot: "Shot", picture: "Picture", volume: "BlockVolume") -> Callable[[], None]:
+        """Name the files of a picture, and return what writes all its layers, on any thread."""
         from world2minecraft.files import write_bytes
         from world2minecraft.render.output import LAYERS
 
-        if self._moving is not None:
-            self.colour(shot, picture.colour)
-            return
+        moving, choice = self._moving, self.target.choice
+        if moving is not None:
+            self._line(shot, {"rgb": self.target.path.name})
+            return lambda: moving(picture.colour)
         files = self._files()
-        for name, path in files.items():
-            write_bytes(path, LAYERS[name].make(picture, volume, self.target.choice))
         self._line(shot, {name: path.name for name, path in files.items()})
+
+        def write() -> None:
+            for name, path in files.items():
+                write_bytes(path, LAYERS[name].make(picture, volume, choice))
+
+        return write
 
     def colour(self, shot: "Shot", colour: "np.ndarray | None") -> None:
         """Write a picture of which there is colour alone."""

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 TEXTURES_PX = (16, 32, 64, 128)
 MOST_SAMPLES = 4
+MOST_JOBS = 256
 DEVICES = ("auto", "cpu", "gpu")
 MOST_PHOTO_SAMPLES = 4096
 PHOTO = "world2minecraft.render.photo"  # Loaded late: it compiles kernels of its own.
@@ -73,6 +74,7 @@ class Look:
     photo_samples: int = 16
     device: str = "auto"
     threads: int = 1
+    jobs: int = 1
 
     def __post_init__(self):
         if self.samples is not None and not 1 <= self.samples <= MOST_SAMPLES:
@@ -85,6 +87,11 @@ class Look:
             )
         if self.device not in DEVICES:
             raise UsageError(f"--device is auto, cpu or gpu, not {self.device!r}")
+        if not 1 <= self.jobs <= MOST_JOBS:
+            raise UsageError(f"--jobs is 1 to {MOST_JOBS}, not {self.jobs}")
+        if self.jobs > 1 and (self.photo or self.device == "gpu"):
+            other = "--photo" if self.photo else "--device gpu"
+            raise UsageError(f"--jobs is for plain pictures on the CPU, not for {other}")
 
     def light_of(self, kind: "Kind") -> "LookLight":
         """Return the light of a kind of view: a turntable stands in an even light of its own.
@@ -116,7 +123,7 @@ class Look:
         # From above one sees no sky; a build stands out best on paper, but not at night.
         paper = PAPER if kind in ("orbit", "turntable") and self.hour is None else None
         light, samples = self.light_of(kind), self.samples or usual
-        return DrawOptions(outputs, light, samples, self.threads, paper, self.device)
+        return DrawOptions(outputs, light, samples, self.threads, paper, self.device, self.jobs)
 
     def looks(self) -> "Looks":
         """Return the user's packs, the last first, and then our own looks.

@@ -115,6 +115,9 @@ Photo = Annotated[
 ]
 PhotoSamples = Annotated[int, _option("--photo-samples", text="Paths a pixel of --photo.")]
 Device = Annotated[str, _option("--device", metavar="auto|cpu|gpu", text="What draws.")]
+Jobs = Annotated[
+    int, _option("--jobs", metavar="N", text="Processes that draw a folder or a video; 1.")
+]
 Threads = Annotated[int | None, _option("--threads", text="How many; as many as there are cores.")]
 
 

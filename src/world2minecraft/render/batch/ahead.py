@@ -16,10 +16,11 @@ from typing import Any, TypeVar
 Thing = TypeVar("Thing")
 Made = TypeVar("Made")
 
+SPARE = 2  # Things that may wait beside those that are made or written.
 LOOK_S = 0.05  # How often a thread that waits looks whether it shall stop.
 
 
-def ahead_of(things: Iterator[Thing], most: int = 2) -> Iterator[Thing]:
+def ahead_of(things: Iterator[Thing], most: int = SPARE) -> Iterator[Thing]:
     """Give the things of an iterator, which a thread takes up to ``most`` ahead.
 
     Where the user stops early the thread ends, after the thing that it is at, and the iterator is

@@ -1,6 +1,7 @@
 """A stream of pictures: those that come are drawn while those that went are written."""
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterator, Sequence
+from contextlib import closing
 from dataclasses import replace
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 from world2minecraft.coordinates import apply
 from world2minecraft.errors import UsageError
 from world2minecraft.progress import Progress, silent
-from world2minecraft.render.batch.ahead import ahead_of, done_behind
+from world2minecraft.render.batch.ahead import SPARE, ahead_of, done_behind
 from world2minecraft.render.batch.pool import MOST_WORKERS, RenderPool
 from world2minecraft.render.lamps import DAY, Paper, exposure_of
 from world2minecraft.render.light import LookLight
@@ -17,10 +18,10 @@ from world2minecraft.render.picture import DEFAULT_OUTPUTS, Picture, render_volu
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.views.poses import Shot
 
+Pictures = Generator[tuple[int, Picture], None, None]
 Write = Callable[[int, Shot, Picture], Any]
 
 MOST_WRITERS = 256
-SPARE = 2  # Pictures that may wait beside those that are drawn or written.
 
 
 def render_stream(
@@ -81,7 +82,7 @@ def render_stream(
 
 
 def _stream(
-    pictures: Iterator[tuple[int, Picture]],
+    pictures: Pictures,
     shots: Sequence[Shot],
     write: Write | None,
     encode_threads: int,
@@ -97,14 +98,15 @@ def _stream(
             return given(one[0], shots[one[0]], one[1])
 
         results = done_behind(pictures, work, encode_threads, encode_threads + SPARE)
-    for done, result in enumerate(results, 1):
-        progress("render", done, len(shots))
-        yield result
+    with closing(pictures):
+        for done, result in enumerate(results, 1):
+            progress("render", done, len(shots))
+            yield result
 
 
 def _one_by_one(
     scene: BlockScene, shots: Sequence[Shot], threads: int, words: dict[str, Any]
-) -> Iterator[tuple[int, Picture]]:
+) -> Pictures:
     for number, shot in enumerate(shots):
         camera, pose = shot.camera, shot.camera_to_room
         yield number, render_volume(scene, camera, pose, threads=threads, **words)
@@ -112,7 +114,7 @@ def _one_by_one(
 
 def _by_processes(
     scene: BlockScene, shots: Sequence[Shot], jobs: int, words: dict[str, Any]
-) -> Iterator[tuple[int, Picture]]:
+) -> Pictures:
     cameras = [shot.camera for shot in shots]
     poses = [shot.camera_to_room for shot in shots]
     with RenderPool(scene, min(jobs, len(shots))) as pool:

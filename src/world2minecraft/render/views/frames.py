@@ -16,6 +16,7 @@ import numpy as np
 
 from world2minecraft.coordinates import apply
 from world2minecraft.errors import UsageError
+from world2minecraft.render.batch.pool import RenderPool
 from world2minecraft.render.lamps import DAY, Paper, exposure_of
 from world2minecraft.render.light import LookLight
 from world2minecraft.render.picture import Picture, render_volume
@@ -24,13 +25,15 @@ from world2minecraft.render.views.poses import Shot
 from world2minecraft.types import Camera
 
 GPU = "world2minecraft.render.gpu"  # Loaded late: most machines have no use for it.
+LEAST_A_JOB = 4  # Pictures: a process takes some seconds to begin.
 
 
 @dataclass(frozen=True)
 class DrawOptions:
     """How pictures are drawn; each means what it means in ``render_volume``.
 
-    ``device`` is ``cpu``, ``gpu``, or ``auto``: a graphics card where there is one.
+    ``device`` is ``cpu``, ``gpu``, or ``auto``: a graphics card where there is one. ``jobs`` says
+    how many processes draw at once (``render.batch``), each on one thread of the CPU.
     """
 
     outputs: tuple[str, ...] = ("colour",)
@@ -39,6 +42,7 @@ class DrawOptions:
     threads: int = 1
     background: Paper | None = None
     device: str = "cpu"
+    jobs: int = 1
 
 
 def frames(
@@ -48,6 +52,9 @@ def frames(
     options: DrawOptions | None = None,
 ) -> Iterator[Picture]:
     """Take the pictures of poses, in their order, one at a time.
+
+    Several jobs are begun only where each has a few pictures to draw, and their pictures share one
+    exposure.
 
     Args:
         scene: ``prepare_scene`` of a volume.
@@ -60,6 +67,13 @@ def frames(
     """
     how = options or DrawOptions()
     each = repeat(cameras) if isinstance(cameras, Camera) else cameras
+    if how.jobs > 1:
+        shots = list(zip(each, poses, strict=False))
+        jobs = min(how.jobs, len(shots) // LEAST_A_JOB)
+        if jobs > 1:
+            yield from _by_processes(scene, shots, replace(how, jobs=jobs))
+            return
+        each, poses = [camera for camera, _ in shots], [pose for _, pose in shots]
     with _drawing(scene, how) as draw:
         for camera, camera_to_room in zip(each, poses, strict=False):
             yield draw(
@@ -70,6 +84,23 @@ def frames(
                 samples=how.samples,
                 background=how.background,
             )
+
+
+def _by_processes(
+    scene: BlockScene, shots: Sequence[tuple[Camera, np.ndarray]], how: DrawOptions
+) -> Iterator[Picture]:
+    cameras, poses = [camera for camera, _ in shots], [pose for _, pose in shots]
+    with RenderPool(scene, how.jobs) as pool:
+        pictures = pool.render(
+            cameras,
+            poses,
+            outputs=how.outputs,
+            light=how.light,
+            samples=how.samples,
+            background=how.background,
+        )
+        for _, picture in pictures:
+            yield picture
 
 
 @contextmanager
