@@ -90,6 +90,16 @@ def test_poses_are_cut_into_tasks_of_one_size():
     assert list(runs_of([])) == []
 
 
+def test_jobs_may_be_shorter_than_a_worker_is_slow(volume, poses):
+    """A worker hears of a job, and of a scene, whose memory is already gone."""
+    scene = prepare_scene(volume)
+    with RenderPool(scene, 2) as pool:
+        for _ in range(20):
+            pool.update(scene)
+            assert len(list(pool.render(WIDE, poses[:1]))) == 1
+        assert len(list(pool.render(WIDE, poses))) == COUNT
+
+
 def test_what_is_made_of_pictures_is_made_by_the_workers(pool, poses):
     plain = [picture.colour.mean() for _, picture in pool.render(WIDE, poses)]
     made = list(pool.render(WIDE, poses, make=partial(mean_colour, 1.0)))

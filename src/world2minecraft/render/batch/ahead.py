@@ -6,7 +6,7 @@ where the next thing would.
 """
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from queue import Empty, Full, Queue
@@ -20,7 +20,7 @@ SPARE = 2  # Things that may wait beside those that are made or written.
 LOOK_S = 0.05  # How often a thread that waits looks whether it shall stop.
 
 
-def ahead_of(things: Iterator[Thing], most: int = SPARE) -> Iterator[Thing]:
+def ahead_of(things: Iterator[Thing], most: int = SPARE) -> Generator[Thing, None, None]:
     """Give the things of an iterator, which a thread takes up to ``most`` ahead.
 
     Where the user stops early the thread ends, after the thing that it is at, and the iterator is
@@ -67,7 +67,7 @@ def ahead_of(things: Iterator[Thing], most: int = SPARE) -> Iterator[Thing]:
 
 def done_behind(
     things: Iterator[Thing], work: Callable[[Thing], Made], threads: int, most: int
-) -> Iterator[Made]:
+) -> Generator[Made, None, None]:
     """Give what ``work`` makes of each thing, in order; threads do it while the next are taken.
 
     Args:

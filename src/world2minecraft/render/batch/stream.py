@@ -90,7 +90,7 @@ def _stream(
 ) -> Iterator[Any]:
     progress("render", 0, len(shots))
     if write is None:
-        results: Iterator[Any] = (picture for _, picture in ahead_of(pictures, SPARE))
+        results = ahead_of(pictures, SPARE)
     else:
         given = write
 
@@ -98,10 +98,10 @@ def _stream(
             return given(one[0], shots[one[0]], one[1])
 
         results = done_behind(pictures, work, encode_threads, encode_threads + SPARE)
-    with closing(pictures):
+    with closing(pictures), closing(results):
         for done, result in enumerate(results, 1):
             progress("render", done, len(shots))
-            yield result
+            yield result[1] if write is None else result
 
 
 def _one_by_one(

@@ -69,7 +69,7 @@ def serve(pipe: Connection) -> None:
             reply = desk.take(message)
             if reply is not None:
                 _send(pipe, reply)
-    except (EOFError, OSError):  # The parent is gone.
+    except (EOFError, ConnectionError):  # The parent is gone.
         return
     finally:
         desk.clear()
@@ -84,27 +84,27 @@ def _send(pipe: Connection, reply: Reply) -> None:
 
 
 class Desk:
-    """The memory that a worker has joined, and the job that it is at."""
+    """What a worker was told, and the memory that it has joined.
+
+    It joins memory with the first task that needs it: a job that others were quicker to finish is
+    gone, with its memory, before a slow worker hears of it.
+    """
 
     def __init__(self):
         """Begin with nothing."""
-        self._stage: Stage | None = None
+        self._scene: SceneMessage | None = None
         self._job: Job | None = None
-        self._scene: Block | None = None
-        self._slots: Block | None = None
+        self._stage: Stage | None = None
+        self._blocks: dict[str, Block] = {}
 
     def take(self, message: SceneMessage | Job | Task) -> Reply | None:
         """Do what a message says; return the answer to a task."""
         if isinstance(message, Task):
             return self._draw(message)
         if isinstance(message, SceneMessage):
-            self._stage = None
-            _close(self._scene)
-            self._scene = Block.join(message.plan)
-            self._stage = Stage(SceneTables(**self._scene.arrays()), message.side_px)
-            return None
-        _close(self._slots)
-        self._slots, self._job = Block.join(BlockPlan(message.slots, {})), message
+            self._scene, self._stage = message, None
+        else:
+            self._job = message
         return None
 
     def _draw(self, task: Task) -> Reply:
@@ -114,27 +114,35 @@ class Desk:
             return Reply(task.first, error=_sendable(error))
 
     def _made(self, task: Task) -> list[Any] | None:
-        job, slots, stage = self._job, self._slots, self._stage
-        if job is None or slots is None or stage is None:
+        job, scene = self._job, self._scene
+        if job is None or scene is None:
             raise WorkerError("a worker was given a task before its scene")
+        if self._stage is None:
+            tables = self._joined("scene", scene.plan).arrays()
+            self._stage = Stage(SceneTables(**tables), scene.side_px)
+        slots = self._joined("slots", BlockPlan(job.slots, {}))
         arrays = BatchArrays(**{name: slots.array(at) for name, at in task.places.items()})
         outputs = (*PICTURE_OUTPUTS, *job.outputs)
-        draw_views(stage, task.views, job.lamp, outputs, job.samples, 1, arrays)
+        draw_views(self._stage, task.views, job.lamp, outputs, job.samples, 1, arrays)
         if job.make is None:
             return None
         numbers = range(len(task.views.poses))
         return [job.make(task.first + number, arrays.picture(number)) for number in numbers]
 
+    def _joined(self, use: str, plan: BlockPlan) -> Block:
+        """Return the memory for a use; what was there for it before is let go."""
+        block = self._blocks.get(use)
+        if block is None or block.plan.name != plan.name:
+            if block is not None:
+                block.close()
+            block = self._blocks[use] = Block.join(plan)
+        return block
+
     def clear(self) -> None:
         """Let go of all memory."""
-        self._stage, self._job = None, None
-        _close(self._scene)
-        _close(self._slots)
-
-
-def _close(block: Block | None) -> None:
-    if block is not None:
-        block.close()
+        self._stage = None
+        for block in self._blocks.values():
+            block.close()
 
 
 def _sendable(error: Exception) -> Exception:
