@@ -95,9 +95,8 @@ def run(
     wanted = layers_named(outputs)
     count = frames if frames is not None else len(given) or None
     target = target_of(out, source.resolve().stem, view.kind, wanted, files, count)
-    look = Look(light, hour, brightness, exposure, sun_shadow, samples, textures,
-                tuple(pack or ()), photo, photo_samples, device,
-                option.threads_of(threads), jobs)  # fmt: skip
+    look = Look(light, hour, brightness, exposure, sun_shadow, samples, textures, tuple(pack or ()),
+                photo, photo_samples, device, option.threads_of(threads), jobs)  # fmt: skip
     look.light_of(view.kind)  # What is out of range is said before any work.
     draw(read_source(source, option.box_of(box)), view, choice, target, look)
 
