@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image
 
+from world2minecraft.render.lamps import NEUTRAL
 from world2minecraft.render.picture import render_volume
 from world2minecraft.render.scene import prepare_scene
 from world2minecraft.types import BlockVolume, Camera, Scan, View
 
 PAIRS = 6
 WIDTH_PX = 480
+SAMPLES = 2  # Rays across a pixel; light is even, so that colours compare with the photo's.
 AGREES_M = 0.25  # One block at the default scale.
 
 
@@ -42,7 +44,7 @@ def _pair(view: View, scan: Scan, scene) -> Pair:
         raise ValueError(f"view {view.name} has neither colour nor depth")
     small = camera.resized(WIDTH_PX, round(WIDTH_PX * camera.height_px / camera.width_px))
     camera_to_room = scan.scan_to_room @ view.camera_to_scan
-    picture = render_volume(scene, small, camera_to_room)
+    picture = render_volume(scene, small, camera_to_room, light=NEUTRAL, samples=SAMPLES)
     error_m, agrees = _depth_apart(view, scan, scene)
     photo = None
     if view.colour is not None:
