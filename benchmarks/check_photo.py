@@ -3,8 +3,8 @@
 ``python -m benchmarks.check_photo [--picture photo.png] [--truth 256]``
 
 A furnished block of flats (``render_scenes.small()``), from a place in one of its rooms, by day and
-at night by its lamps. ``trace`` and ``filter`` are CPU seconds at 640x480 and 16 samples, the least
-of three. ``grain`` and ``error`` are the root mean square, on the screen (0 to 255), of what
+at night by its lamps. ``trace`` and ``filter`` are CPU seconds at 640x480 and 16 samples, the less
+of two. ``grain`` and ``error`` are the root mean square, on the screen (0 to 255), of what
 16 samples differ by from many (``--truth``) at 160x120, before and after the filter.
 """
 
@@ -25,7 +25,7 @@ from world2minecraft.render.scene import BlockScene
 from world2minecraft.report.pictures import as_png
 
 HOURS = (("day", 10.0), ("night", 22.0))
-SEED = 3  # Of the place.
+SEED = 12  # Of the place.
 
 
 class Row(NamedTuple):
@@ -60,7 +60,7 @@ def cost(place: Place, hour: float) -> tuple[float, float]:
 
     def least(denoise: bool) -> float:
         seconds = []
-        for _ in range(3):
+        for _ in range(2):
             start = time.process_time()
             take(place, hour, 640, 16, lamps=lamps, denoise=denoise)
             seconds.append(time.process_time() - start)

@@ -46,7 +46,20 @@ def scrambled(x, seed):
     return reversed_bits(x)
 
 
-@lean
+@inlined
+def second_dimension(x):
+    """Return the second coordinate, its bits reversed, of a place in Sobol's sequence.
+
+    Pascal's triangle modulo 2 as a matrix of bits, applied by halves.
+    """
+    x = _U(x ^ _U(x >> _U(16)))
+    x = _U(x ^ _U(_U(x & _U(0xFF00FF00)) >> _U(8)))
+    x = _U(x ^ _U(_U(x & _U(0xF0F0F0F0)) >> _U(4)))
+    x = _U(x ^ _U(_U(x & _U(0xCCCCCCCC)) >> _U(2)))
+    return _U(x ^ _U(_U(x & _U(0xAAAAAAAA)) >> _U(1)))
+
+
+@inlined
 def pair(pixel_key, sample, use):
     """Return two numbers of [0, 1) for a use of a sample; uses count from 0.
 
@@ -61,12 +74,6 @@ def pair(pixel_key, sample, use):
         return first * _SHARE, mixed(first + key) * _SHARE
     # A nested shuffle of the order lets pairs of different uses know nothing of each other.
     place = scrambled(reversed_bits(_U(sample)), key)
-    column, row, step = reversed_bits(place), _U(0), _U(0x80000000)
-    while place != _U(0):
-        if place & _U(1):
-            row = _U(row ^ step)
-        step = _U(step ^ _U(step >> _U(1)))
-        place = _U(place >> _U(1))
-    x = scrambled(reversed_bits(column), mixed(key + _U(1)))
-    y = scrambled(reversed_bits(row), mixed(key + _U(2)))
+    x = scrambled(place, mixed(key + _U(1)))
+    y = scrambled(second_dimension(place), mixed(key + _U(2)))
     return x * _SHARE, y * _SHARE

@@ -15,8 +15,8 @@ from world2minecraft.render.photo.film import SAME_NORMAL, SAME_PLANE, SAME_PLAN
 
 SWEEPS = 5  # The last reaches 32 pixels to each side.
 GLOSS_SWEEPS = 3  # What is mirrored has edges of its own.
-GRAIN = 3.0  # Standard deviations of difference that still count as one light.
-_RELIEF = 5  # The cosine of two normals counts to the power of 2 ** _RELIEF.
+GRAIN = 4.0  # Standard deviations of difference that still count as one light.
+_RELIEF = 3  # The cosine of two normals counts to the power of 2 ** _RELIEF.
 _SOFT = 0.015  # Of the light: a difference that is nothing.
 
 Bands = Callable[[Callable[[tuple[int, int]], None], int], None]

@@ -28,7 +28,7 @@ from world2minecraft.render.ray import SOLID, begin, first_hit, ray_of_pixel, st
 from world2minecraft.render.tables import NO_FACE
 
 MOST_PANES = 12  # Of glass that one path passes.
-BRIGHTEST = 12.0  # What a path may bring that was not aimed, or by several bounces: it is cut.
+BRIGHTEST = 8.0  # What a path may bring that was not aimed, or by several bounces: it is cut.
 SEEN_GLOW = 2.2  # How bright a lamp itself is seen, beside its texture; what it gives is another.
 _OFF = 1e-4  # Cells: how far before a surface a new ray begins.
 _WIDE = 0.35  # How a beam widens that a matt surface sends on.
