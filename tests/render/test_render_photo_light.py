@@ -248,6 +248,26 @@ def test_a_mirror_of_metal_shows_what_lies_before_it():
     assert seen[0] > 0.2 and seen[1] < 0.1 * seen[0] and seen[2] < 0.1 * seen[0]
 
 
+@pytest.mark.parametrize("rough", [0, 90, 150])
+def test_gloss_seen_edge_on_brings_numbers(rough):
+    class Glossy(OneGrey):
+        def texture(self, name: str) -> Texture:
+            normal = np.full((2, 2, 3), 128, np.uint8)
+            normal[0, :, 0], normal[1, :, 1] = 250, 20
+            return Texture(
+                super().texture(name).colour,
+                normal=normal,
+                roughness=np.full((2, 2), rough, np.uint8),
+                metal=np.full((2, 2), 128, np.uint8),
+            )
+
+    blocks = [(8, 3, 8, 2), *((i, 1, 4, 3) for i in range(17)), (2, 2, 12, 2)]
+    scene = prepare_scene(volume(floor_with(*blocks), LAMP), Glossy(LAMP_LOOKS.kinds))
+    film = film_of(scene, (0.3, 1.1, 8.2), (16, 1.05, 9), sky_light(LookLight()), 64, 4)
+    assert np.isfinite(film.gloss).all() and np.isfinite(film.light).all()
+    assert film.gloss.max() > 0
+
+
 def test_photos_need_an_hour():
     with pytest.raises(ValueError, match="photos are lit by the hour: preset 'shader', not"):
         sky_light(LookLight(preset="neutral"))

@@ -310,6 +310,8 @@ def go_on(s):
     if pick < s.gloss_odds:
         width = width_of(s)
         share, density = follow_gloss(s, first, second)
+        if density <= 0:  # The mirror sends it into the surface.
+            return False
         s.last = density * s.gloss_odds
         s.sharp = 1 if width < SHARP_WIDTH else 0
         s.widens += 0.5 * width
