@@ -131,7 +131,7 @@ def test_many_poses_give_what_each_gives_alone_in_their_order():
     scene, poses = many()
     gpu = gpu_of(scene)
     alone = [gpu.render(CAMERA, pose) for pose in poses]
-    for form in (poses, iter(poses)):
+    for form in (poses, np.array(poses), iter(poses)):
         together = list(gpu.render_many(CAMERA, form))
         assert len(together) == len(alone)
         for one, other in zip(together, alone, strict=True):

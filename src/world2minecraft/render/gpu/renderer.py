@@ -1,7 +1,7 @@
 """Pictures by a compute shader: the scene goes to the GPU once; poses in, pictures out."""
 
 from collections import deque
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sized
 from dataclasses import dataclass, replace
 from itertools import islice
 from typing import NamedTuple
@@ -32,7 +32,7 @@ from world2minecraft.render.shade import Lamp
 from world2minecraft.types import Camera
 
 AHEAD = 2  # Submissions under way: one is drawn while another is read.
-MOST_FREE = 4  # Sets of buffers that are kept for the next call.
+MOST_FREE = AHEAD  # Sets of buffers that are kept for the next call.
 LOST = "{} stopped answering: {}; use --device cpu"
 
 
@@ -157,7 +157,7 @@ class GpuRenderer:
         scene = self._scene
         layout = layout_of(tuple(outputs), len(scene.things) > 0)
         ask = Ask(size, rays, spread, samples, layout)
-        plan = plan_of(ask, len(poses) if isinstance(poses, Sequence) else None)
+        plan = plan_of(ask, _count(poses))
 
         def jobs() -> Iterator[_Job]:
             for camera_to_room in poses:
@@ -271,6 +271,10 @@ def alike(jobs: Iterable[_Job], most: int) -> Iterator[list[_Job]]:
         lot.append(job)
     if lot:
         yield lot
+
+
+def _count(poses: object) -> int | None:
+    return len(poses) if isinstance(poses, Sized) else None
 
 
 def _views(jobs: list[_Job], scene: BlockScene, ask: Ask) -> np.ndarray:
