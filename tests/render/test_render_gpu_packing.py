@@ -12,6 +12,7 @@ from scenes import random_volume
 from test_render_cubes import random_entity
 
 from world2minecraft.render import prepare_scene
+from world2minecraft.render import tables as tables_module
 from world2minecraft.render.gpu import packing
 from world2minecraft.render.gpu.parameters import (
     AT_CORNERS,
@@ -134,6 +135,16 @@ def test_the_tone_is_a_table_of_light_and_a_table_of_the_screen():
     assert np.array_equal(words[AT_ENCODE:AT_CORNERS].view(np.uint8), lamp.tone.encode)
     assert np.array_equal(words[AT_CORNERS:].view(np.float32), lamp.corners.ravel())
     assert words.nbytes == TONE_BYTES
+
+
+def test_the_shader_knows_every_flag_of_an_element():
+    said = dict(re.findall(r"const ([A-Z_]+): u32 = (\d+)u;", shader_text()))
+    names = ("ABSOLUTE", "SEE_THROUGH", "UNSHADED", "JOINS", "EVEN", "PANE")
+    assert {name: int(said[name]) for name in names} == {
+        name: getattr(tables_module, name) for name in names
+    }
+    flags = {1 << bit for bit in range(6)}
+    assert {getattr(tables_module, name) for name in names} == flags
 
 
 def test_the_shader_names_each_binding_once_and_few_enough():

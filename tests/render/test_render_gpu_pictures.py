@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from benchmarks.odd_looks import OddLooks, odd_volume
+from benchmarks.render_scenes import poses as poses_in
+from benchmarks.render_scenes import storeys
 from gpu_for_tests import CAMERA, EVERYTHING, adapter_name, assert_alike
 from looks_for_tests import FewLooks
 from scenes import random_pose, random_volume, volume_of
@@ -15,6 +17,7 @@ from world2minecraft.render import LookLight, prepare_scene, render_parallel, re
 from world2minecraft.render.gpu import GpuRenderer, slots
 from world2minecraft.render.lamps import NEUTRAL
 from world2minecraft.render.live_scene import LiveScene
+from world2minecraft.render.looks import OwnLooks
 
 LIGHTS = {
     "day": LookLight(),
@@ -55,6 +58,16 @@ def test_models_that_nobody_would_make_equal_the_kernels(seed):
     gpu = gpu_of(scene)
     for _ in range(2):
         pose = random_pose(rng, volume)
+        how = {"outputs": EVERYTHING, "light": LIGHTS["sun"]}
+        assert_alike(gpu.render(CAMERA, pose, **how), render_volume(scene, CAMERA, pose, **how))
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_panes_and_furniture_in_our_own_looks_equal_the_kernels(seed):
+    volume = storeys((16, 8, 16), ground=0, furnished=0.2, seed=seed)
+    scene = prepare_scene(volume, OwnLooks(16))
+    gpu = gpu_of(scene)
+    for pose in poses_in(volume, 3, seed):
         how = {"outputs": EVERYTHING, "light": LIGHTS["sun"]}
         assert_alike(gpu.render(CAMERA, pose, **how), render_volume(scene, CAMERA, pose, **how))
 

@@ -5,6 +5,8 @@ const SEE_THROUGH: u32 = 2u;
 const UNSHADED: u32 = 4u;
 const JOINS: u32 = 8u;
 const EVEN: u32 = 16u;
+const PANE: u32 = 32u;
+const SOLID: u32 = 250u;  // Alpha of a texel of glass from which on nothing is seen behind.
 const TRANSLUCENT: i32 = 0x40000000;  // Of a layer's word.
 
 fn element_word(n: i32) -> u32 {
@@ -32,12 +34,28 @@ fn layer_of(n: i32, face: i32) -> i32 {
   return bitcast<i32>(tables[face_word(n, face)]);
 }
 
-fn is_glass(hit: Hit) -> bool {
-  if (hit.face == NO_FACE || hit.element < 0) {
+// Whether one sees through a hit: it is glass, and its texture is not solid there.
+fn is_clear(ray: Ray, hit: Hit) -> bool {
+  let n = hit.element;
+  if (hit.face == NO_FACE || n < 0) {
     return false;
   }
-  let layer = layer_of(hit.element, hit.face);
-  return layer >= 0 && (layer & TRANSLUCENT) != 0;
+  let layer = layer_of(n, hit.face);
+  if (layer < 0 || ((layer & TRANSLUCENT) == 0 && (flags_of(n) & PANE) == 0u)) {
+    return false;
+  }
+  let turn = turn_of(n);
+  let own = own_place(hit, n, turn, place_of(ray, hit, n, turn));
+  return (texel_of(layer, texture_place(n, hit.face, own), 0u, P.side_px) >> 24u) < SOLID;
+}
+
+// A place of a hit's cell in the frame of its element.
+fn own_place(hit: Hit, n: i32, turn: i32, place: vec3<f32>) -> vec3<f32> {
+  let own = place + vec3<f32>(hit.cell - anchor_of(n, hit.cell));
+  if (turn >= 0) {
+    return turned(turn, own, 1.0);
+  }
+  return own;
 }
 
 // The cell that an element's coordinates count from.
@@ -121,7 +139,7 @@ fn meet_cell(ray: Ray, cell: vec3<i32>, look: u32, after: f32, until: f32) -> Hi
       if (layer < 0 || ((flags & JOINS) != 0u && joined(cell, face))) {
         continue;
       }
-      if ((layer & TRANSLUCENT) == 0) {
+      if ((layer & TRANSLUCENT) == 0 && (flags & PANE) == 0u) {
         let at = texture_place(n, face, p + t * e);
         if ((texel_of(layer, at, 0u, P.side_px) >> 24u) < 128u) {
           continue;

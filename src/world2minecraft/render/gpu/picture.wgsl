@@ -98,7 +98,7 @@ fn look(view: View, at: vec2<f32>, scale: f32, down: f32, first_too: bool, colou
     if (hit.face == NO_FACE || pane == MOST_GLASS) {
       break;
     }
-    let glass = is_glass(hit);
+    let glass = is_clear(ray, hit);
     if (coloured) {
       let shaded = shade_hit(ray, hit, metre_px);
       let share = select(clear, clear * shaded.a, glass);

@@ -114,7 +114,7 @@ fn sun_reaches(cell: vec3<i32>, p: vec3<f32>) -> bool {
     if (at.face == NO_FACE) {
       return true;
     }
-    if (!is_glass(at)) {
+    if (!is_clear(ray, at)) {
       return false;
     }
     at.face = NO_FACE;
@@ -146,10 +146,7 @@ fn shade_hit(ray: Ray, hit: Hit, metre_px: f32) -> vec4<f32> {
   let flags = flags_of(n);
   let turn = turn_of(n);
   let p = place_of(ray, hit, n, turn);
-  var own = p + vec3<f32>(hit.cell - anchor_of(n, hit.cell));
-  if (turn >= 0) {
-    own = turned(turn, own, 1.0);
-  }
+  let own = own_place(hit, n, turn, p);
   let normal = normal_of(turn, hit.face);
   let face = main_face(turn, hit.face);
   let speed = length(ray.d);
