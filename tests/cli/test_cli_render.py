@@ -310,7 +310,10 @@ def test_a_pack_comes_before_our_own_textures(schem, tmp_path, capsys):
     assert "nothing" in capsys.readouterr().err
 
 
-def test_processes_write_the_bytes_of_one(build, tmp_path):
+def test_processes_write_the_bytes_of_one(build, tmp_path, monkeypatch):
+    import sys
+
+    monkeypatch.setattr(sys.modules["world2minecraft.render.views.frames"], "LEAST_A_JOB", 4)
     words = ("--tour", "--frames", "8", "--outputs", "rgb,depth,state")
     assert render(build, *words, "--out", "one") == 0
     assert render(build, *words, "--out", "two", "--jobs", "2") == 0

@@ -25,7 +25,7 @@ from world2minecraft.render.views.poses import Shot
 from world2minecraft.types import Camera
 
 GPU = "world2minecraft.render.gpu"  # Loaded late: most machines have no use for it.
-LEAST_A_JOB = 4  # Pictures: a process takes some seconds to begin.
+LEAST_A_JOB = 16  # Pictures: a process takes some seconds to begin.
 
 
 @dataclass(frozen=True)
