@@ -6,6 +6,7 @@ processes as there are cores: CPU is counted in the processes themselves, drawin
 apart, and extrapolated to 100,000 images on two cores. A slice of more images: W2M_SLICE=500.
 """
 
+import io
 import os
 import sys
 import tempfile
@@ -15,6 +16,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 
 from benchmarks.render_scenes import camera_of, poses, room, small
 from benchmarks.rows import Row
@@ -38,6 +40,7 @@ def run() -> list[Row]:
     rows = [row for side in SMALL_PX for row in _small(scene, side, looks)]
     count = int(os.environ.get("W2M_SLICE", SLICE))
     looks = np.array(poses(volume, count, 11))
+    rows += _encoders(scene, looks[:4])
     for workers in sorted({1, usual_workers()}):
         rows += _data_set("room", scene, looks, workers)
     flats = small()
@@ -93,6 +96,38 @@ def _data_set(name: str, scene: BlockScene, looks: np.ndarray, workers: int) -> 
         Row(f"{head}: by the clock", wall, "ms an image"),
         Row(f"{head}: {IMAGES:,} on {CORES} cores, extrapolated", hours, "h", BUDGET_H),
     ]
+
+
+def _encoders(scene: BlockScene, looks: np.ndarray) -> list[Row]:
+    """Return what a JPEG costs by those who can make one; simplejpeg where it is installed."""
+    camera = camera_of(WIDTH, HEIGHT)
+    pictures = [render_volume(scene, camera, one, outputs=("colour",)).colour for one in looks]
+
+    def pillow(picture: np.ndarray, subsampling: int) -> None:
+        Image.fromarray(picture).save(
+            io.BytesIO(), "JPEG", quality=QUALITY, subsampling=subsampling
+        )
+
+    works = {"Pillow, 4:4:4": partial(pillow, subsampling=0)}
+    works["Pillow, 4:2:0"] = partial(pillow, subsampling=2)
+    try:
+        from simplejpeg import encode_jpeg
+
+        for kind in ("444", "420"):
+            name = f"simplejpeg, {':'.join(kind)}"
+            works[name] = partial(encode_jpeg, quality=QUALITY, colorsubsampling=kind)
+    except ImportError:
+        pass
+    rows = []
+    for name, work in works.items():
+        least = np.inf
+        for _ in range(2 * ROUNDS):
+            start = time.process_time()
+            for picture in pictures:
+                work(picture)
+            least = min(least, 1000 * (time.process_time() - start) / len(pictures))
+        rows.append(Row(f"JPEG {WIDTH}x{HEIGHT} by {name}", least, "ms an image"))
+    return rows
 
 
 def write_jpeg(folder: str, number: int, picture: Picture) -> tuple[float, int]:
