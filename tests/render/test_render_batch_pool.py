@@ -114,7 +114,7 @@ def test_many_pictures_go_through_few_slots(pool, poses):
     next(stream)
     slot = WIDE.width_px * WIDE.height_px * (4 + 4 + 4 + 1 + 4 + 3)
     memory = SharedMemory(name=names_of(pool)[1])
-    assert memory.size <= (2 * 2 + 1) * slot + 4096
+    assert memory.size <= (2 * 2 + 1) * slot + (1 << 16)  # Whole pages.
     memory.close()
     assert len(list(stream)) == 3 * COUNT - 1
 
@@ -173,11 +173,15 @@ def test_a_killed_worker_is_told_and_nothing_is_left(volume, poses):
     stream = pool.render(WIDE, np.concatenate([poses] * 4))
     next(stream)
     names, processes = names_of(pool), [hand.process for hand in pool._hands]
-    os.kill(processes[1].pid, signal.SIGKILL if hasattr(signal, "SIGKILL") else signal.SIGTERM)
+    processes[1].kill()
     with pytest.raises(WorkerError) as caught:
         list(stream)
-    assert str(caught.value).startswith("worker 2 of 2 ended with code -9")
-    assert str(caught.value).endswith("perhaps because memory ran out: take fewer workers")
+    assert str(caught.value).startswith("worker 2 of 2 ended with code ")
+    if hasattr(signal, "SIGKILL"):
+        assert " with code -9" in str(caught.value)
+        assert str(caught.value).endswith(
+            "; it was killed, perhaps because memory ran out: take fewer workers"
+        )
     assert len(names) == 2
     assert all(is_gone(name) for name in names)
     assert not any(process.is_alive() for process in processes)
