@@ -9,6 +9,7 @@ import os
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 
 def user_cache_dir() -> Path:
@@ -60,6 +61,7 @@ import numba  # noqa: E402  # The cache folder must be named before numba is loa
 njit = numba.njit(cache=True, nogil=True)
 # For kernels that allocate nothing: without counting references to arrays, which at every call
 # inside takes as long as a ray. Such a kernel calls only its like. Division by 0 gives infinity.
-lean = numba.njit(cache=True, nogil=True, _nrt=False, error_model="numpy")
+_LEAN: dict[str, Any] = {"cache": True, "nogil": True, "_nrt": False, "error_model": "numpy"}
+lean = numba.njit(**_LEAN)
 # The same for small functions that a kernel calls for every ray: a call costs more than they do.
-inlined = numba.njit(cache=True, nogil=True, _nrt=False, error_model="numpy", forceinline=True)
+inlined = numba.njit(forceinline=True, **_LEAN)

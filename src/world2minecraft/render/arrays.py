@@ -33,7 +33,7 @@ class PixelArrays(NamedTuple):
 
     depth: np.ndarray  # float32 [H, W]
     distance: np.ndarray  # float32 [H, W]
-    index: np.ndarray  # int32 [H, W]
+    index: np.ndarray  # pyright: ignore[reportIncompatibleMethodOverride]  # int32 [H, W]
     face: np.ndarray  # uint8 [H, W]
     thing: np.ndarray  # int32 [H, W]
     opaque_depth: np.ndarray  # float32 [H, W]

@@ -88,7 +88,7 @@ class LiveScene:
         if not rows:
             return
         self._states[tuple(cells.T)] = rows
-        flat = np.ravel_multi_index(tuple(cells.T), self._states.shape)
+        flat = np.asarray(np.ravel_multi_index(tuple(cells.T), self._states.shape))
         self.scene.tables.semantic[flat] = semantic
         self.scene.tables.instance[flat] = instance
         touched = self._move_guests(cells, flat, states)

@@ -111,7 +111,7 @@ def turned_shade(nx, ny, nz, cosine, lit):
 
 def shades_of(lit: LitParameters) -> np.ndarray:
     """Return the shade of each face of a block, linear, float64 [6]."""
-    return np.array([turned_shade(*map(float, normal), 1.0, lit) for normal in FACE_NORMALS])
+    return np.array([turned_shade(x, y, z, 1.0, lit) for x, y, z in FACE_NORMALS.astype(float)])
 
 
 def corner_lights(lit: LitParameters) -> np.ndarray:
