@@ -276,14 +276,6 @@ def test_a_broken_scene_is_told(build, text, reason, capsys):
     assert reason in capsys.readouterr().err
 
 
-def test_a_tier_that_is_not_there_is_told(schem, monkeypatch, capsys):
-    from world2minecraft.cli import render_look
-
-    monkeypatch.setattr(render_look, "PHOTO", "world2minecraft.render.no_such_tier")
-    assert render(schem, "--photo") == 2
-    assert "error: --photo is not in this version; leave it out" in capsys.readouterr().err
-
-
 def test_a_block_of_a_mod_is_drawn_and_told(tmp_path, capsys):
     volume = room()
     palette = (*PALETTE[:2], "mymod:chair")
@@ -330,38 +322,14 @@ def test_what_cannot_be_written_ends_the_command(build, tmp_path, capsys):
     assert "000001.png" in capsys.readouterr().err
 
 
-class FakePhoto:
-    """A tier that takes a plain picture in passes, and says how it was asked."""
-
-    def __init__(self):
-        self.asked = []
-
-    def lamps_of(self, scene):
-        return "lamps"
-
-    def render_photo(self, scene, camera, camera_to_room, *, light, samples, threads, lamps,
-                     progress):  # fmt: skip
-        from world2minecraft.render import render_volume
-
-        self.asked.append((light.exposure, samples, threads, lamps))
-        progress(samples // 2, samples, 1.0)
-        picture = render_volume(scene, camera, camera_to_room)
-        object.__setattr__(picture, "exposure", 2.5)
-        return picture
-
-
-def test_photos_are_taken_by_their_tier_at_one_exposure(build, tmp_path, monkeypatch):
-    from world2minecraft.cli import render_look
-
-    tier = FakePhoto()
-    monkeypatch.setattr(render_look, "photo_module", lambda: tier)
-    monkeypatch.setattr("world2minecraft.cli.render.photo_module", lambda: tier)
-    words = ("--pose", POSE, "--pose", POSE, "--photo", "--photo-samples", "8", "--out", "p")
-    assert render(build, *words) == 0
-    assert tier.asked == [(None, 8, 1, "lamps"), (2.5, 8, 1, "lamps")]
-    assert sorted(path.name for path in (tmp_path / "p").glob("*.png")) == [
-        "000000.png", "000001.png",
-    ]  # fmt: skip
+def test_photos_are_traced_by_passes(build, tmp_path, capsys):
+    words = ("--orbit", "--frames", "2", "--photo", "--photo-samples", "5")
+    assert render(build, *words, "--out", "p") == 0
+    assert "render done" in capsys.readouterr().err
+    for name in ("000000.png", "000001.png"):
+        photo = image(tmp_path / "p" / name)
+        assert photo.shape == (36, 48, 3)
+        assert np.ptp(photo) > 40
 
 
 def test_a_device_draws_and_is_let_go(build, monkeypatch):

@@ -16,7 +16,7 @@ from world2minecraft.cli.render_files import (
     one_size,
     target_of,
 )
-from world2minecraft.cli.render_look import Look, Looks, photo_module, take
+from world2minecraft.cli.render_look import Look, Looks, take
 from world2minecraft.cli.render_shots import Plan, View, plan_of, settled, turntable_count, view_of
 from world2minecraft.cli.render_source import Source, read_source
 from world2minecraft.errors import UsageError
@@ -125,8 +125,6 @@ def draw(
         raise UsageError("a turntable is not traced; --orbit --photo is")
     if look.jobs > 1 and view.kind == "turntable":
         raise UsageError("a turntable is drawn by one process; --jobs is for the other views")
-    if look.photo:
-        photo_module()  # What is not there is said before any work.
     looks = look.looks()
     for note in [*source.notes, *plan.notes, *looks.notes(source.volume.palette)]:
         print(f"note: {note}")

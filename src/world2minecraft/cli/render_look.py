@@ -2,9 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from importlib import import_module
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING
 
 from world2minecraft.errors import UsageError
@@ -21,7 +19,6 @@ MOST_SAMPLES = 4
 MOST_JOBS = 256
 DEVICES = ("auto", "cpu", "gpu")
 MOST_PHOTO_SAMPLES = 4096
-PHOTO = "world2minecraft.render.photo"  # Loaded late: it compiles kernels of its own.
 STILL_SAMPLES = 2
 OWN_PX = 16  # The game's own; larger ones show more grain and less of the game.
 
@@ -178,18 +175,19 @@ def _photos(
     step: Callable[[int], None],
 ) -> "Iterator[Picture]":  # fmt: skip
     """Trace photos; the first one's exposure is that of all."""
-    photo = photo_module()
-    lamps, light = photo.lamps_of(scene), options.light
+    from world2minecraft.render.photo import lamps_of, render_photo
+
+    lamps, light = lamps_of(scene), options.light
     for shot in shots:
         done = 0
 
-        def tell(samples: int, _all: int, _left_s: float) -> None:
+        def tell(_stage: str, samples: int, _all: int, _note: str = "") -> None:
             nonlocal done
             step(samples - done)
             done = samples
 
         try:
-            picture = photo.render_photo(
+            picture = render_photo(
                 scene, shot.camera, shot.camera_to_room, light=light, lamps=lamps,
                 samples=look.photo_samples, threads=look.threads, progress=tell,
             )  # fmt: skip
@@ -203,15 +201,3 @@ def _photos(
 def within(exposure: float) -> float:
     """Return an exposure within what a light may have."""
     return min(max(exposure, 0.01), 100.0)
-
-
-def photo_module() -> ModuleType:
-    """Return the tier that traces paths.
-
-    Raises:
-        UsageError: this version has none.
-    """
-    try:
-        return import_module(PHOTO)
-    except ImportError:
-        raise UsageError("--photo is not in this version; leave it out") from None

@@ -14,9 +14,9 @@ from world2minecraft.render.photo.denoise import (
 )
 from world2minecraft.render.photo.film import Film
 
-KEY = 0.30  # What the geometric mean of the surfaces' light is exposed to, by day.
+KEY = 0.36  # What the geometric mean of the surfaces' light is exposed to, by day.
 ADAPTS = 0.85  # How much of the way there: what is dim stays a little dim.
-LEAST, MOST = 0.25, 16.0
+LEAST, MOST = 0.25, 60.0
 SEEN_POWER = 0.5  # Sky and lamps themselves are opened up half as far as what they light.
 
 

@@ -55,7 +55,7 @@ def render_photo(
     light: LookLight = DAY,
     samples: int = 16,
     seed: int = 0,
-    depth: int = 4,
+    depth: int = 8,
     threads: int = 1,
     denoise: bool = True,
     budget_s: float | None = None,
