@@ -33,7 +33,7 @@ def camera_of(
         UsageError: not exactly one of the three is given, or a number is out of range.
 
     Example:
-        >>> camera_of(640, 480, vertical_fov_deg=90).fx_px
+        >>> round(camera_of(640, 480, vertical_fov_deg=90).fx_px, 6)
         240.0
     """
     given = [vertical_fov_deg, horizontal_fov_deg, intrinsics]
