@@ -179,12 +179,12 @@ def _photos(
 
     lamps, light = lamps_of(scene), options.light
     for shot in shots:
-        done = 0
+        told = 0
 
-        def tell(_stage: str, samples: int, _all: int, _note: str = "") -> None:
-            nonlocal done
-            step(samples - done)
-            done = samples
+        def tell(stage: str, done: int, total: int, note: str = "") -> None:
+            nonlocal told
+            step(done - told)
+            told = done
 
         try:
             picture = render_photo(
@@ -193,7 +193,7 @@ def _photos(
             )  # fmt: skip
         except ValueError as error:
             raise UsageError(f"--photo cannot do this: {error}") from error
-        step(look.photo_samples - done)
+        step(look.photo_samples - told)
         light = replace(light, exposure=within(picture.exposure))
         yield picture
 
