@@ -49,7 +49,7 @@ def untyped(function: Function) -> list[str]:
 def is_kernel(function: Function) -> bool:
     """Whether it is compiled by numba, which finds the types itself."""
     names = [node.id for node in function.decorator_list if isinstance(node, ast.Name)]
-    return bool({"njit", "lean", "inlined"} & set(names))
+    return bool({"njit", "lean", "inlined", "inner", "inner_call"} & set(names))
 
 
 def limit(function: Function) -> int:

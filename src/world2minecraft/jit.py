@@ -1,6 +1,6 @@
 """numba with the project's settings: compiled once, kept in the user's cache folder.
 
-Import ``njit``, ``lean`` and ``inlined`` from here and never from numba, so that every kernel is
+Import ``njit``, ``lean`` and its like from here and never from numba, so that every kernel is
 cached, releases the GIL and computes the same bits on every run (no fast-math).
 """
 
@@ -65,3 +65,8 @@ _LEAN: dict[str, Any] = {"cache": True, "nogil": True, "_nrt": False, "error_mod
 lean = numba.njit(**_LEAN)
 # The same for small functions that a kernel calls for every ray: a call costs more than they do.
 inlined = numba.njit(forceinline=True, **_LEAN)
+# The same for what takes whole tables and is called by kernels alone: without the code by which
+# Python could call it, which takes longest to compile. Python that calls it all the same crashes.
+_INNER: dict[str, Any] = {**_LEAN, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+inner = numba.njit(forceinline=True, **_INNER)
+inner_call = numba.njit(**_INNER)

@@ -7,7 +7,7 @@ by ``render.shade``. Glass is gone through front to back, so that nothing needs 
 
 import numpy as np
 
-from world2minecraft.jit import inlined, lean
+from world2minecraft.jit import inner, lean
 from world2minecraft.render.beam import ALONE, NOTHING, PLANE, follow
 from world2minecraft.render.planes import draw_plane
 from world2minecraft.render.ray import begin, first_hit, is_clear, ray_of_pixel, steep, within
@@ -85,7 +85,7 @@ def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scr
                     )  # fmt: skip
 
 
-@inlined
+@inner
 def sun_on_tile(tables, lit, corners, cells, side, layer):
     """Return the cosine of the sun on a tile's plane, 0 in shadow, -1 where pixels differ.
 
@@ -109,7 +109,7 @@ def sun_on_tile(tables, lit, corners, cells, side, layer):
     return cosine if mode == NOTHING else 0.0
 
 
-@inlined
+@inner
 def draw_pixel(
     tables, side_px, pose, rays, spread, lamp, memo, cells, mode, side, layer, u, v, out
 ):  # fmt: skip
@@ -162,7 +162,7 @@ def draw_pixel(
             write_pixel(lamp, out.colour, v, u, red, green, blue)
 
 
-@inlined
+@inner
 def write_hit(tables, out, v, u, t, length, i, j, k, side, element):
     """Write what the first surface is."""
     if side == NO_FACE:
@@ -191,7 +191,7 @@ def write_hit(tables, out, v, u, t, length, i, j, k, side, element):
         )
 
 
-@inlined
+@inner
 def write_behind(tables, out, v, u, t, i, j, k, side, element):
     """Write what lies behind all glass."""
     at, owner = owner_of_hit(tables, element, i, j, k)
@@ -201,7 +201,7 @@ def write_behind(tables, out, v, u, t, i, j, k, side, element):
     out.opaque_thing[v, u] = -1 if none else owner
 
 
-@inlined
+@inner
 def owner_of_hit(tables, element, i, j, k):
     """Return the volume's cell (-1 for none) and the standing thing (-1 for none) of a hit."""
     owner = tables.traits[element, OWNER] if element >= 0 else -1
@@ -213,7 +213,7 @@ def owner_of_hit(tables, element, i, j, k):
     return ((i - first[0]) * shape[1] + j - first[1]) * shape[2] + k - first[2], -1
 
 
-@inlined
+@inner
 def on_plane(side, layer, cells, ox, oy, oz, dx, dy, dz, rx, ry, rz):
     """Return ``(t, i, j, k)`` where a ray enters a layer of cells by a face."""
     plane = layer + side % 2

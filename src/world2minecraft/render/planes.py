@@ -7,7 +7,7 @@ pixel by pixel, without the search.
 
 import numpy as np
 
-from world2minecraft.jit import lean
+from world2minecraft.jit import inner_call
 from world2minecraft.render.light.lit import glow_light
 from world2minecraft.render.light.tone import finish
 from world2minecraft.render.ray import within
@@ -20,7 +20,7 @@ from world2minecraft.render.tables import EVEN, FLAGS, UNSHADED
 FACE_NUMBERS = 22
 
 
-@lean
+@inner_call
 def draw_plane(
     tables, side_px, pose, rays, lamp, scale, face, cells, sun, side, layer, u_tile, u_end, v_tile,
     v_end, with_colour, with_semantic, with_instance, out,
@@ -93,7 +93,7 @@ def draw_plane(
             )
 
 
-@lean
+@inner_call
 def face_of_cell(tables, lamp, face, sun, side, i, j, k, with_colour):
     """Fill ``face`` with what belongs to one face of a cell; return its texture and its index."""
     first, shape = tables.window[0], tables.window[1]

@@ -8,7 +8,7 @@ no time in scalar code, and the ids come out exact. Directions have no component
 
 import numpy as np
 
-from world2minecraft.jit import inlined, lean
+from world2minecraft.jit import inlined, inner, inner_call, lean
 from world2minecraft.render.tables import (
     ABSOLUTE,
     BOXES,
@@ -86,7 +86,7 @@ def begin(shape, ox, oy, oz, dx, dy, dz, rx, ry, rz):
     return t, i, j, k, face
 
 
-@inlined
+@inner
 def walk(space, bounds, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face):
     """Cross air from a cell on; return ``(t, i, j, k, face, kind)`` of the first that is none."""
     nx, ny, nz = np.uint64(space.shape[0]), np.uint64(space.shape[1]), np.uint64(space.shape[2])
@@ -152,7 +152,7 @@ def texel_at(uv, n, face, x, y, z, side_px):
     return min(column, side_px - 1), min(row, side_px - 1)
 
 
-@inlined
+@inner_call
 def meet_cell(
     looks, look_start, refs, boxes, traits, turns, layers, uv, texels, translucent, side_px,
     i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz, after, until,
@@ -226,7 +226,7 @@ def leave_cell(i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz):
     return (tz, i, j, k + 1, 4) if dz > 0 else (tz, i, j, k - 1, 5)
 
 
-@inlined
+@inner
 def first_hit(
     tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face, after
 ):  # fmt: skip
@@ -256,7 +256,7 @@ def first_hit(
         t, i, j, k, face = until, a, b, c, ahead
 
 
-@inlined
+@inner
 def is_clear(tables, side_px, t, i, j, k, face, element, ox, oy, oz, dx, dy, dz):
     """Tell whether one sees through a hit: it is glass, and its texture is not solid there."""
     if element < 0:

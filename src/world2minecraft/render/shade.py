@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import inlined, lean
+from world2minecraft.jit import inlined, inner, inner_call, lean
 from world2minecraft.render.light.background import Background, background_light
 from world2minecraft.render.light.lit import (
     LitParameters,
@@ -48,7 +48,7 @@ class Lamp(NamedTuple):
     by_row: bool  # paper lies behind all, and not the sky
 
 
-@inlined
+@inner
 def shade_hit(
     tables, side_px, lamp, memo, block_px, t, i, j, k, side, element, ox, oy, oz, dx, dy, dz, speed
 ):  # fmt: skip
@@ -129,7 +129,7 @@ def _fill_corners(result, lit):
         result[word, 0], result[word, 1], result[word, 2] = r, g, b
 
 
-@inlined
+@inner
 def sun_on(tables, side_px, lit, turn, side, gx, gy, gz):
     """Return the cosine of the sun on a face, 0 where it does not shine."""
     nx, ny, nz = normal_of(tables, turn, side)
@@ -173,7 +173,7 @@ def between(memo, at, p, q):
     )
 
 
-@inlined
+@inner
 def texel_colour(tables, side_px, tone, n, side, x, y, z, block_px, cosine):
     """Return linear red, green, blue and alpha of the texture at a point of an element."""
     n, side = np.uint64(n), np.uint64(side)
@@ -199,7 +199,7 @@ def texel_colour(tables, side_px, tone, n, side, x, y, z, block_px, cosine):
     )
 
 
-@inlined
+@inner
 def find_light(light, corners, memo, i, j, k, face, even, px, py, pz):
     """Fill the memo with the light at the corners of a block's face, unless it has them.
 
@@ -228,7 +228,7 @@ def find_light(light, corners, memo, i, j, k, face, even, px, py, pz):
         memo[8 + corner], memo[12 + corner], memo[16 + corner] = colour[0], colour[1], colour[2]
 
 
-@lean
+@inner_call
 def sun_reaches(tables, side_px, lit, ox, oy, oz):
     """Tell whether nothing but glass lies between a point and the sun."""
     dx, dy, dz = steep(lit.sun_x), steep(lit.sun_y), steep(lit.sun_z)
@@ -248,13 +248,13 @@ def sun_reaches(tables, side_px, lit, ox, oy, oz):
     return False
 
 
-@inlined
+@inner
 def write_pixel(lamp, colour, v, u, red, green, blue):
     """Write a linear colour as sRGB."""
     colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = finish(red, green, blue, lamp.tone)
 
 
-@inlined
+@inner
 def write_sky(lamp, colour, v, u, dx, dy, dz, red, green, blue, clear):
     """Write the sky, seen through what lies before it."""
     if lamp.by_row:
