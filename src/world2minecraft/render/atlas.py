@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.render.light.tone import linear_to_srgb, srgb_to_linear
 from world2minecraft.render.texture import Texture
 
 SIZES_PX = (16, 32, 64, 128)
@@ -34,15 +35,12 @@ def texel_count(side_px: int) -> int:
 
 def to_linear(srgb: np.ndarray) -> np.ndarray:
     """Return linear light, float64 0 to 1, of sRGB values 0 to 255."""
-    share = np.asarray(srgb, np.float64) / 255
-    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return srgb_to_linear(np.asarray(srgb, np.float64) / 255)
 
 
 def to_srgb(linear: np.ndarray) -> np.ndarray:
     """Return sRGB values, uint8, of linear light."""
-    light = np.clip(linear, 0, 1)
-    share = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
-    return (share * 255 + 0.5).astype(np.uint8)
+    return (linear_to_srgb(linear) * 255 + 0.5).astype(np.uint8)
 
 
 def atlas_of(textures: Sequence[Texture], side_px: int) -> Atlas:

@@ -8,6 +8,7 @@ bundle of rays that leaves a box by one of its faces can have met nothing inside
 import numpy as np
 
 from world2minecraft.jit import njit
+from world2minecraft.render.trace import fill_distances
 
 MOST_CELLS = 96  # A side; a box of the open sky need not be larger.
 _AIR = 0  # What ``solid`` holds for air; other values are taken over as they are.
@@ -24,42 +25,11 @@ def empty_boxes(kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         always one box at least, which may be of no cell's.
     """
     kinds = np.ascontiguousarray(kinds)
-    reach = np.where(kinds == _AIR, 255, 0).astype(np.uint8)
-    _spread_reach(reach)
+    reach = (kinds == _AIR).astype(np.uint8)
+    fill_distances(reach)
     order = np.argsort(255 - reach.ravel(), kind="stable").astype(np.int32)
     order = order[: int(np.count_nonzero(reach))]  # Cells of air, the roomiest first.
     return _cover(kinds, reach, order, _counts(kinds))
-
-
-@njit
-def _spread_reach(reach):
-    """Replace each value of air by its Chebyshev distance, up to 255, to what is no air."""
-    nx, ny, nz = reach.shape
-    for way in range(2):
-        for a in range(nx):
-            i = a if way == 0 else nx - 1 - a
-            for b in range(ny):
-                j = b if way == 0 else ny - 1 - b
-                for c in range(nz):
-                    k = c if way == 0 else nz - 1 - c
-                    if reach[i, j, k] > 0:
-                        reach[i, j, k] = _least_near(reach, i, j, k, -1 if way == 0 else 1)
-
-
-@njit
-def _least_near(reach, i, j, k, side):
-    """Return one more than the least of the 13 neighbours that a sweep has passed, or its own."""
-    nx, ny, nz = reach.shape
-    best = int(reach[i, j, k]) - 1
-    for di in range(-1, 2):
-        for dj in range(-1, 2):
-            for dk in range(-1, 2):
-                if (di * 9 + dj * 3 + dk) * side <= 0:
-                    continue
-                a, b, c = i + di, j + dj, k + dk
-                if 0 <= a < nx and 0 <= b < ny and 0 <= c < nz:
-                    best = min(best, int(reach[a, b, c]))
-    return best + 1
 
 
 @njit

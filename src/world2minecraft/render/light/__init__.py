@@ -9,7 +9,8 @@ kernel
 - ``background(exposure) -> Background``, the sky,
 - ``tone -> Tone``, the tables ``decode`` (texel to light) and ``encode`` (light to screen).
 
-Per pixel, all inlined by numba:
+For kernels, a pixel at a time (the picture kernel keeps what the lattice's entries stand for in a
+table, ``shade.corner_lights``, in place of the first and third):
 
 - ``sky, block, occluders = lattice_light(light, side, i, j, k, layer_step, p, q)``
 - ``shade = direction_shade(nx, ny, nz, cosine, params)``
