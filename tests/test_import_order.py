@@ -10,7 +10,17 @@ SOURCE = Path(__file__).resolve().parents[1] / "src" / "world2minecraft"
 
 # Each row may import the rows above it, and itself where it is a single package. Packages in one
 # row never import each other, but for the foundation.
-FOUNDATION = ("classes", "coordinates", "types", "errors", "files", "registry", "jit", "progress")
+FOUNDATION = (
+    "classes",
+    "coordinates",
+    "types",
+    "errors",
+    "files",
+    "archive",
+    "registry",
+    "jit",
+    "progress",
+)
 ROWS: tuple[tuple[str, ...], ...] = (
     FOUNDATION,
     ("geometry",),
@@ -23,9 +33,21 @@ ROWS: tuple[tuple[str, ...], ...] = (
     ("edit",),
     ("metrics",),
     ("models",),
-    ("scan", "register", "occupy", "fuse", "label", "find", "furnish", "build"),
+    (
+        "scan",
+        "posing",
+        "stereo",
+        "register",
+        "occupy",
+        "fuse",
+        "label",
+        "find",
+        "furnish",
+        "build",
+    ),
     ("parameters", "run_folder"),
     ("steps",),
+    ("prepare",),
     ("pipeline", "rebuild"),
     ("live",),
     ("rooms",),

@@ -20,7 +20,6 @@ Each message says what was expected, what was given and what to type next, on on
 
 import difflib
 from collections.abc import Iterable
-from pathlib import Path
 
 
 class World2MinecraftError(Exception):
@@ -65,7 +64,7 @@ class InputError(World2MinecraftError):
 
     exit_code = 3
 
-    def __init__(self, path: str | Path, reason: str):
+    def __init__(self, path: object, reason: str):
         super().__init__(f"{path}: {reason}")
         self.path, self.reason = str(path), reason
 

@@ -13,11 +13,14 @@ import zipfile
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, OutputError
+
+if TYPE_CHECKING:
+    from world2minecraft.archive import ArchivePath
 
 FIXED_DATE = (2020, 1, 1, 0, 0, 0)
 # What zipfile and numpy raise over a damaged archive; RuntimeError is an encrypted member.
@@ -68,7 +71,7 @@ def write_json(path: str | Path, value: Any) -> None:
     write_text(path, json.dumps(value, indent=1, sort_keys=True, allow_nan=False) + "\n")
 
 
-def read_json(path: str | Path, limit_bytes: int = 256 << 20) -> Any:
+def read_json(path: "str | Path | ArchivePath", limit_bytes: int = 256 << 20) -> Any:
     """Read a JSON file.
 
     Raises:
@@ -81,13 +84,13 @@ def read_json(path: str | Path, limit_bytes: int = 256 << 20) -> Any:
         raise DamagedFileError(path, f"is not JSON ({error})") from error
 
 
-def read_bytes(path: str | Path, limit_bytes: int) -> bytes:
-    """Read a whole file of at most ``limit_bytes``.
+def read_bytes(path: "str | Path | ArchivePath", limit_bytes: int) -> bytes:
+    """Read a whole file, or a member of an archive, of at most ``limit_bytes``.
 
     Raises:
         InputError: it is missing or cannot be read. LimitError: it is larger.
     """
-    source = Path(path)
+    source = Path(path) if isinstance(path, str) else path
     try:
         size = source.stat().st_size
         if size > limit_bytes:

@@ -59,9 +59,9 @@ def _cut(path, share=0.5):
 def test_a_missing_folder_a_file_an_empty_folder_and_another_kind(tmp_path):
     assert _refused(tmp_path / "none").endswith("none: is not there")
     (tmp_path / "scan.zip").write_bytes(b"PK")
-    _refused(tmp_path / "scan.zip", "is a file; a capture is a folder")
+    _refused(tmp_path / "scan.zip", "is a file (.zip) of another kind; a capture is one of these")
     (tmp_path / "empty").mkdir()
-    _refused(tmp_path / "empty", "is empty; a capture has one of these layouts", "capture.json")
+    _refused(tmp_path / "empty", "is empty; a capture is one of these", "capture.json")
     (tmp_path / "music").mkdir()
     (tmp_path / "music" / "song.txt").write_text("la")
     _refused(tmp_path / "music", "another kind", "transforms.json", "frame-000000.color.png")
@@ -139,7 +139,8 @@ def test_depth_that_is_none(tmp_path, views, pixels, words):
 
 def test_captures_without_depth(tmp_path, views):
     write_plain(tmp_path, [replace(v, depth_m=None, depth_camera=None) for v in views])
-    _refused(tmp_path, "has no depth images")
+    with pytest.raises(CaptureError, match="has no depth images; w2m reconstruct computes them"):
+        open_scan(tmp_path)
 
 
 def test_missing_poses_and_intrinsics(tmp_path, views):

@@ -5,7 +5,7 @@ contradict the intrinsics, a stream of mixed sizes) is refused at once.
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +14,7 @@ import numpy as np
 from world2minecraft.errors import CaptureError, InputError, LimitError
 from world2minecraft.scan.depth import check_depth_kind
 from world2minecraft.scan.frames import Capture, FrameFiles
-from world2minecraft.scan.images import ImageHeader, check_whole, read_header
+from world2minecraft.scan.images import ImageHeader, ImagePlace, check_whole, read_header
 from world2minecraft.scan.poses import is_lost, mend_pose
 from world2minecraft.types import Camera
 
@@ -39,15 +39,16 @@ def check_frames(
         CaptureError: none can be used, or all of them share a fault.
         LimitError: an image is too large to decode.
     """
-    sizes: dict[str, tuple[Path, ImageHeader]] = {}
+    sizes: dict[str, tuple[ImagePlace, ImageHeader]] = {}
     used: list[FrameFiles] = []
     skipped: list[tuple[str, str]] = []
     damaged: list[InputError] = []
+    posed = is_posed(capture.frames)
     for done, frame in enumerate(capture.frames, 1):
-        reason = frame.problem or _pose_problem(frame)
+        reason = frame.problem or (_pose_problem(frame) if posed else "")
         if not reason:
             try:
-                used.append(_sized(_check_images(frame, sizes)))
+                used.append(_sized(_check_images(frame, sizes, posed)))
             except (CaptureError, LimitError):
                 raise
             except InputError as error:
@@ -61,21 +62,31 @@ def check_frames(
     return mended, (*skipped, *wrong)
 
 
+def is_posed(frames: Sequence[FrameFiles]) -> bool:
+    """Return whether the capture states poses at all."""
+    return any(frame.camera_to_world is not None for frame in frames)
+
+
 def _pose_problem(frame: FrameFiles) -> str:
     if frame.camera_to_world is None:
         return "has no pose"
     return "tracking was lost (its pose is not finite)" if is_lost(frame.camera_to_world) else ""
 
 
-def _check_images(frame: FrameFiles, sizes: dict[str, tuple[Path, ImageHeader]]) -> FrameFiles:
-    """Check a frame's image files against those before it; nothing is decoded."""
+def _check_images(
+    frame: FrameFiles, sizes: dict[str, tuple[ImagePlace, ImageHeader]], posed: bool
+) -> FrameFiles:
+    """Check a frame's image files against those before it; nothing is decoded.
+
+    Photos without poses may be of any sizes: some are taken upright, some lying.
+    """
     for kind, path in _image_paths(frame):
         header = read_header(path)
         if kind == "depth":
             check_depth_kind(path, header)
         check_whole(path)
         first_path, first = sizes.setdefault(kind, (path, header))
-        if header.size != first.size:
+        if header.size != first.size and (posed or kind == "depth"):
             raise CaptureError(
                 path,
                 f"is {header.width_px}x{header.height_px} but {first_path.name} is "
@@ -84,11 +95,12 @@ def _check_images(frame: FrameFiles, sizes: dict[str, tuple[Path, ImageHeader]])
     return frame
 
 
-def _image_paths(frame: FrameFiles) -> Iterable[tuple[str, Path]]:
+def _image_paths(frame: FrameFiles) -> Iterable[tuple[str, ImagePlace]]:
     named = (
         ("colour", frame.colour_path),
         ("depth", frame.depth_path),
         ("labels", frame.labels_path),
+        ("trust", frame.trust_path),
     )
     return [(kind, path) for kind, path in named if path is not None]
 
@@ -100,7 +112,7 @@ def _sized(frame: FrameFiles) -> FrameFiles:
     return replace(frame, colour_camera=colour, depth_camera=depth)
 
 
-def _fit(path: Path | None, camera: Camera | None) -> Camera | None:
+def _fit(path: ImagePlace | None, camera: Camera | None) -> Camera | None:
     if path is None or camera is None:
         return None
     size = read_header(path).size
@@ -138,19 +150,20 @@ def _refuse_if_broken(
             capture.folder,
             f"none of {len(capture.frames)} frames can be used; {count} of them: {reason}",
         )
-    if not any(frame.depth_path for frame in used):
-        raise CaptureError(
-            capture.folder,
-            "has no depth images; this version needs depth beside colour (16-bit PNG or .npy)",
-        )
 
 
 def _mended(capture: Capture, frames: list[FrameFiles]) -> tuple[tuple[FrameFiles, ...], Skipped]:
-    """Return the frames with rigid poses, and those whose pose is wrong where they are few."""
+    """Return the frames with rigid poses, and those whose pose is wrong where they are few.
+
+    Frames of a capture without poses stay as they are.
+    """
     mended: list[FrameFiles] = []
     wrong: list[CaptureError] = []
     skipped: list[tuple[str, str]] = []
     for frame in frames:
+        if frame.camera_to_world is None:
+            mended.append(frame)
+            continue
         pose = np.asarray(frame.camera_to_world, np.float64)
         try:
             rigid = mend_pose(pose, capture.folder, frame.name)

@@ -6,12 +6,11 @@ is meant, the values tell: their range, and the steps that an encoding leaves in
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from world2minecraft.errors import CaptureError, UnknownNameError
-from world2minecraft.scan.images import ImageHeader, read_header, read_raw
+from world2minecraft.scan.images import ImageHeader, ImagePlace, read_header, read_raw
 
 INVALID = 65535  # Kinect drivers write 0 or 65535 where they saw nothing.
 MAX_INDOOR_M = 12.0  # No depth camera for rooms reaches further.
@@ -86,7 +85,7 @@ def _is_scale(unit: str) -> bool:
         return False
 
 
-def check_depth_kind(path: Path, header: ImageHeader) -> None:
+def check_depth_kind(path: ImagePlace, header: ImageHeader) -> None:
     """Refuse an image that cannot hold depth.
 
     Raises:
@@ -100,7 +99,7 @@ def check_depth_kind(path: Path, header: ImageHeader) -> None:
         )
 
 
-def find_encoding(paths: Sequence[Path], stated: str | None) -> DepthEncoding:
+def find_encoding(paths: Sequence[ImagePlace], stated: str | None) -> DepthEncoding:
     """Return the encoding of a stream of depth images, stated or told from some of them.
 
     Args:
@@ -121,13 +120,13 @@ def find_encoding(paths: Sequence[Path], stated: str | None) -> DepthEncoding:
     return encoding
 
 
-def read_depth(path: Path, encoding: DepthEncoding) -> np.ndarray:
+def read_depth(path: ImagePlace, encoding: DepthEncoding) -> np.ndarray:
     """Return float32 [H, W] z-depth in metres, 0 where there is none."""
     check_depth_kind(path, read_header(path))
     return encoding.to_metres(read_raw(path))
 
 
-def _sample(path: Path) -> np.ndarray:
+def _sample(path: ImagePlace) -> np.ndarray:
     """Return the valid stored values of every third pixel of one image."""
     raw = read_raw(path)[::3, ::3].reshape(-1)
     valid = np.isfinite(raw) & (raw > 0)
@@ -150,7 +149,7 @@ def _guess(values: np.ndarray) -> str:
     return "5000" if far > MAX_INDOOR_M * 1000 and typical > 2500 else "mm"
 
 
-def _check_range(path: Path, encoding: DepthEncoding, values: np.ndarray) -> None:
+def _check_range(path: ImagePlace, encoding: DepthEncoding, values: np.ndarray) -> None:
     metres = encoding.to_metres(values)
     typical = float(np.median(metres))
     if not 0.15 <= typical <= MAX_INDOOR_M:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.archive import AnyPath
 from world2minecraft.scan.judged import JudgedCapture, judge_capture
 from world2minecraft.scan.options import parse_options
 from world2minecraft.types import Camera
@@ -20,7 +21,7 @@ class CaptureSummary:
     the others with reasons. ``next_command`` is what to type.
     """
 
-    folder: Path
+    folder: AnyPath
     source: str
     frames: int
     usable: int

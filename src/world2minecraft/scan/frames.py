@@ -5,11 +5,12 @@ judges them afterwards, the same way for every source.
 """
 
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 
+from world2minecraft.archive import AnyPath
+from world2minecraft.scan.images import ImagePlace
 from world2minecraft.types import Camera
 
 
@@ -19,46 +20,66 @@ class FrameFiles:
 
     ``camera_to_world`` is float64 [4, 4] of an OpenCV camera, that of the colour image or of the
     depth image where there is no colour; it may hold NaN where tracking was lost, and is None
-    with the reason in ``problem`` where the frame cannot be used at all.
+    where the capture states none. ``problem`` says why the frame cannot be used at all.
+    ``trust_path`` is an image of how far each depth pixel is to be trusted, at the depth image's
+    size; ``Capture.full_trust`` tells its unit. ``time_s`` orders the frames of videos.
     """
 
     name: str
     camera_to_world: np.ndarray | None
-    colour_path: Path | None = None
+    colour_path: ImagePlace | None = None
     colour_camera: Camera | None = None
-    depth_path: Path | None = None
+    depth_path: ImagePlace | None = None
     depth_camera: Camera | None = None
     depth_to_colour: np.ndarray = field(default_factory=lambda: np.eye(4))
-    labels_path: Path | None = None
+    labels_path: ImagePlace | None = None
     problem: str = ""
+    trust_path: ImagePlace | None = None
+    time_s: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Capture:
-    """A folder of frames, found out and listed but not judged.
+    """What lies at a place, found out and listed but not judged.
 
-    ``one_matrix`` says that depth and colour share one stated matrix, so that the colour camera
-    may truly be another. ``depth_unit`` is None where the capture does not state it.
+    ``folder`` is the folder or file that the user named. ``one_matrix`` says that depth and colour
+    share one stated matrix, so that the colour camera may truly be another. ``depth_unit`` is None
+    where the capture does not state it. ``depth_kind`` says what made the depth: a ``sensor``,
+    ``stereo``, or nothing that errs (``exact``, a mesh that is looked at). ``lens`` says whether
+    the colour cameras are ``stated`` or a first ``guess`` (EXIF, or none). ``full_trust`` is the
+    value of ``trust_path`` that means full trust; 0 always means none. ``world_up`` is a unit
+    vector of the world frame where the capture is known to stand upright. ``scale`` and
+    ``scale_sigma`` are as in ``Scan``: ``unknown`` where poses have no unit.
     """
 
-    folder: Path
+    folder: AnyPath
     source: str
     frames: tuple[FrameFiles, ...]
     depth_unit: str | None = None
     one_matrix: bool = False
     notes: tuple[str, ...] = ()
+    depth_kind: Literal["sensor", "stereo", "exact"] = "sensor"
+    lens: Literal["stated", "guess"] = "stated"
+    full_trust: float = 255.0
+    world_up: np.ndarray | None = None
+    scale: Literal["metric", "estimated", "unknown"] = "metric"
+    scale_sigma: float = 0.0
 
 
 class Source(Protocol):
-    """One layout of captures on disk."""
+    """One kind of capture on disk.
 
-    layout: str  # One line that shows a reader what the folder looks like.
+    A place is a folder, a file, or the inside of a zip (``archive.ArchivePath``, which has the
+    part of ``Path`` that readers need), so that most sources read zips without knowing it.
+    """
 
-    def recognise(self, folder: Path) -> bool:
-        """Return whether the folder has this layout, from its names alone."""
+    layout: str  # One line that shows a reader what it looks like.
+
+    def recognise(self, folder: AnyPath) -> bool:
+        """Return whether this kind of capture lies there, from names alone where that tells."""
         ...
 
-    def read(self, folder: Path) -> Capture:
+    def read(self, folder: AnyPath) -> Capture:
         """List the frames.
 
         Raises:

@@ -1,7 +1,9 @@
 """Images of a capture: hostile until checked.
 
 The size is read from the header and held against ``MAX_PIXELS`` before anything is decoded, only
-the formats that captures use are tried, and a file cut short is found without decoding it.
+the formats that captures use are tried, and a file cut short is found without decoding it. An
+image lies in a file, in a member of a zip, or wherever an ``ImageSource`` takes it from: a video,
+a ``.sens``, a mesh that is looked at.
 """
 
 import warnings
@@ -9,11 +11,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
+from world2minecraft.archive import AnyPath, ArchivePath
 from world2minecraft.errors import DamagedFileError, InputError, LimitError
 
 MAX_PIXELS = 64_000_000  # A 48-megapixel phone photo passes; decoding it takes 144 MB.
@@ -35,13 +38,55 @@ class ImageHeader:
         return self.width_px, self.height_px
 
 
-def read_header(path: Path) -> ImageHeader:
+class ImageSource(Protocol):
+    """An image that lies in no file of its own.
+
+    ``str()`` of it names it in messages, as ``scan.sens/frame 12``. Its methods raise what the
+    functions of this module raise.
+    """
+
+    @property
+    def stem(self) -> str:
+        """A name without suffix, by which label images are found."""
+        ...
+
+    @property
+    def name(self) -> str:
+        """A short name for messages."""
+        ...
+
+    def header(self) -> ImageHeader:
+        """Return size and mode, cheaply."""
+        ...
+
+    def check_whole(self) -> None:
+        """Check, without decoding, that the image is there whole."""
+        ...
+
+    def colour(self) -> np.ndarray:
+        """Return uint8 [H, W, 3] sRGB."""
+        ...
+
+    def raw(self) -> np.ndarray:
+        """Return [H, W] values as stored: depth, labels, confidence."""
+        ...
+
+
+ImagePlace = AnyPath | ImageSource
+_FILES = (Path, ArchivePath)
+
+
+def read_header(path: ImagePlace) -> ImageHeader:
     """Read an image's size and kind, without its pixels.
 
     Raises:
         InputError: it is missing. DamagedFileError: it is no image. LimitError: it is over
             ``MAX_PIXELS``.
     """
+    if not isinstance(path, _FILES):
+        found = path.header()
+        _check_pixels(path, *found.size)
+        return found
     if path.suffix == ".npy":
         array = _map_npy(path)
         return ImageHeader(array.shape[1], array.shape[0], array.dtype.name)
@@ -49,12 +94,14 @@ def read_header(path: Path) -> ImageHeader:
         return ImageHeader(*image.size, image.mode)
 
 
-def check_whole(path: Path) -> None:
+def check_whole(path: ImagePlace) -> None:
     """Check that an image file is not cut short, without decoding it.
 
     Raises:
         DamagedFileError: it ends early or fails its own check sums.
     """
+    if not isinstance(path, _FILES):
+        return path.check_whole()
     if path.suffix == ".npy":
         _map_npy(path)
         return
@@ -66,14 +113,18 @@ def check_whole(path: Path) -> None:
         raise DamagedFileError(path, "is cut short (a JPEG without its end); copy it again")
 
 
-def read_colour(path: Path) -> np.ndarray:
+def read_colour(path: ImagePlace) -> np.ndarray:
     """Decode a colour image to uint8 [H, W, 3] sRGB. Raises what ``read_header`` raises."""
+    if not isinstance(path, _FILES):
+        return path.colour()
     with _opened(path) as image:
         return np.array(image.convert("RGB"), np.uint8)
 
 
-def read_raw(path: Path) -> np.ndarray:
+def read_raw(path: ImagePlace) -> np.ndarray:
     """Decode an image of single values as it is stored, [H, W] of any number type."""
+    if not isinstance(path, _FILES):
+        return path.raw()
     if path.suffix == ".npy":
         return np.array(_map_npy(path))
     with _opened(path) as image:
@@ -81,12 +132,12 @@ def read_raw(path: Path) -> np.ndarray:
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[Image.Image]:
+def _opened(path: AnyPath) -> Iterator[Image.Image]:
     """Open an image with its size checked; any way to fail becomes one of our errors."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Ours is the stricter limit, checked below.
-            with Image.open(path, formats=FORMATS) as image:
+            with path.open("rb") as stream, Image.open(stream, formats=FORMATS) as image:
                 _check_pixels(path, *image.size)
                 yield image
     except Image.DecompressionBombError as error:
@@ -103,7 +154,7 @@ def _opened(path: Path) -> Iterator[Image.Image]:
         raise DamagedFileError(path, f"is damaged ({_one_line(error)}); copy it again") from error
 
 
-def _check_pixels(path: Path, width_px: int, height_px: int) -> None:
+def _check_pixels(path: object, width_px: int, height_px: int) -> None:
     if width_px * height_px > MAX_PIXELS:
         raise LimitError(
             path,
@@ -112,10 +163,13 @@ def _check_pixels(path: Path, width_px: int, height_px: int) -> None:
         )
 
 
-def _map_npy(path: Path) -> Any:
+def _map_npy(path: AnyPath) -> Any:
     """Map a ``.npy`` of [H, W] numbers; its length is checked against its header."""
     try:
-        array = np.load(path, mmap_mode="r", allow_pickle=False)
+        if isinstance(path, Path):
+            array = np.load(path, mmap_mode="r", allow_pickle=False)
+        else:
+            array = np.load(path.open("rb"), allow_pickle=False)
     except FileNotFoundError as error:
         raise InputError(path, "is not there") from error
     except (OSError, ValueError, EOFError) as error:
@@ -127,7 +181,7 @@ def _map_npy(path: Path) -> Any:
     return array
 
 
-def _tail(path: Path, size: int) -> bytes:
+def _tail(path: AnyPath, size: int) -> bytes:
     with path.open("rb") as stream:
         stream.seek(max(0, path.stat().st_size - size))
         return stream.read()

@@ -11,9 +11,10 @@ from typing import TypeVar
 import numpy as np
 
 from world2minecraft.errors import CaptureError, UnknownNameError
-from world2minecraft.scan.checking import Skipped, check_frames
+from world2minecraft.scan.checking import Skipped, check_frames, is_posed
 from world2minecraft.scan.depth import DepthEncoding, find_encoding, read_depth
 from world2minecraft.scan.frames import Capture, FrameFiles
+from world2minecraft.scan.images import ImagePlace
 from world2minecraft.scan.labels import attach_labels, check_labels
 from world2minecraft.scan.options import ScanOptions
 from world2minecraft.scan.poses import check_spread
@@ -25,7 +26,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class JudgedCapture:
-    """What can be used of a capture; ``typical_depth_m`` is the median over some frames."""
+    """What can be used of a capture; ``typical_depth_m`` is the median over some frames, or 0."""
 
     capture: Capture
     frames: tuple[FrameFiles, ...]
@@ -33,6 +34,21 @@ class JudgedCapture:
     encoding: DepthEncoding
     typical_depth_m: float
     notes: tuple[str, ...]
+
+    @property
+    def has_depth(self) -> bool:
+        """Whether any usable frame has depth."""
+        return any(frame.depth_path for frame in self.frames)
+
+    @property
+    def posed(self) -> bool:
+        """Whether the frames have poses."""
+        return is_posed(self.frames)
+
+    @property
+    def complete(self) -> bool:
+        """Whether the capture has all that ``open_scan`` needs; else ``prepare`` makes it."""
+        return self.has_depth and self.posed
 
 
 def judge_capture(
@@ -55,16 +71,18 @@ def judge_capture(
     check_labels(frames)
     looked_at = spread_over([frame for frame in frames if frame.depth_path], SAMPLED_FRAMES)
     paths = [frame.depth_path for frame in looked_at if frame.depth_path]
-    encoding = _encoding(paths, options, capture)
+    encoding = _encoding(paths, options, capture) if paths else DepthEncoding("mm")
     typical_m = _typical_depth(paths, encoding)
-    frames, strayed = check_spread(frames, capture.folder, typical_m)
+    strayed: Skipped = ()
+    if is_posed(frames) and capture.scale != "unknown":
+        frames, strayed = check_spread(frames, capture.folder, typical_m)
     notes = list(capture.notes)
     if encoding.guessed:
         notes.append(f"depth is read as {encoding.said}, told from its values")
     return JudgedCapture(capture, frames, (*skipped, *strayed), encoding, typical_m, tuple(notes))
 
 
-def _encoding(paths: Sequence[Path], options: ScanOptions, capture: Capture) -> DepthEncoding:
+def _encoding(paths: Sequence[ImagePlace], options: ScanOptions, capture: Capture) -> DepthEncoding:
     try:
         return find_encoding(paths, options.depth_unit or capture.depth_unit)
     except UnknownNameError as error:  # The user's own was checked before: the capture states it.
@@ -77,7 +95,7 @@ def spread_over(items: Sequence[T], count: int) -> list[T]:
     return [items[index] for index in chosen]
 
 
-def _typical_depth(paths: Sequence[Path], encoding: DepthEncoding) -> float:
+def _typical_depth(paths: Sequence[ImagePlace], encoding: DepthEncoding) -> float:
     """Return the median depth in metres over some images."""
     medians = []
     for path in paths[:4]:

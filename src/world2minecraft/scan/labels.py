@@ -8,7 +8,7 @@ import numpy as np
 
 from world2minecraft.errors import CaptureError
 from world2minecraft.scan.frames import FrameFiles
-from world2minecraft.scan.images import read_header, read_raw
+from world2minecraft.scan.images import ImagePlace, read_header, read_raw
 
 
 def attach_labels(frames: Sequence[FrameFiles], folder: Path) -> tuple[FrameFiles, ...]:
@@ -27,7 +27,7 @@ def attach_labels(frames: Sequence[FrameFiles], folder: Path) -> tuple[FrameFile
     return labelled
 
 
-def _label_of(frame: FrameFiles, folder: Path) -> Path | None:
+def _label_of(frame: FrameFiles, folder: Path) -> ImagePlace | None:
     names = [frame.name] if frame.colour_path is None else [frame.name, frame.colour_path.stem]
     found = (folder / f"{name}.png" for name in names)
     return next((path for path in found if path.is_file()), frame.labels_path)

@@ -7,11 +7,12 @@ multiplied: it is divided out, so that they are in the unit of the depth again.
 
 import math
 from dataclasses import replace
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 from typing import Any
 
 import numpy as np
 
+from world2minecraft.archive import AnyPath
 from world2minecraft.coordinates import opengl_to_opencv_pose
 from world2minecraft.errors import CaptureError, InputError, LimitError
 from world2minecraft.files import read_json
@@ -27,11 +28,11 @@ class NerfstudioSource:
 
     layout = "transforms.json with the images it names (nerfstudio, instant-ngp)"
 
-    def recognise(self, folder: Path) -> bool:
+    def recognise(self, folder: AnyPath) -> bool:
         """Return whether there is a ``transforms.json``."""
         return (folder / "transforms.json").is_file()
 
-    def read(self, folder: Path) -> Capture:
+    def read(self, folder: AnyPath) -> Capture:
         """List the frames. Raises CaptureError as ``Source.read`` says."""
         path = folder / "transforms.json"
         stated = read_json(path)
@@ -56,7 +57,7 @@ class NerfstudioSource:
         )
 
 
-def _frame(path: Path, stated: dict[str, Any], entry: Any, scale: float) -> FrameFiles:
+def _frame(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> FrameFiles:
     if not isinstance(entry, dict) or not isinstance(entry.get("file_path"), str):
         raise CaptureError(path, 'every frame must be an object with "file_path"')
     colour = _inside(path, entry["file_path"])
@@ -82,22 +83,22 @@ def _frame(path: Path, stated: dict[str, Any], entry: Any, scale: float) -> Fram
     )
 
 
-def _inside(path: Path, named: str) -> Path:
+def _inside(path: AnyPath, named: str) -> AnyPath:
     """Return the file that a frame names, which must lie in the capture's folder."""
     pure = PurePosixPath(named.replace("\\", "/"))
     if pure.is_absolute() or ".." in pure.parts or "\0" in named or not pure.name:
         raise CaptureError(
             path, f"names {named[:80]!r}; file paths must be relative and stay inside the folder"
         )
-    found = path.parent / pure
+    found = path.parent / str(pure)
     if not pure.suffix and not found.is_file():  # Blender's export leaves the suffix out.
         for suffix in SUFFIXES:
-            if found.with_suffix(suffix).is_file():
-                return found.with_suffix(suffix)
+            if (path.parent / f"{pure}{suffix}").is_file():
+                return path.parent / f"{pure}{suffix}"
     return found
 
 
-def _camera(path: Path, stated: dict[str, Any], image: Path) -> Camera:
+def _camera(path: AnyPath, stated: dict[str, Any], image: AnyPath) -> Camera:
     model = stated.get("camera_model", "OPENCV")
     if model not in _MODELS:
         raise CaptureError(
@@ -125,7 +126,7 @@ def _camera(path: Path, stated: dict[str, Any], image: Path) -> Camera:
         raise CaptureError(path, f"intrinsics: {error}") from error
 
 
-def _focal(path: Path, stated: dict[str, Any], width: float) -> float:
+def _focal(path: AnyPath, stated: dict[str, Any], width: float) -> float:
     if "fl_x" in stated:
         return _number(path, stated, "fl_x")
     if "camera_angle_x" not in stated:
@@ -136,14 +137,14 @@ def _focal(path: Path, stated: dict[str, Any], width: float) -> float:
     return width / (2 * math.tan(angle / 2))
 
 
-def _number(path: Path, stated: dict[str, Any], key: str, default: float | None = None) -> float:
+def _number(path: AnyPath, stated: dict[str, Any], key: str, default: float | None = None) -> float:
     value = stated.get(key, default)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise CaptureError(path, f'"{key}" must be a number, not {str(value)[:40]}')
     return float(value)
 
 
-def _pose(path: Path, entry: dict[str, Any], scale: float) -> np.ndarray | None:
+def _pose(path: AnyPath, entry: dict[str, Any], scale: float) -> np.ndarray | None:
     if "transform_matrix" not in entry:
         return None
     try:

@@ -48,7 +48,13 @@ def open_scan(
     judged = judge_capture(
         path, chosen, labels, lambda done, total: progress(STAGE, 40 * done // total, STEPS)
     )
-    stream = CaptureViews(judged.frames, judged.encoding)
+    if not judged.complete:
+        lacks = "depth images" if judged.posed else "poses"
+        raise CaptureError(
+            judged.capture.folder,
+            f"has no {lacks}; w2m reconstruct computes them from the pictures first",
+        )
+    stream = CaptureViews(judged.frames, judged.encoding, judged.capture.full_trust)
     notes = list(judged.notes)
     if judged.capture.one_matrix and chosen.colour_camera == "auto":
         progress(STAGE, 40, STEPS, "finding the colour camera")
@@ -64,8 +70,11 @@ def open_scan(
         room_size_m=alignment.room_size_m,
         frames_used=tuple(frame.name for frame in stream.frames),
         frames_skipped=judged.skipped,
+        scale=judged.capture.scale,
+        scale_sigma=judged.capture.scale_sigma,
         source=judged.capture.source,
         notes=(*notes, *alignment.notes),
+        depth_kind=judged.capture.depth_kind,
     )
 
 
@@ -89,7 +98,7 @@ def _with_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
         f"stated {stated.fx_px:.0f} px, principal point moved by ({estimate.shift_x_px:+.1f}, "
         f"{estimate.shift_y_px:+.1f}) px; frames kept apart fit {estimate.gain:.1f} times better"
     )
-    return CaptureViews(frames, stream.encoding), note
+    return CaptureViews(frames, stream.encoding, stream.full_trust), note
 
 
 def _aligned(judged: JudgedCapture, stream: CaptureViews) -> Alignment:

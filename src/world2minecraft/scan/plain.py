@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from world2minecraft.archive import AnyPath
 from world2minecraft.errors import CaptureError
 from world2minecraft.files import read_json, write_bytes, write_json
 from world2minecraft.scan.frames import Capture, FrameFiles
@@ -30,11 +31,11 @@ class PlainSource:
 
     layout = "capture.json with colour/NAME.png, depth/NAME.png (our plain layout)"
 
-    def recognise(self, folder: Path) -> bool:
+    def recognise(self, folder: AnyPath) -> bool:
         """Return whether there is a ``capture.json``."""
         return (folder / "capture.json").is_file()
 
-    def read(self, folder: Path) -> Capture:
+    def read(self, folder: AnyPath) -> Capture:
         """List the frames of a plain capture. Raises CaptureError as ``Source.read`` says."""
         path = folder / "capture.json"
         stated = read_json(path)
@@ -56,7 +57,7 @@ class PlainSource:
         return Capture(folder, "plain", frames, depth_unit=unit, one_matrix="camera" in stated)
 
 
-def _files_by_stem(folder: Path) -> dict[str, dict[str, Path]]:
+def _files_by_stem(folder: AnyPath) -> dict[str, dict[str, AnyPath]]:
     """Return the image files of each subfolder, by their name without suffix."""
     return {
         kind: {
@@ -69,7 +70,7 @@ def _files_by_stem(folder: Path) -> dict[str, dict[str, Path]]:
 
 
 def _frame(
-    path: Path, stated: dict[str, Any], entry: Any, files: dict[str, dict[str, Path]]
+    path: AnyPath, stated: dict[str, Any], entry: Any, files: dict[str, dict[str, AnyPath]]
 ) -> FrameFiles:
     name = entry.get("name") if isinstance(entry, dict) else None
     if not isinstance(name, str) or not _NAME.fullmatch(name):
@@ -94,7 +95,7 @@ def _frame(
     )
 
 
-def _camera(path: Path, stated: dict[str, Any], key: str) -> Camera:
+def _camera(path: AnyPath, stated: dict[str, Any], key: str) -> Camera:
     value = stated.get(key, stated.get("camera"))  # "camera" stands for both.
     if not isinstance(value, dict):
         raise CaptureError(path, f'has no "{key}" with {", ".join(_CAMERA_FIELDS)}')
@@ -107,7 +108,7 @@ def _camera(path: Path, stated: dict[str, Any], key: str) -> Camera:
         raise CaptureError(path, f'"{key}": {error}') from error
 
 
-def _matrix(path: Path, stated: dict[str, Any], key: str) -> np.ndarray | None:
+def _matrix(path: AnyPath, stated: dict[str, Any], key: str) -> np.ndarray | None:
     value = stated.get(key)
     if value is None:
         return None

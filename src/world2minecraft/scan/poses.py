@@ -1,10 +1,10 @@
 """Poses: mended where they are slightly off, skipped where lost, refused where they are wrong."""
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.archive import AnyPath
 from world2minecraft.errors import CaptureError
 from world2minecraft.files import read_bytes
 from world2minecraft.scan.frames import FrameFiles
@@ -15,7 +15,7 @@ MAX_AWAY_M = 25.0  # From the middle of the cameras; further ones did not see on
 MAX_POSE_BYTES = 10_000
 
 
-def read_pose(path: Path) -> np.ndarray:
+def read_pose(path: AnyPath) -> np.ndarray:
     """Read four rows of four numbers; what is not a number (-1.#IND, nan) becomes NaN.
 
     Raises:
@@ -27,7 +27,7 @@ def read_pose(path: Path) -> np.ndarray:
     return np.array([_number(path, word) for word in words]).reshape(4, 4)
 
 
-def _number(path: Path, word: str) -> float:
+def _number(path: AnyPath, word: str) -> float:
     try:
         return float(word)
     except ValueError as error:
@@ -41,7 +41,7 @@ def is_lost(pose: np.ndarray) -> bool:
     return not np.isfinite(pose).all()
 
 
-def mend_pose(pose: np.ndarray, where: Path, frame: str) -> np.ndarray:
+def mend_pose(pose: np.ndarray, where: AnyPath, frame: str) -> np.ndarray:
     """Return a rigid pose, exactly orthonormal.
 
     Args:
@@ -79,14 +79,14 @@ def mend_pose(pose: np.ndarray, where: Path, frame: str) -> np.ndarray:
 
 
 def check_spread(
-    frames: Sequence[FrameFiles], where: Path, typical_depth_m: float
+    frames: Sequence[FrameFiles], where: AnyPath, typical_depth_m: float
 ) -> tuple[tuple[FrameFiles, ...], tuple[tuple[str, str], ...]]:
     """Refuse poses whose places cannot be those of a camera in one room; leave out strays.
 
     Args:
         frames: with rigid poses.
         where: the file or folder that states them.
-        typical_depth_m: what the cameras see, in metres.
+        typical_depth_m: what the cameras see, in metres; 0 where there is no depth.
 
     Returns:
         The frames that stay, and (name, reason) of those whose tracking jumped away.
@@ -101,8 +101,8 @@ def check_spread(
         advice = "they look like millimetres: divide the translations by 1000"
         raise CaptureError(
             where,
-            f"the cameras stand up to {most_m:,.0f} m from their middle and see "
-            f"{typical_depth_m:.1f} m far; "
+            f"the cameras stand up to {most_m:,.0f} m from their middle"
+            + (f" and see {typical_depth_m:.1f} m far; " if typical_depth_m else "; ")
             + (advice if most_m / 1000 < MAX_AWAY_M else "the poses must be in metres"),
         )
     stays = away_m <= MAX_AWAY_M

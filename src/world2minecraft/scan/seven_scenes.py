@@ -7,10 +7,10 @@ is taken. The one matrix is the depth camera's; colour is another camera beside 
 """
 
 import re
-from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.archive import AnyPath
 from world2minecraft.errors import CaptureError, DamagedFileError, InputError
 from world2minecraft.files import read_bytes
 from world2minecraft.scan.frames import Capture, FrameFiles
@@ -28,7 +28,7 @@ class SevenScenesSource:
 
     layout = "frame-000000.color.png, .depth.png, .pose.txt (7-Scenes)"
 
-    def recognise(self, folder: Path) -> bool:
+    def recognise(self, folder: AnyPath) -> bool:
         """Return whether frames of this naming lie in the folder or its sequence folders."""
         return any(
             _FRAME.fullmatch(path.name)
@@ -36,7 +36,7 @@ class SevenScenesSource:
             for path in part.glob("frame-*.*.*")
         )
 
-    def read(self, folder: Path) -> Capture:
+    def read(self, folder: AnyPath) -> Capture:
         """List the frames of all sequences. Raises CaptureError as ``Source.read`` says."""
         parts = _parts(folder)
         listed = [(part, stem, found) for part in parts for stem, found in _frames(part)]
@@ -55,15 +55,15 @@ class SevenScenesSource:
         return Capture(folder, "seven_scenes", frames, one_matrix=True, notes=notes)
 
 
-def _parts(folder: Path) -> list[Path]:
+def _parts(folder: AnyPath) -> list[AnyPath]:
     """Return the folders that may hold frames: this one, ``frames/`` and the sequences."""
     inner = [folder / "frames", *sorted(folder.glob("seq-*"))]
     return [folder, *(part for part in inner if part.is_dir())]
 
 
-def _frames(part: Path) -> list[tuple[str, dict[str, Path]]]:
+def _frames(part: AnyPath) -> list[tuple[str, dict[str, AnyPath]]]:
     """Return each frame's files by kind, in the order of the names."""
-    frames: dict[str, dict[str, Path]] = {}
+    frames: dict[str, dict[str, AnyPath]] = {}
     for path in sorted(part.glob("frame-*.*.*")):
         match = _FRAME.fullmatch(path.name)
         if match:
@@ -72,7 +72,7 @@ def _frames(part: Path) -> list[tuple[str, dict[str, Path]]]:
 
 
 def _intrinsics(
-    folder: Path, parts: list[Path], frames: list[dict[str, Path]]
+    folder: AnyPath, parts: list[AnyPath], frames: list[dict[str, AnyPath]]
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return the 3x3 matrix and a note where it is not the capture's own."""
     for place in (*parts, folder.parent):
@@ -88,7 +88,7 @@ def _intrinsics(
     return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]), (note,)
 
 
-def _read_matrix(path: Path) -> np.ndarray:
+def _read_matrix(path: AnyPath) -> np.ndarray:
     words = read_bytes(path, 10_000).decode("ascii", "replace").split()
     try:
         values = np.array([float(word) for word in words])
@@ -104,7 +104,7 @@ def _read_matrix(path: Path) -> np.ndarray:
     return matrix
 
 
-def _camera(frames: list[dict[str, Path]], matrix: np.ndarray) -> Camera:
+def _camera(frames: list[dict[str, AnyPath]], matrix: np.ndarray) -> Camera:
     """Return the stated camera: the matrix and the image size that it speaks of.
 
     The file states no size, so it is that of the stream whose middle the principal point meets
@@ -118,7 +118,7 @@ def _camera(frames: list[dict[str, Path]], matrix: np.ndarray) -> Camera:
     return Camera(width, height, float(matrix[0, 0]), float(matrix[1, 1]), float(cx), float(cy))
 
 
-def _first_size(frames: list[dict[str, Path]], kind: str) -> tuple[int, int] | None:
+def _first_size(frames: list[dict[str, AnyPath]], kind: str) -> tuple[int, int] | None:
     for found in frames:
         if kind in found:
             try:
@@ -128,7 +128,7 @@ def _first_size(frames: list[dict[str, Path]], kind: str) -> tuple[int, int] | N
     return None
 
 
-def _frame(name: str, found: dict[str, Path], camera: Camera) -> FrameFiles:
+def _frame(name: str, found: dict[str, AnyPath], camera: Camera) -> FrameFiles:
     colour, depth = found.get("color"), found.get("depth")
     pose, problem = None, ""
     try:

@@ -1,11 +1,13 @@
-"""Which layout a folder has.
+"""What kind of capture lies somewhere.
 
-A new layout is one file with a ``Source``, one line here and one test; other packages add theirs
+A new kind is one file with a ``Source``, one line here and one test; other packages add theirs
 through the entry point group ``world2minecraft.source``.
 """
 
+from collections.abc import Iterator
 from pathlib import Path
 
+from world2minecraft.archive import AnyPath, ArchivePath, is_zip
 from world2minecraft.errors import CaptureError
 from world2minecraft.registry import Registry
 from world2minecraft.scan.frames import Capture, Source
@@ -18,33 +20,54 @@ SOURCES = Registry(
         "seven_scenes": "world2minecraft.scan.seven_scenes:SevenScenesSource",
     },
 )
+MAX_WRAPPINGS = 3  # Folders that hold nothing but a folder, as zips often do.
 INDEX_FILES = ("capture.json", "transforms.json")
 
 
 def find_capture(path: str | Path) -> Capture:
-    """Find out the layout of a folder and list its frames.
+    """Find out what kind of capture lies at a path and list its frames.
 
     Args:
-        path: the folder, or its ``capture.json`` or ``transforms.json``.
+        path: a folder, one of its ``INDEX_FILES``, a zip of either, or a file that a source knows.
 
     Raises:
         CaptureError: it is missing, empty, of another kind or contradicts itself.
     """
-    folder = Path(path)
-    if folder.is_file() and folder.name in INDEX_FILES:
-        folder = folder.parent
-    if not folder.exists():
-        raise CaptureError(folder, "is not there")
-    if not folder.is_dir():
-        raise CaptureError(folder, "is a file; a capture is a folder of frames")
+    place = Path(path)
+    if place.is_file() and place.name in INDEX_FILES:
+        place = place.parent
+    if not place.exists():
+        raise CaptureError(place, "is not there")
     try:
-        empty = next(folder.iterdir(), None) is None
+        empty = place.is_dir() and next(place.iterdir(), None) is None
     except OSError as error:
-        raise CaptureError(folder, f"cannot be read: {error.strerror or error}") from error
+        raise CaptureError(place, f"cannot be read: {error.strerror or error}") from error
     sources: list[Source] = [SOURCES.load(name)() for name in SOURCES.names()]
-    for source in sources:
-        if source.recognise(folder):
-            return source.read(folder)
-    kind = "is empty" if empty else "is a folder of another kind"
+    for inner in _places(place):
+        for source in sources:
+            if source.recognise(inner):
+                return source.read(inner)
+    kind = "is empty" if empty else f"is a {_kind(place)} of another kind"
     layouts = "; ".join(source.layout for source in sources)
-    raise CaptureError(folder, f"{kind}; a capture has one of these layouts: {layouts}")
+    raise CaptureError(place, f"{kind}; a capture is one of these: {layouts}")
+
+
+def _places(place: Path) -> Iterator[AnyPath]:
+    """Yield where a capture may lie: there, inside its zip, or in the one folder that it holds."""
+    yield place
+    inner: AnyPath = ArchivePath(place) if place.is_file() and is_zip(place) else place
+    for _ in range(MAX_WRAPPINGS):
+        if inner is not place:
+            yield inner
+        if not inner.is_dir():
+            return
+        held = [entry for entry in inner.iterdir() if not entry.name.startswith((".", "__MACOSX"))]
+        if len(held) != 1 or not held[0].is_dir():
+            return
+        inner = held[0]
+
+
+def _kind(place: Path) -> str:
+    if place.is_dir():
+        return "folder"
+    return "zip" if is_zip(place) else f"file ({place.suffix or 'no suffix'})"

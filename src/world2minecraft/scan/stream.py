@@ -22,6 +22,7 @@ class CaptureViews:
 
     frames: tuple[FrameFiles, ...]
     encoding: DepthEncoding
+    full_trust: float = 255.0
     damaged: dict[str, str] = field(default_factory=dict)
 
     def __len__(self) -> int:
@@ -40,7 +41,7 @@ class CaptureViews:
         """Read the views of some frames; those that cannot be decoded are left out and noted."""
         for frame in frames:
             try:
-                view = read_view(frame, self.encoding)
+                view = read_view(frame, self.encoding, self.full_trust)
             except InputError as error:
                 self.damaged[frame.name] = str(error)
                 continue
@@ -70,10 +71,13 @@ def settled(scan: Scan) -> Scan:
     )
 
 
-def read_view(frame: FrameFiles, encoding: DepthEncoding) -> View:
+def read_view(frame: FrameFiles, encoding: DepthEncoding, full_trust: float = 255.0) -> View:
     """Decode one frame. Raises InputError where a file cannot be decoded."""
     colour = None if frame.colour_path is None else read_colour(frame.colour_path)
     depth = None if frame.depth_path is None else read_depth(frame.depth_path, encoding)
+    trust = _read_trust(frame, depth, full_trust)
+    if depth is not None and trust is not None:
+        depth = np.where(trust > 0, depth, np.float32(0))
     try:
         return View(
             frame.name,
@@ -84,6 +88,7 @@ def read_view(frame: FrameFiles, encoding: DepthEncoding) -> View:
             frame.depth_camera,
             frame.depth_to_colour,
             _read_labels(frame, colour),
+            trust,
         )
     except ValueError as error:
         path = frame.colour_path or frame.depth_path or frame.name
@@ -97,8 +102,24 @@ def _read_labels(frame: FrameFiles, colour: np.ndarray | None) -> np.ndarray | N
     labels = read_raw(frame.labels_path)
     if labels.dtype != np.uint8 or labels.ndim != 2:
         raise DamagedFileError(frame.labels_path, "must hold one 8-bit class id a pixel")
-    if labels.shape == colour.shape[:2]:
-        return labels
-    rows = (np.arange(colour.shape[0]) + 0.5) * labels.shape[0] / colour.shape[0]
-    columns = (np.arange(colour.shape[1]) + 0.5) * labels.shape[1] / colour.shape[1]
-    return np.ascontiguousarray(labels[rows.astype(np.intp)][:, columns.astype(np.intp)])
+    return _at_size(labels, colour.shape[:2])
+
+
+def _read_trust(frame: FrameFiles, depth: np.ndarray | None, full: float) -> np.ndarray | None:
+    """Return how far each depth pixel is to be trusted, uint8 at the depth image's size."""
+    if frame.trust_path is None or depth is None:
+        return None
+    stored = read_raw(frame.trust_path)
+    if stored.ndim != 2 or stored.dtype.kind not in "uf":
+        raise DamagedFileError(frame.trust_path, "must hold one confidence a pixel")
+    share = np.clip(np.nan_to_num(stored.astype(np.float32)) / np.float32(full), 0, 1)
+    return _at_size(np.round(255 * share).astype(np.uint8), depth.shape)
+
+
+def _at_size(image: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """Return an image at another size, by nearest pixels."""
+    if image.shape == shape:
+        return image
+    rows = (np.arange(shape[0]) + 0.5) * image.shape[0] / shape[0]
+    columns = (np.arange(shape[1]) + 0.5) * image.shape[1] / shape[1]
+    return np.ascontiguousarray(image[rows.astype(np.intp)][:, columns.astype(np.intp)])

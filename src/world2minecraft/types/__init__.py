@@ -11,6 +11,7 @@ from world2minecraft.types.evidence import FusedEvidence, GridEvidence, PointEvi
 from world2minecraft.types.grid import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.types.layout import Layout, LayoutObject, Opening
 from world2minecraft.types.objects import Alternative, ObjectInstance, Placement
+from world2minecraft.types.photos import DepthMap, Photo, PhotoStream, SparseScene
 from world2minecraft.types.volume import AIR, BlockEntity, BlockVolume, Entity
 
 __all__ = [
@@ -25,6 +26,7 @@ __all__ = [
     "Blocks",
     "Camera",
     "Corrections",
+    "DepthMap",
     "Entity",
     "FusedEvidence",
     "GridEvidence",
@@ -34,9 +36,12 @@ __all__ = [
     "OccupancyGrid",
     "Opening",
     "Operation",
+    "Photo",
+    "PhotoStream",
     "Placement",
     "PointEvidence",
     "Scan",
+    "SparseScene",
     "View",
     "ViewStream",
 ]

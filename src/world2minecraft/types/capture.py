@@ -70,7 +70,8 @@ class View:
     """One posed frame. Colour and depth may differ in size, lens and place.
 
     ``depth_m`` is z-depth in metres, 0 where there is none. ``camera_to_scan`` is that of the
-    colour camera, or of the depth camera where there is no colour.
+    colour camera, or of the depth camera where there is no colour. ``trust`` uint8 [h, w] says how
+    far each pixel of the depth is to be trusted, 255 wholly.
     """
 
     name: str
@@ -81,6 +82,7 @@ class View:
     depth_camera: Camera | None = None
     depth_to_colour: np.ndarray = field(default_factory=lambda: IDENTITY)
     labels: np.ndarray | None = None
+    trust: np.ndarray | None = None
 
     def __post_init__(self):
         put = object.__setattr__
@@ -104,6 +106,10 @@ class View:
             if not (np.isfinite(depth).all() and (depth >= 0).all()):
                 raise ValueError("depth_m must be finite and not negative; holes are 0")
             put(self, "depth_m", depth)
+            if self.trust is not None:
+                put(self, "trust", checks.array("trust", self.trust, np.uint8, shape))
+        elif self.trust is not None:
+            raise ValueError("trust lies on the depth image; there is none")
 
     @property
     def depth_camera_to_scan(self) -> np.ndarray:
@@ -129,7 +135,7 @@ class Scan:
 
     ``scan_to_room`` carries the scan's frame to the room frame; the inner box of the room is
     from (0, 0, 0) to ``room_size_m``. ``notes`` are sentences for the report; ``name`` is what
-    the scene is called.
+    the scene is called; ``depth_kind`` says what made the depth, and so how it errs.
     """
 
     views: ViewStream
@@ -142,6 +148,7 @@ class Scan:
     source: str = ""
     notes: tuple[str, ...] = ()
     name: str = ""
+    depth_kind: Literal["sensor", "stereo", "exact"] = "sensor"
 
     def __post_init__(self):
         put = object.__setattr__

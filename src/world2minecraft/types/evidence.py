@@ -16,7 +16,8 @@ class PointEvidence:
     ``z^2 / (fx fy)``. Fusion divides its sum in a cell by the cell's face to learn how much of
     the cell the view really saw. ``normals`` are unit vectors towards the camera, (0, 0, 0) where
     none is known; without them surfaces are taken to face the camera. ``labels`` are a shorter
-    form of ``votes``: one whole vote for one class.
+    form of ``votes``: one whole vote for one class. ``trust`` says how far each point is to be
+    trusted, 1 wholly; without it all are.
     """
 
     view: str
@@ -27,6 +28,7 @@ class PointEvidence:
     votes: np.ndarray | None = None  # float16 [N, 12]
     normals: np.ndarray | None = None  # float32 [N, 3], scan frame
     labels: np.ndarray | None = None  # uint8 [N], class ids; 0 and 255 vote for nothing
+    trust: np.ndarray | None = None  # float32 [N], 0 to 1
 
     def __post_init__(self):
         put = object.__setattr__
@@ -43,6 +45,8 @@ class PointEvidence:
             put(self, "normals", checks.array("normals", self.normals, np.float32, (count, 3)))
         if self.labels is not None:
             put(self, "labels", checks.array("labels", self.labels, np.uint8, (count,)))
+        if self.trust is not None:
+            put(self, "trust", checks.array("trust", self.trust, np.float32, (count,)))
 
 
 @dataclass(frozen=True, eq=False)

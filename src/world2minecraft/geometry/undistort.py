@@ -1,0 +1,68 @@
+"""Pictures through a lens without distortion, at any size."""
+
+import numpy as np
+
+from world2minecraft.geometry.lifting import pixel_rays, project
+from world2minecraft.jit import njit
+from world2minecraft.types import Camera
+
+
+def pinhole_of(camera: Camera, width_px: int) -> Camera:
+    """Return a camera of the same look and proportions, another width and no distortion."""
+    height_px = max(1, round(camera.height_px * width_px / camera.width_px))
+    across, down = width_px / camera.width_px, height_px / camera.height_px
+    return Camera(
+        width_px,
+        height_px,
+        camera.fx_px * across,
+        camera.fy_px * down,
+        camera.cx_px * across,
+        camera.cy_px * down,
+    )
+
+
+def undistorted(colour: np.ndarray, camera: Camera, target: Camera) -> np.ndarray:
+    """Return a picture as another camera in the same place would have taken it.
+
+    Args:
+        colour: uint8 [H, W, 3] or [H, W], taken by ``camera``.
+        camera: of the picture's size, with its distortion.
+        target: the camera to see it through; where the picture does not reach, its edge goes on.
+
+    Returns:
+        uint8 of the target's size; each pixel is the mean over its own footprint where the
+        picture is finer, else read between pixels.
+    """
+    rays = pixel_rays(target).astype(np.float64)
+    ahead = np.concatenate([rays, np.ones((*rays.shape[:2], 1))], axis=2)
+    at_px = project(ahead, camera) - 0.5
+    side = max(1, round(camera.fx_px / target.fx_px))
+    planes = np.ascontiguousarray(colour.reshape(*colour.shape[:2], -1))
+    read = _read_between(planes, at_px, side, camera.fx_px / target.fx_px)
+    return read.reshape(*read.shape[:2], *colour.shape[2:])
+
+
+@njit
+def _read_between(colour, at_px, side, step):
+    """Read each place as the mean of side x side bilinear samples, ``step`` pixels in all."""
+    high, wide, channels = colour.shape
+    result = np.empty((at_px.shape[0], at_px.shape[1], channels), np.uint8)
+    for v in range(at_px.shape[0]):
+        for u in range(at_px.shape[1]):
+            for c in range(channels):
+                total = 0.0
+                for i in range(side):
+                    y = at_px[v, u, 1] + ((i + 0.5) / side - 0.5) * step
+                    y = min(max(y, 0.0), high - 1.0)
+                    y0 = min(int(y), max(high - 2, 0))
+                    y1, b = min(y0 + 1, high - 1), y - y0
+                    for j in range(side):
+                        x = at_px[v, u, 0] + ((j + 0.5) / side - 0.5) * step
+                        x = min(max(x, 0.0), wide - 1.0)
+                        x0 = min(int(x), max(wide - 2, 0))
+                        x1, a = min(x0 + 1, wide - 1), x - x0
+                        top = colour[y0, x0, c] * (1 - a) + colour[y0, x1, c] * a
+                        low = colour[y1, x0, c] * (1 - a) + colour[y1, x1, c] * a
+                        total += top * (1 - b) + low * b
+                result[v, u, c] = np.uint8(total / (side * side) + 0.5)
+    return result
