@@ -17,7 +17,13 @@ PINS = [
     if line[:1] not in ("#", "")
 ]
 PINNED = dict(line.lower().replace("_", "-").split("==") for line in PINS)
-REQUIREMENTS = [*PROJECT["dependencies"], *PROJECT["optional-dependencies"]["dev"]]
+EXTRAS = PROJECT["optional-dependencies"]
+REQUIREMENTS = [
+    *PROJECT["dependencies"],
+    *(item for item in EXTRAS["dev"] if not item.startswith(PROJECT["name"])),
+    *EXTRAS["capture"],
+    *EXTRAS["usd"],
+]
 
 
 def numbers(version):

@@ -1,6 +1,7 @@
 """The fast kernels against a slow reading of the same rules."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 from hypothesis import given, settings
@@ -12,7 +13,7 @@ from world2minecraft.types import PointEvidence, Scan
 PARAMETERS = FuseParameters(min_share=0.2)
 
 
-def view(seed: int, count: int = 60) -> PointEvidence:
+def view(seed: int, count: int = 60, trusted: bool = True) -> PointEvidence:
     """Points of a wall at x = 1, some of them noisy, seen from a camera before it."""
     random = np.random.default_rng(seed)
     points = np.stack(
@@ -32,6 +33,7 @@ def view(seed: int, count: int = 60) -> PointEvidence:
         weight=np.full(count, 0.0009, np.float32),
         colour=random.integers(0, 256, (count, 3)).astype(np.uint8),
         votes=votes,
+        trust=None if trusted else random.uniform(0, 1, count).astype(np.float32),
     )
 
 
@@ -51,8 +53,9 @@ def slow_fusion(views, parameters):
             if len(members) < parameters.min_points:
                 continue
             area = sum(item.weight[n] for n, _ in members)
+            sure = 1.0 if item.trust is None else np.mean([item.trust[n] for n, _ in members])
             if area >= parameters.min_share * voxel_m**2:
-                raised = log_odds.get(cell, 0) + parameters.hit_log_odds
+                raised = log_odds.get(cell, 0) + sure * parameters.hit_log_odds
                 log_odds[cell] = min(parameters.limit_log_odds, raised)
                 hits[cell] = hits.get(cell, 0) + len(members)
                 for n, point in members:
@@ -62,9 +65,11 @@ def slow_fusion(views, parameters):
                     votes[cell] = votes.get(cell, 0) + item.votes[n].astype(float)
         freed = set()
         for members in touched.values():
-            if len(members) >= parameters.min_points:
+            sure = 1.0 if item.trust is None else np.mean([item.trust[n] for n, _ in members])
+            if len(members) >= parameters.min_points and sure >= 0.5:
                 target = np.mean([point for _, point in members], axis=0)
-                freed |= crossed(camera, target, parameters.clear_m / voxel_m)
+                far = parameters.clear_growth * np.linalg.norm(target - camera)
+                freed |= crossed(camera, target, parameters.clear_m / voxel_m + far)
         for cell in freed - set(touched):
             lowered = log_odds.get(cell, 0) + parameters.free_log_odds
             log_odds[cell] = max(-parameters.limit_log_odds, lowered)
@@ -92,14 +97,19 @@ def crossed(camera, target, clear):
 
 
 @settings(max_examples=15, deadline=None)
-@given(st.lists(st.integers(0, 10_000), min_size=1, max_size=4, unique=True))
-def test_the_map_equals_the_slow_reading(seeds):
-    views = [view(seed) for seed in seeds]
-    fast = EvidenceMap(np.eye(4), PARAMETERS)
+@given(
+    st.lists(st.integers(0, 10_000), min_size=1, max_size=4, unique=True),
+    st.booleans(),
+    st.sampled_from([0.0, 0.03]),
+)
+def test_the_map_equals_the_slow_reading(seeds, trusted, growth):
+    views = [view(seed, trusted=trusted) for seed in seeds]
+    parameters = replace(PARAMETERS, clear_growth=growth)
+    fast = EvidenceMap(np.eye(4), parameters)
     for item in views:
         fast.add(item)
     fused = fast.fused()
-    log_odds, hits, colour, offset, votes = slow_fusion(views, PARAMETERS)
+    log_odds, hits, colour, offset, votes = slow_fusion(views, parameters)
     low = np.round(fused.origin_m / PARAMETERS.voxel_m).astype(int)
     found = {tuple(cell + low) for cell in np.argwhere(fused.log_odds != 0)}
     expected = {cell for cell, value in log_odds.items() if value != 0}

@@ -132,17 +132,18 @@ class EvidenceMap:
         owner, cells, places = number_cells(
             points, normals, nudge, *where, blocks.mark, self._base
         )  # fmt: skip
-        count, area, target, faces = sum_cells(
-            points, normals, evidence.weight, camera, owner, cells, voxel_m
+        trust = _NO_TRUST if evidence.trust is None else evidence.trust
+        count, area, target, faces, sure = sum_cells(
+            points, normals, evidence.weight, trust, camera, owner, cells, voxel_m
         )
         blocks.reserve_records(len(cells))
         taken = add_hits(
-            places, count, area, faces, rules, blocks.log_odds, blocks.record, blocks.used,
+            places, count, area, faces, sure, rules, blocks.log_odds, blocks.record, blocks.used,
             blocks.hits, blocks.offset_sum, blocks.faces,
         )  # fmt: skip
         self._add_attributes(evidence, owner, taken, places)
         free_rays(
-            camera, target, count, rules, *where, blocks.log_odds, blocks.mark, self._base
+            camera, target, count, sure, rules, *where, blocks.log_odds, blocks.mark, self._base
         )  # fmt: skip
         self._base += len(cells) + 1
 
@@ -188,6 +189,7 @@ class EvidenceMap:
                 values.pose_m,
                 values.pose_growth,
                 values.clear_m / values.voxel_m,
+                values.clear_growth,
             ]
         )
 
@@ -221,3 +223,4 @@ def fuse_views(
 
 
 _NO_NORMALS = np.zeros((0, 3), np.float32)
+_NO_TRUST = np.zeros(0, np.float32)

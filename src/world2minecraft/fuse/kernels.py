@@ -113,21 +113,24 @@ def number_cells(points, normals, nudge, low, table, used, mark, base):
 
 
 @njit
-def sum_cells(points, normals, weight, camera, owner, cells, voxel_m):
+def sum_cells(points, normals, weight, trust, camera, owner, cells, voxel_m):
     """Sum up the points of each cell.
 
     Returns:
         ``count`` int64 [M]; ``area`` float64 [M], square metres; ``target`` float64 [M, 3], sums
         of points; ``faces`` float64 [M, 6, 8]: for each side that points face, their count, sums
-        of their offsets from the cell's centre in metres, of normals and of distances in metres.
+        of their offsets from the cell's centre in metres, of normals and of distances in metres;
+        ``sure`` float64 [M], the mean trust of the points, which is 1 where ``trust`` is empty.
     """
     count = np.zeros(len(cells), np.int64)
+    sure = np.zeros(len(cells), np.float64)
     area = np.zeros(len(cells), np.float64)
     target = np.zeros((len(cells), 3), np.float64)
     faces = np.zeros((len(cells), FACES, FACE_SUMS), np.float64)
     for n in range(len(points)):
         s = owner[n]
         count[s] += 1
+        sure[s] += trust[n] if len(trust) else 1.0
         area[s] += weight[n]
         side = 0
         for axis in range(1, 3):
@@ -142,21 +145,26 @@ def sum_cells(points, normals, weight, camera, owner, cells, voxel_m):
             face[4 + axis] += normals[n, axis]
             square += (points[n, axis] - camera[axis]) ** 2
         face[7] += np.sqrt(square) * voxel_m
-    return count, area, target, faces
+    for s in range(len(cells)):
+        sure[s] /= max(count[s], 1)
+    return count, area, target, faces, sure
 
 
 @njit
-def add_hits(places, count, area, faces, rules, log_odds, record, used, hits, offset_sum, sides):
+def add_hits(
+    places, count, area, faces, sure, rules, log_odds, record, used, hits, offset_sum, sides
+):  # fmt: skip
     """Raise the cells that a view saw enough of; return which, bool [M].
 
     Each face of such a cell adds one measurement of its plane, weighed by one over its variance:
-    that of the pose as seen at its distance, and of the mean of its points.
+    that of the pose as seen at its distance, and of the mean of its points. Both count by trust.
 
     Args:
         places: int64 [M], as are the results of ``sum_cells`` that follow.
         count: int64 [M].
         area: float64 [M].
         faces: float64 [M, 6, 8].
+        sure: float64 [M].
         rules: float64; see ``EvidenceMap``.
         log_odds: float32 [C], as is ``record`` int32.
         record: int32 [C].
@@ -173,7 +181,7 @@ def add_hits(places, count, area, faces, rules, log_odds, record, used, hits, of
             continue
         taken[s] = True
         place = places[s]
-        log_odds[place] = min(limit, log_odds[place] + hit)
+        log_odds[place] = min(limit, log_odds[place] + hit * sure[s])
         if record[place] == 0:
             used[1] += 1
             record[place] = used[1]
@@ -189,7 +197,7 @@ def add_hits(places, count, area, faces, rules, log_odds, record, used, hits, of
             sigma = sigma_m + growth * (z - 0.4) ** 2
             pose = pose_m + pose_growth * z
             share = min(area[s] * points / count[s] / face_m2, 1.0)
-            w = share / (pose * pose + sigma * sigma / points)
+            w = sure[s] * share / (pose * pose + sigma * sigma / points)
             sides[row, f, 0] += w
             for m in range(1, 7):
                 sides[row, f, m] += w * faces[s, f, m] / points

@@ -14,7 +14,8 @@ class FuseParameters:
     min_share: the part of a cell's face that a view must see of it: at 0.05 edges grow, at 0.15
         chair legs go.
     min_points: a single point is noise.
-    clear_m: rays stop this far before their point, so that noise does not eat the surface.
+    clear_m, clear_growth: rays stop ``clear_m + clear_growth * distance`` before their point, so
+        that noise does not eat the surface.
     solid_share: a cell is occupied where its surface leaves this share of it solid: 4 of 64
         sub-cells, the rule by which SSCNet made its labels.
     sigma_m, sigma_growth: the standard deviation of depth at z metres is
@@ -34,6 +35,7 @@ class FuseParameters:
     min_share: float = 0.1
     min_points: int = 2
     clear_m: float = 0.075
+    clear_growth: float = 0.0
     solid_share: float = 0.0625
     sigma_m: float = 0.0012
     sigma_growth: float = 0.0019

@@ -7,15 +7,16 @@ from world2minecraft.jit import njit
 
 
 @njit
-def free_rays(camera, target, count, rules, low, table, used, log_odds, mark, base):
+def free_rays(camera, target, count, sure, rules, low, table, used, log_odds, mark, base):
     """Lower the log-odds of each cell crossed, once a view.
 
-    One ray goes to the mean point of each cell with enough points.
+    One ray goes to the mean point of each cell with enough points that are trusted by half.
 
     Args:
         camera: float64 [3] in cells of the room.
         target: float64 [M, 3], sums of points.
         count: int64 [M], how many points.
+        sure: float64 [M], their mean trust.
         rules: float64; see ``EvidenceMap``.
         low: int64 [3], the first block of the table.
         table: int32 [X, Y, Z], the numbers of the blocks.
@@ -25,7 +26,7 @@ def free_rays(camera, target, count, rules, low, table, used, log_odds, mark, ba
         base: the view's number in ``mark``.
     """
     for s in range(len(target)):
-        if count[s] >= rules[4]:
+        if count[s] >= rules[4] and sure[s] >= 0.5:
             _free_ray(
                 camera, target[s] / count[s], rules, low, table, used, log_odds, mark, base
             )  # fmt: skip
@@ -41,7 +42,7 @@ def _free_ray(camera, target, rules, low, table, used, log_odds, mark, base):
     free, limit = rules[1], rules[2]
     way = target - camera
     length = np.sqrt((way * way).sum())
-    end = length - rules[10]
+    end = length - rules[10] - rules[11] * length
     if end <= 0:
         return
     way /= length

@@ -9,6 +9,7 @@ from world2minecraft.geometry.patches import patches_of_depth
 from world2minecraft.jit import njit
 from world2minecraft.types import View
 
+SURE = 128  # Of 255.
 MOST_EACH = 4096  # All of an image of any size.
 
 
@@ -51,6 +52,8 @@ class Surface:
 def collect_surface(views: Iterable[View], most_each: int = MOST_EACH) -> Surface:
     """Gather the flat patches of views in the scan's frame; views without depth give none.
 
+    Depth that is trusted by less than half is left out.
+
     Args:
         views: read once, one at a time.
         most_each: of a view with more patches, that many are taken, evenly spread.
@@ -60,7 +63,10 @@ def collect_surface(views: Iterable[View], most_each: int = MOST_EACH) -> Surfac
     for view in views:
         if view.depth_m is None or view.depth_camera is None:
             continue
-        found = patches_of_depth(view.depth_m, view.depth_camera).thinned(most_each)
+        depth_m = view.depth_m
+        if view.trust is not None:
+            depth_m = np.where(view.trust >= SURE, depth_m, np.float32(0))
+        found = patches_of_depth(depth_m, view.depth_camera).thinned(most_each)
         pose = view.depth_camera_to_scan
         points.append(_moved(found.points_m, pose[:3, :3], pose[:3, 3]))
         normals.append(_moved(found.normals, pose[:3, :3], np.zeros(3)))

@@ -47,7 +47,15 @@ class DepthPredictor:
             colour=colour,
             normals=facing_of_depth(near_m, camera, camera_to_scan, pixels),
             labels=labels,
+            trust=_trust(view, pixels),
         )
+
+
+def _trust(view: View, pixels: np.ndarray) -> np.ndarray | None:
+    """Return how far each point is to be trusted, 0 to 1; None where all are wholly."""
+    if view.trust is None:
+        return None
+    return view.trust.reshape(-1)[pixels].astype(np.float32) / np.float32(255)
 
 
 def _look_up(view: View, points_m: np.ndarray, pixels: np.ndarray):
