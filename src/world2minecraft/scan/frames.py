@@ -5,12 +5,13 @@ judges them afterwards, the same way for every source.
 """
 
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 
 from world2minecraft.archive import AnyPath
 from world2minecraft.scan.images import ImagePlace
+from world2minecraft.scan.options import ScanOptions
 from world2minecraft.types import Camera
 
 
@@ -85,4 +86,13 @@ class Source(Protocol):
         Raises:
             CaptureError: something that every frame needs is missing or contradicts itself.
         """
+        ...
+
+
+@runtime_checkable
+class TellableSource(Source, Protocol):
+    """A source that options of the user can help, such as the unit of a mesh."""
+
+    def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:
+        """List the frames, as ``read`` does."""
         ...

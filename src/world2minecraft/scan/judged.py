@@ -62,7 +62,7 @@ def judge_capture(
     Raises:
         CaptureError: it cannot be used. LimitError: an image is too large.
     """
-    capture = find_capture(path)
+    capture = find_capture(path, options)
     total = len(capture.frames[:: options.every])
     capture = replace(capture, frames=capture.frames[:: options.every])
     frames, skipped = check_frames(capture, lambda done: step(done, total))

@@ -1,12 +1,15 @@
 """What a user can set of this stage, as ``--set key=value``."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.scan.depth import DepthEncoding
 
-OPTION_NAMES = ("depth_unit", "every", "colour_camera")
+OPTION_NAMES = ("depth_unit", "every", "colour_camera", "unit", "up", "inside")
+SOLID_UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048}
+UP_AXES = ("x", "y", "z", "-x", "-y", "-z")
 
 
 @dataclass(frozen=True)
@@ -19,6 +22,12 @@ class ScanOptions:
     """Take each n-th frame; a video's neighbours say little new."""
     colour_camera: str = "auto"
     """auto: estimate it where depth and colour share one stated matrix; stated: take that."""
+    unit: str | None = None
+    """Of a mesh or a cloud: m, cm, mm, inch or foot; else told from its size."""
+    up: str | None = None
+    """Of a mesh or a cloud: which of its own axes points up; else told from its surfaces."""
+    inside: tuple[float, float, float] | None = None
+    """Of a mesh or a cloud: a point inside the room, in the file's own units and axes."""
 
 
 def parse_options(options: Mapping[str, str]) -> ScanOptions:
@@ -39,4 +48,29 @@ def parse_options(options: Mapping[str, str]) -> ScanOptions:
     unit = options.get("depth_unit")
     if unit is not None:
         DepthEncoding(unit)
-    return ScanOptions(unit, int(every), colour_camera)
+    return ScanOptions(
+        unit,
+        int(every),
+        colour_camera,
+        _one_of("unit", options.get("unit"), tuple(SOLID_UNITS_M)),
+        _one_of("up", options.get("up"), UP_AXES),
+        _point("inside", options.get("inside")),
+    )
+
+
+def _one_of(name: str, value: str | None, known: tuple[str, ...]) -> str | None:
+    if value is not None and value not in known:
+        raise UsageError(f"{name} must be one of {', '.join(known)}, not {value!r}")
+    return value
+
+
+def _point(name: str, value: str | None) -> tuple[float, float, float] | None:
+    if value is None:
+        return None
+    try:
+        x, y, z = (float(part) for part in value.split(","))
+    except ValueError:
+        x = y = z = math.nan
+    if not all(map(math.isfinite, (x, y, z))):
+        raise UsageError(f"{name} must be three numbers such as 1.5,2,1.2, not {value!r}")
+    return x, y, z

@@ -10,7 +10,8 @@ from pathlib import Path
 from world2minecraft.archive import AnyPath, ArchivePath, is_zip
 from world2minecraft.errors import CaptureError
 from world2minecraft.registry import Registry
-from world2minecraft.scan.frames import Capture, Source
+from world2minecraft.scan.frames import Capture, Source, TellableSource
+from world2minecraft.scan.options import ScanOptions
 
 SOURCES = Registry(
     "source",
@@ -24,11 +25,12 @@ MAX_WRAPPINGS = 3  # Folders that hold nothing but a folder, as zips often do.
 INDEX_FILES = ("capture.json", "transforms.json")
 
 
-def find_capture(path: str | Path) -> Capture:
+def find_capture(path: str | Path, options: ScanOptions | None = None) -> Capture:
     """Find out what kind of capture lies at a path and list its frames.
 
     Args:
         path: a folder, one of its ``INDEX_FILES``, a zip of either, or a file that a source knows.
+        options: what the user says of it; told to sources that are ``TellableSource``.
 
     Raises:
         CaptureError: it is missing, empty, of another kind or contradicts itself.
@@ -46,6 +48,8 @@ def find_capture(path: str | Path) -> Capture:
     for inner in _places(place):
         for source in sources:
             if source.recognise(inner):
+                if isinstance(source, TellableSource):
+                    return source.read_with(inner, options or ScanOptions())
                 return source.read(inner)
     kind = "is empty" if empty else f"is a {_kind(place)} of another kind"
     layouts = "; ".join(source.layout for source in sources)
