@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from world2minecraft.coordinates import apply, invert_rigid, rotation_about_z
 from world2minecraft.geometry.surface import collect_surface
 from world2minecraft.scan.align import ImplausibleRoomError, align, align_surface
-from world2minecraft.scan.gravity import frame_of_up
+from world2minecraft.scan.gravity import find_ground, frame_of_up
 from world2minecraft.scan.surface import profile
 
 
@@ -107,3 +107,23 @@ def test_profile_counts_patches_once_however_often_they_were_seen():
     assert len(once.peaks(0.5)) == 1
     assert once.peaks(0.5)[0] == pytest.approx(0.72, abs=0.02)
     assert len(profile(np.zeros((0, 3)), 2).peaks(0.1)) == 0
+
+
+@pytest.mark.parametrize("off_deg", [0.0, 4.0])
+def test_up_that_is_known_is_found_though_all_cameras_lie_on_their_side(surfaces, off_deg):
+    surface = surfaces[0][1]
+    side = np.eye(4)
+    side[:2, :2] = [[0, -1], [1, 0]]
+    lying = replace(surface, cameras=surface.cameras @ side)
+    hint = Rotation.from_euler("x", off_deg, degrees=True).apply([0, 0, 1.0])
+    aligned = align_surface(lying, hint)
+    size = surfaces[1]
+    _check(aligned.scan_to_room, np.eye(4), aligned.room_size_m, size, degrees=0.3, metres=0.01)
+
+
+def test_up_stays_near_what_is_known(surfaces):
+    """However much surface faces another way, the hint is left by 10 degrees at most."""
+    for tilt_deg in (15.0, 40.0, 75.0):
+        hint = Rotation.from_euler("x", tilt_deg, degrees=True).apply([0, 0, 1.0])
+        ground = find_ground(surfaces[0][None], hint)
+        assert np.degrees(np.arccos(min(1.0, ground.up @ hint))) <= 10

@@ -40,8 +40,12 @@ class ImplausibleRoomError(ValueError):
     """What was seen cannot be a room; the text says why and what to do."""
 
 
-def align(views: Iterable[View]) -> Alignment:
+def align(views: Iterable[View], up_hint: np.ndarray | None = None) -> Alignment:
     """Find the room in some views of a scan, read once and one at a time.
+
+    Args:
+        views: of one scan's frame, in any tilt and turn.
+        up_hint: as ``find_ground`` takes it.
 
     Raises:
         ImplausibleRoomError: too little surface was seen, or the size is no room's.
@@ -52,12 +56,12 @@ def align(views: Iterable[View]) -> Alignment:
             f"only {len(surface.points_m)} places of the depth images are smooth surface; "
             f"at least {LEAST_POINTS} are needed: is this depth of a room?"
         )
-    return align_surface(surface)
+    return align_surface(surface, up_hint)
 
 
-def align_surface(surface: Surface) -> Alignment:
-    """Find the room in oriented points of the scan's frame."""
-    ground = find_ground(surface)
+def align_surface(surface: Surface, up_hint: np.ndarray | None = None) -> Alignment:
+    """Find the room in oriented points of the scan's frame; ``find_ground`` takes the hint."""
+    ground = find_ground(surface, up_hint)
     scan_to_level = np.eye(4)
     scan_to_level[:3, :3] = frame_of_up(ground.up)
     scan_to_level[2, 3] = -ground.height_m

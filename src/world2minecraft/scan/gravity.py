@@ -16,6 +16,7 @@ VOTERS = 4000
 WITHIN_DEG = 8.0
 ROLL_SIGMA = 0.20  # Sine of how far a hand-held camera rolls.
 FACING_DEG = 20.0
+HINT_DEG = 10.0  # ARKit's own world leans by under a degree, one that drifted by a few.
 FLOOR_LEAST_M2 = 0.3
 FLOOR_SHARE = 0.15  # Of the largest level surface: a table top is smaller than that many floors.
 FLOOR_BAND_M = 0.15  # The first guess of up is off by under 2 degrees, over 4 m.
@@ -32,15 +33,30 @@ class Ground:
     floor_area_m2: float  # 0 where no floor was seen and the lowest points stand for it.
 
 
-def find_ground(surface: Surface) -> Ground:
-    """Return up and the floor's plane; see the module's text."""
-    up = _refined(surface.normals, _voted_up(surface))
+def find_ground(surface: Surface, up_hint: np.ndarray | None = None) -> Ground:
+    """Return up and the floor's plane; see the module's text.
+
+    Args:
+        surface: oriented points of the scan's frame.
+        up_hint: unit vector float64 [3] where the capture knows up, as a phone does by its sense
+            of gravity; then up lies within 10 degrees of it, and is it where no surface says more.
+    """
+    voted = _voted_up(surface) if up_hint is None else up_hint
+    refined = _refined(surface.normals, voted)
+    up = refined if _is_near(refined, up_hint) else voted
     height, area = _floor_height(surface, up)
     if area == 0:
         return Ground(up, height, 0.0)
     for _ in range(2):
-        up, height = _fit_floor(surface, up, height)
+        fitted, fitted_height = _fit_floor(surface, up, height)
+        if not _is_near(fitted, up_hint):
+            break
+        up, height = fitted, fitted_height
     return Ground(up, height, area)
+
+
+def _is_near(up: np.ndarray, up_hint: np.ndarray | None) -> bool:
+    return up_hint is None or bool(up @ up_hint >= np.cos(np.radians(HINT_DEG)))
 
 
 def _voted_up(surface: Surface) -> np.ndarray:

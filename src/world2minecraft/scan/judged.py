@@ -19,6 +19,7 @@ from world2minecraft.scan.labels import attach_labels, check_labels
 from world2minecraft.scan.options import ScanOptions
 from world2minecraft.scan.poses import check_spread
 from world2minecraft.scan.sources import find_capture
+from world2minecraft.scan.upright import SAID, quarter_turns_of, turned_frame
 
 SAMPLED_FRAMES = 12
 T = TypeVar("T")
@@ -68,6 +69,7 @@ def judge_capture(
     frames, skipped = check_frames(capture, lambda done: step(done, total))
     if labels is not None:
         frames = attach_labels(frames, labels)
+    frames, turned = _upright(frames, capture)
     check_labels(frames)
     looked_at = spread_over([frame for frame in frames if frame.depth_path], SAMPLED_FRAMES)
     paths = [frame.depth_path for frame in looked_at if frame.depth_path]
@@ -76,10 +78,21 @@ def judge_capture(
     strayed: Skipped = ()
     if is_posed(frames) and capture.scale != "unknown":
         frames, strayed = check_spread(frames, capture.folder, typical_m)
-    notes = list(capture.notes)
+    notes = [*capture.notes, *turned]
     if encoding.guessed:
         notes.append(f"depth is read as {encoding.said}, told from its values")
     return JudgedCapture(capture, frames, (*skipped, *strayed), encoding, typical_m, tuple(notes))
+
+
+def _upright(
+    frames: tuple[FrameFiles, ...], capture: Capture
+) -> tuple[tuple[FrameFiles, ...], tuple[str, ...]]:
+    """Return the frames with upright images where the capture knows up, and what to tell."""
+    turns = 0 if capture.world_up is None else quarter_turns_of(frames, capture.world_up)
+    if turns == 0:
+        return frames, ()
+    note = f"the images lie on their side or head; they are read with {SAID[turns]}"
+    return tuple(turned_frame(frame, turns) for frame in frames), (note,)
 
 
 def _encoding(paths: Sequence[ImagePlace], options: ScanOptions, capture: Capture) -> DepthEncoding:

@@ -104,7 +104,8 @@ def _with_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
 def _aligned(judged: JudgedCapture, stream: CaptureViews) -> Alignment:
     with_depth = without_colour(stream.frames)
     try:
-        return align(stream.read(spread_over(with_depth, ALIGNED_FRAMES)))
+        views = stream.read(spread_over(with_depth, ALIGNED_FRAMES))
+        return align(views, judged.capture.world_up)
     except ImplausibleRoomError as error:
         raise CaptureError(judged.capture.folder, str(error)) from error
 
