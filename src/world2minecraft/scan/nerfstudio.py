@@ -2,7 +2,8 @@
 
 Cameras have OpenGL axes. Intrinsics stand once or in each frame; depth images are optional and
 share the colour image's camera at their own size. ``applied_scale`` says by what the poses were
-multiplied: it is divided out, so that they are in the unit of the depth again.
+multiplied: it is divided out, so that they are in the unit of the depth again. Poses that COLMAP
+found have no unit: ``ns-process-data`` leaves its traces in the file, by which that is known.
 """
 
 import math
@@ -45,24 +46,47 @@ class NerfstudioSource:
         if scale <= 0:
             raise CaptureError(path, f'"applied_scale" must be above 0, not {scale}')
         frames = [_frame(path, stated, entry, scale) for entry in entries]
-        unit = stated.get("depth_unit_scale_factor")
-        notes = () if scale == 1 else (f"the poses are divided by applied_scale, {scale:g}",)
+        notes = [] if scale == 1 else [f"the poses are divided by applied_scale, {scale:g}"]
+        lost = sum(_depth_named(entry) is not None for entry in entries)
+        lost -= sum(frame.depth_path is not None for frame in frames)
+        if lost:
+            notes.append(f"{lost} depth images that the file names are not there")
         return Capture(
             folder,
             "nerfstudio",
             tuple(sorted(_named_apart(frames), key=lambda frame: frame.name)),
-            depth_unit=None if unit is None else str(unit),
+            depth_unit=_depth_unit(path, stated),
             one_matrix=True,
-            notes=notes,
+            notes=tuple(notes),
+            scale="unknown" if _is_of_colmap(stated, entries) else "metric",
         )
+
+
+def _depth_unit(path: AnyPath, stated: dict[str, Any]) -> str | None:
+    """Return metres per unit of the depth, by nerfstudio's name of it or instant-ngp's."""
+    for key in ("depth_unit_scale_factor", "integer_depth_scale"):
+        if stated.get(key) is not None:
+            return f"{_number(path, stated, key):.17g}"
+    return None
+
+
+def _is_of_colmap(stated: dict[str, Any], entries: list[Any]) -> bool:
+    """Return whether the poses were found by COLMAP, which knows no metres.
+
+    Each frame then has ``colmap_im_id``; older versions leave ``applied_transform`` alone, which
+    says the same where no depth gives a unit.
+    """
+    if any(isinstance(entry, dict) and "colmap_im_id" in entry for entry in entries):
+        return True
+    return "applied_transform" in stated and not any(map(_depth_named, entries))
 
 
 def _frame(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> FrameFiles:
     if not isinstance(entry, dict) or not isinstance(entry.get("file_path"), str):
         raise CaptureError(path, 'every frame must be an object with "file_path"')
     colour = _inside(path, entry["file_path"])
-    depth = entry.get("depth_file_path")
-    depth_path = _inside(path, depth) if isinstance(depth, str) else None
+    depth_path = _existing(path, _depth_named(entry))
+    trust_path = _existing(path, entry.get("mask_path")) if depth_path else None
     labels = path.parent / "labels" / f"{colour.stem}.png"
     pose = _pose(path, entry, scale)
     try:
@@ -80,7 +104,20 @@ def _frame(path: AnyPath, stated: dict[str, Any], entry: Any, scale: float) -> F
         camera if depth_path else None,
         labels_path=labels if labels.is_file() else None,
         problem="" if pose is not None else "has no transform_matrix",
+        trust_path=trust_path,
     )
+
+
+def _depth_named(entry: Any) -> str | None:
+    """Return the depth image that a frame names, as nerfstudio or as NeRFCapture calls it."""
+    named = [entry.get(key) for key in ("depth_file_path", "depth_path")] if entry else []
+    return next((name for name in named if isinstance(name, str) and name), None)
+
+
+def _existing(path: AnyPath, named: Any) -> AnyPath | None:
+    """Return the file that a frame names, None where it is not there: NeRFCapture leaves it out."""
+    found = _inside(path, named) if isinstance(named, str) and named else None
+    return found if found is not None and found.is_file() else None
 
 
 def _inside(path: AnyPath, named: str) -> AnyPath:
