@@ -17,6 +17,11 @@ SOURCES = Registry(
     "source",
     {
         "plain": "world2minecraft.scan.plain:PlainSource",
+        "record3d": "world2minecraft.scan.apps.record3d:Record3DSource",
+        "polycam": "world2minecraft.scan.apps.polycam:PolycamSource",
+        "stray": "world2minecraft.scan.apps.stray:StraySource",
+        "arkitscenes": "world2minecraft.scan.apps.arkitscenes:ARKitScenesSource",
+        "scanner_app": "world2minecraft.scan.apps.scanner_app:ScannerAppSource",
         "nerfstudio": "world2minecraft.scan.nerfstudio:NerfstudioSource",
         "seven_scenes": "world2minecraft.scan.seven_scenes:SevenScenesSource",
     },

@@ -1,0 +1,1 @@
+"""What phone apps with LiDAR or AR tracking export: one file per app, and what they share."""

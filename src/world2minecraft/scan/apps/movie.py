@@ -1,0 +1,146 @@
+"""The pictures of a video that an app wrote beside its depth, by their number.
+
+The times of all pictures are listed once, without decoding. Pictures are decoded in a row; one
+that lies elsewhere is reached from the key picture before it.
+"""
+
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.archive import AnyPath
+from world2minecraft.errors import DamagedFileError, InputError, LimitError, MissingExtraError
+from world2minecraft.scan.images import MAX_PIXELS, ImageHeader
+
+MAX_PICTURES = 1_000_000  # Four hours and a half at 60 Hz.
+
+
+class Movie:
+    """An opened video: its pictures' times and size, and where decoding stands."""
+
+    def __init__(self, path: AnyPath):
+        """Open a video and list its pictures.
+
+        Raises:
+            DamagedFileError: it is no whole video. LimitError: its pictures are too large or too
+                many. MissingExtraError: ``av`` is not installed.
+        """
+        try:
+            import av  # noqa: PLC0415
+            from av.error import FFmpegError  # noqa: PLC0415
+        except ImportError as error:
+            raise MissingExtraError("reading videos", "capture") from error
+        self.path = path
+        self._errors = (FFmpegError, ValueError, IndexError, OSError)
+        try:
+            self._container: Any = av.open(path.open("rb"), "r")
+            self._stream: Any = self._container.streams.video[0]
+            self._stream.codec_context.thread_count = 1
+            self.size = (self._stream.codec_context.width, self._stream.codec_context.height)
+            self.times, self.key_times = self._times()
+        except self._errors as error:
+            raise DamagedFileError(path, f"is no whole video ({_one_line(error)})") from error
+        held = len(self.times)
+        if self.size[0] * self.size[1] > MAX_PIXELS or held > MAX_PICTURES:
+            raise LimitError(path, f"has {held:,} pictures of {self.size}; too many to read")
+        self._decoded: Iterator[Any] = iter(())
+        self._next = -1
+
+    def _times(self) -> tuple[list[int], list[int]]:
+        every, key = [], []
+        for packet in self._container.demux(self._stream):
+            if packet.pts is not None:
+                every.append(packet.pts)
+                if packet.is_keyframe:
+                    key.append(packet.pts)
+        return sorted(every), sorted(key)
+
+    def picture(self, index: int) -> np.ndarray:
+        """Return a picture, uint8 [H, W, 3]. Raises DamagedFileError where it cannot be decoded."""
+        try:
+            return self._picture(index)
+        except self._errors as error:
+            self._next = -1
+            reason = f"picture {index} cannot be decoded ({_one_line(error)})"
+            raise DamagedFileError(self.path, reason) from error
+
+    def _picture(self, index: int) -> np.ndarray:
+        time = self.times[index]
+        if not 0 <= self._next <= index or self._key_between(index):
+            self._container.seek(time, stream=self._stream, backward=True, any_frame=False)
+            self._decoded = self._container.decode(self._stream)
+        for frame in self._decoded:
+            if frame.pts is not None and frame.pts >= time:
+                self._next = index + 1
+                if frame.pts > time or (frame.width, frame.height) != self.size:
+                    break
+                return np.ascontiguousarray(frame.to_ndarray(format="rgb24"))
+        raise ValueError("it is missing")
+
+    def _key_between(self, index: int) -> bool:
+        """Whether a key picture lies ahead, so that seeking spares decoding all until there."""
+        here = self.times[min(self._next, len(self.times) - 1)]
+        ahead = bisect_right(self.key_times, self.times[index]) > bisect_right(self.key_times, here)
+        return ahead and index > self._next
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split())[:80] or type(error).__name__
+
+
+@lru_cache(maxsize=2)
+def _opened(path: AnyPath, size: int) -> Movie:
+    return Movie(path)
+
+
+def open_movie(path: AnyPath) -> Movie:
+    """Open a video, once for all its pictures. Raises what ``Movie`` raises."""
+    try:
+        return _opened(path, path.stat().st_size)
+    except FileNotFoundError as error:
+        raise InputError(path, "is not there") from error
+
+
+@dataclass(frozen=True)
+class MoviePicture:
+    """An ``ImageSource``: one picture of a video."""
+
+    path: AnyPath
+    index: int
+
+    def __str__(self) -> str:
+        """The video and the picture's number, for messages."""
+        return f"{self.path}, picture {self.index}"
+
+    @property
+    def stem(self) -> str:
+        """The picture's number with six digits, as the files beside the video are named."""
+        return f"{self.index:06d}"
+
+    @property
+    def name(self) -> str:
+        """The video's name and the picture's number."""
+        return f"{self.path.name} picture {self.index}"
+
+    def header(self) -> ImageHeader:
+        """Return the video's size."""
+        return ImageHeader(*open_movie(self.path).size, "RGB")
+
+    def check_whole(self) -> None:
+        """Check that the video has so many pictures."""
+        held = len(open_movie(self.path).times)
+        if self.index >= held:
+            raise DamagedFileError(self, f"is not there: the video holds {held}")
+
+    def colour(self) -> np.ndarray:
+        """Return uint8 [H, W, 3] sRGB."""
+        self.check_whole()
+        return open_movie(self.path).picture(self.index)
+
+    def raw(self) -> np.ndarray:
+        """Raise: a video holds colours."""
+        raise DamagedFileError(self, "holds colours, not single values")
