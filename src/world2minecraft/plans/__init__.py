@@ -1,0 +1,26 @@
+"""Plans of rooms that an app has measured: Apple's RoomPlan, as a world or beside a scan.
+
+``build_plan`` makes a world of a plan alone. ``laid_plan`` finds where a plan lies in a scan;
+``plan_votes`` then lets it say what the scan's cells are, and ``with_plan_openings`` adds doors
+and windows that were not seen. ``find_roomplan`` tells whether a path holds a plan.
+"""
+
+from world2minecraft.exchange.roomplan import find_roomplan, read_roomplan
+from world2minecraft.plans.matching import LaidPlan, PlanMismatchError, laid_plan
+from world2minecraft.plans.outlines import layouts_of, straightened
+from world2minecraft.plans.votes import plan_votes, with_plan_openings
+from world2minecraft.plans.world import PlanWorld, build_plan
+
+__all__ = [
+    "LaidPlan",
+    "PlanMismatchError",
+    "PlanWorld",
+    "build_plan",
+    "find_roomplan",
+    "laid_plan",
+    "layouts_of",
+    "plan_votes",
+    "read_roomplan",
+    "straightened",
+    "with_plan_openings",
+]

@@ -1,0 +1,155 @@
+"""What a plan says of a scan's cells, as votes; and openings that the scan did not show.
+
+Evidence wins: only cells in which the scan met surface are voted on, none is added or taken away.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_COUNT, SemanticClass
+from world2minecraft.coordinates import cell_centers_m
+from world2minecraft.exchange.roomplan import CapturedPlan, PlanObject, PlanSurface
+from world2minecraft.metrics.layout import inside_polygon
+from world2minecraft.plans.furniture import class_of
+from world2minecraft.plans.outlines import PlacedRoom, placed_rooms
+from world2minecraft.types import FusedEvidence, Layout, Opening
+
+WALL_M = 0.12  # RoomPlan's walls are off by some centimetres.
+EDGE_M = 0.02  # Beyond a room's outline its walls stand.
+LEVEL_M = 0.10
+AROUND_M = 0.06  # Boxes of furniture are close; what sticks out of them still belongs to it.
+ON_WALL_M = 0.30  # An opening of the plan lies so near to a wall of the scan.
+PLAN_SHARE = 0.5  # Beside votes that are there: labels of images see edges, a plan does not.
+CLASS_OF_KIND = {"window": SemanticClass.WINDOW, "door": SemanticClass.OBJS}
+
+
+def plan_votes(evidence: FusedEvidence, plan: CapturedPlan) -> FusedEvidence:
+    """Return the evidence with a plan's votes beside its own.
+
+    Args:
+        evidence: what was fused.
+        plan: in the room frame; see ``laid_plan``.
+    """
+    cells = np.argwhere(evidence.log_odds > 0)
+    hits = np.maximum(evidence.hits[tuple(cells.T)], 1)[:, None]
+    points = cell_centers_m(cells, evidence.origin_m, evidence.voxel_m)
+    points = points + evidence.offset_sum[tuple(cells.T)] / hits
+    label, weight = np.zeros(len(points), np.int64), np.zeros(len(points))
+    for room in placed_rooms(plan):
+        _vote_for_structure(points, room, label, weight)
+        _vote_for_objects(points, room, label, weight)
+    votes = evidence.votes.astype(np.float32)
+    said = label > 0
+    at = tuple(cells[said].T)
+    own = votes[at].sum(axis=1)
+    added = np.zeros((int(said.sum()), CLASS_COUNT), np.float32)
+    added[np.arange(len(added)), label[said]] = weight[said] * (1 + PLAN_SHARE * own)
+    votes[at] += added
+    return replace(evidence, votes=np.minimum(votes, np.finfo(np.float16).max).astype(np.float16))
+
+
+def with_plan_openings(layouts: Sequence[Layout], planned: Sequence[Layout]) -> tuple[Layout, ...]:
+    """Return rooms with those openings of a plan that lie on their walls and were not found.
+
+    Args:
+        layouts: of the scan.
+        planned: of the plan, in the same frame.
+    """
+    every = [opening for room in planned for opening in room.openings]
+    result = []
+    for layout in layouts:
+        found = list(layout.openings)
+        for opening in every:
+            on_wall = _on_wall(opening, layout)
+            if on_wall is not None and not any(_meet(on_wall, other) for other in found):
+                found.append(on_wall)
+        result.append(replace(layout, openings=tuple(found)))
+    return tuple(result)
+
+
+def _vote_for_structure(
+    points: np.ndarray, room: PlacedRoom, label: np.ndarray, weight: np.ndarray
+) -> None:
+    within = inside_polygon(points[:, :2], room.outline_m, EDGE_M)
+    for height, kind in (
+        (room.floor_z_m, SemanticClass.FLOOR),
+        (room.floor_z_m + room.height_m, SemanticClass.CEILING),
+    ):
+        level = within & (np.abs(points[:, 2] - height) < LEVEL_M)
+        label[level], weight[level] = kind, 1.0
+    for wall in room.room.walls:
+        near = _near(points, wall)
+        inside = (points[:, 2] > wall.bottom_m + LEVEL_M) & (points[:, 2] < wall.top_m - LEVEL_M)
+        label[near & inside], weight[near & inside] = SemanticClass.WALL, wall.confidence
+    for opening in room.room.openings:
+        kind = CLASS_OF_KIND.get(opening.kind)
+        if kind is not None:
+            high = (points[:, 2] > opening.bottom_m + 0.02) & (points[:, 2] < opening.top_m)
+            cut = _near(points, opening) & high & (points[:, 2] > room.floor_z_m + LEVEL_M)
+            label[cut], weight[cut] = kind, opening.confidence
+
+
+def _vote_for_objects(
+    points: np.ndarray, room: PlacedRoom, label: np.ndarray, weight: np.ndarray
+) -> None:
+    """Let furniture claim what lies in its box; around it only what is no structure."""
+    over = points[:, 2] > room.floor_z_m + 0.5 * LEVEL_M
+    for item in room.room.objects:
+        free = (label == 0) | (label > SemanticClass.WINDOW)
+        claimed = over & (_in_box(points, item, 0.0) | (free & _in_box(points, item, AROUND_M)))
+        claimed &= (label == 0) | (weight <= item.confidence) | ~free
+        label[claimed], weight[claimed] = class_of(item), item.confidence
+
+
+def _near(points: np.ndarray, surface: PlanSurface) -> np.ndarray:
+    """Return which points lie near an upright surface, seen from above."""
+    along = (surface.end_m - surface.start_m) / max(surface.length_m, 1e-9)
+    offset = points[:, :2] - surface.start_m
+    place = offset @ along
+    off = offset @ np.array([-along[1], along[0]])
+    return np.asarray((place > 0) & (place < surface.length_m) & (np.abs(off) < WALL_M))
+
+
+def _in_box(points: np.ndarray, item: PlanObject, around_m: float) -> np.ndarray:
+    turn = np.radians(item.yaw_deg)
+    front = np.array([np.cos(turn), np.sin(turn)])
+    offset = points - item.center_m
+    across = np.stack(
+        [offset[:, :2] @ front, offset[:, :2] @ np.array([-front[1], front[0]]), offset[:, 2]]
+    )
+    inside = np.abs(across) <= item.size_m[:, None] / 2 + around_m
+    return np.asarray(inside.all(axis=0))
+
+
+def _on_wall(opening: Opening, layout: Layout) -> Opening | None:
+    """Return an opening moved onto the nearest wall of a room; None where none is near."""
+    corners = layout.floor_polygon_m
+    best, least = None, ON_WALL_M
+    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        along = end - start
+        length = float(np.linalg.norm(along))
+        if length < 0.1:
+            continue
+        along = along / length
+        places = [float((point - start) @ along) for point in (opening.start_m, opening.end_m)]
+        middle = (opening.start_m + opening.end_m) / 2 - start
+        off = abs(float(middle @ np.array([-along[1], along[0]])))
+        direction = opening.end_m - opening.start_m
+        parallel = abs(float(direction @ along)) > 0.95 * float(np.linalg.norm(direction))
+        low, high = max(min(places), 0.0), min(max(places), length)
+        if parallel and off < least and high - low > 0.5 * abs(places[1] - places[0]):
+            ends = [np.round(start + place * along, 4) for place in (low, high)]
+            best = replace(opening, start_m=ends[0], end_m=ends[1])
+            least = off
+    if best is None or best.sill_m >= layout.wall_height_m:
+        return None
+    return replace(best, head_m=min(best.head_m, layout.wall_height_m))
+
+
+def _meet(one: Opening, other: Opening) -> bool:
+    """Whether two openings lie in the same place of a wall."""
+    apart = np.linalg.norm((one.start_m + one.end_m) / 2 - (other.start_m + other.end_m) / 2)
+    reach = np.linalg.norm(one.end_m - one.start_m) + np.linalg.norm(other.end_m - other.start_m)
+    return bool(apart < reach / 2)

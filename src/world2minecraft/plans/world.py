@@ -1,0 +1,109 @@
+"""From a plan to a finished run: the files that a reconstruction would leave, and the world."""
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft import __version__
+from world2minecraft.archive import AnyPath
+from world2minecraft.exchange.layout import write_layouts
+from world2minecraft.exchange.objects import write_objects, write_placements
+from world2minecraft.exchange.paper import write_centers_json, write_occ_json
+from world2minecraft.exchange.room import write_room
+from world2minecraft.exchange.roomplan import CapturedPlan, read_roomplan
+from world2minecraft.exchange.scan import write_scan
+from world2minecraft.files import write_json
+from world2minecraft.furnish.settling import settle
+from world2minecraft.parameters import Parameters
+from world2minecraft.plans.cells import PlanCells, cells_of_plan
+from world2minecraft.plans.outlines import layouts_of, placed_rooms, straightened
+from world2minecraft.progress import Progress, silent
+from world2minecraft.run_folder import check_writable
+from world2minecraft.steps import LATER_STEPS
+from world2minecraft.types import Layout, Scan
+
+
+@dataclass(frozen=True, eq=False)
+class PlanWorld:
+    """What became of a plan: its scan (without views), its rooms and how many objects stand."""
+
+    scan: Scan
+    layouts: tuple[Layout, ...]
+    objects: int
+
+
+def build_plan(
+    place: AnyPath,
+    out: Path,
+    parameters: Parameters | None = None,
+    progress: Progress = silent,
+    name: str = "",
+) -> PlanWorld:
+    """Turn a RoomPlan capture into a run's folder with its world; no photo is needed.
+
+    Args:
+        place: the JSON, as ``find_roomplan`` finds it.
+        out: the folder of the results.
+        parameters: cells, scale, style and palette count.
+        progress: told of each step.
+        name: what the scene is called.
+
+    Raises:
+        InputError: the plan cannot be read. OutputError: ``out`` cannot be written.
+    """
+    chosen = parameters or Parameters()
+    progress("plan", 0, 1)
+    plan = straightened(read_roomplan(place))
+    held = cells_of_plan(plan, chosen.voxel_m)
+    layouts = layouts_of(plan)
+    check_writable(out)
+    scan = scan_of_plan(plan, name)
+    _write_run(out, held, layouts, scan)
+    write_json(out / "manifest.json", _manifest(place, chosen))
+    progress("plan", 1, 1)
+    progress("build", 0, 1)
+    LATER_STEPS["build"](out, chosen)
+    progress("build", 1, 1)
+    return PlanWorld(scan, layouts, len(held.instances))
+
+
+def scan_of_plan(plan: CapturedPlan, name: str = "") -> Scan:
+    """Return what a scan would say of a plan: its frame, its size, and no views."""
+    rooms = placed_rooms(plan)
+    high = np.max([room.outline_m.max(axis=0) for room in rooms], axis=0)
+    top = max(room.floor_z_m + room.height_m for room in rooms)
+    notes = list(plan.notes)
+    notes += [
+        f"the walls of {room.room.name} do not close; the box around them is taken"
+        for room in rooms
+        if not room.closed
+    ]
+    return Scan(
+        views=(),  # type: ignore[arg-type]
+        scan_to_room=np.linalg.inv(plan.plan_to_session),
+        room_size_m=np.round(np.array([*high, top]), 6),
+        frames_used=(),
+        source="roomplan",
+        notes=tuple(notes),
+        name=name,
+    )
+
+
+def _write_run(out: Path, held: PlanCells, layouts: tuple[Layout, ...], scan: Scan) -> None:
+    write_scan(out / "scan.json", scan)
+    write_room(out / "room.npz", held.grid, scan.scan_to_room)
+    write_layouts(out / "layout.json", layouts)
+    write_objects(out / "objects.json", held.instances)
+    write_placements(out / "placements.json", settle(held.placements, held.grid, layouts))
+    write_occ_json(out / "occ.json", held.grid)
+    write_centers_json(out / "centers.json", held.instances)
+
+
+def _manifest(place: AnyPath, chosen: Parameters) -> dict:
+    return {
+        "program": __version__,
+        "plan": hashlib.sha256(place.read_bytes()).hexdigest(),
+        "parameters": chosen.as_json(),
+    }
