@@ -21,6 +21,7 @@ from app_writers import (
 from PIL import Image
 
 from world2minecraft.scan import describe_capture, open_scan
+from world2minecraft.scan.apps.movie import Movie
 from world2minecraft.scan.images import read_colour, read_header
 from world2minecraft.scan.judged import judge_capture
 from world2minecraft.scan.options import ScanOptions
@@ -158,7 +159,20 @@ def test_a_record3d_world_that_starts_with_no_turn_has_no_known_up(tmp_path, sho
     write_record3d(tmp_path, moved)
     capture = find_capture(tmp_path)
     assert capture.world_up is None
-    assert find_capture(tmp_path).frames[0].camera_to_world is not None
+    assert capture.frames[0].camera_to_world is not None
+
+
+def test_a_record3d_world_that_leans_has_no_known_up(tmp_path, box_room):
+    """Trimmed at its start, a video whose poses are relative does not begin with no turn."""
+    from scipy.spatial.transform import Rotation
+
+    lean = np.eye(4)
+    lean[:3, :3] = Rotation.from_euler("x", 35, degrees=True).as_matrix()
+    write_record3d(tmp_path / "leans", shots_of(box_room, 12, lean @ ROOM_TO_ARKIT))
+    assert find_capture(tmp_path / "leans").world_up is None
+    scan = open_scan(tmp_path / "leans")
+    found = np.sort(scan.room_size_m[:2])[::-1]
+    np.testing.assert_allclose([*found, scan.room_size_m[2]], box_room.size_m, atol=0.03)
 
 
 def test_record3d_exported_as_exr_and_jpg(tmp_path, shots):
@@ -259,3 +273,29 @@ def test_what_was_found_is_told(tmp_path, shots):
     assert summary.colour_size_px == (160, 120)
     assert summary.depth_size_px == (80, 60)
     assert not summary.depth_unit_guessed
+
+
+def test_a_video_whose_pictures_lean_on_later_ones(tmp_path):
+    """Open groups with pictures told by both sides, as phones write them, read in any order."""
+    av = pytest.importorskip("av")
+    if "libx264" not in av.codecs_available:
+        pytest.skip("this PyAV cannot write H.264")
+    rng = np.random.default_rng(4)
+    noise = Image.fromarray(rng.integers(0, 255, (12, 16, 3), np.uint8))
+    wide = np.array(noise.resize((128, 48)))
+    options = {"g": "8", "bf": "3", "x264-params": "open-gop=1:threads=1"}
+    with av.open(str(tmp_path / "rgb.mp4"), "w") as container:
+        stream = container.add_stream("libx264", rate=60, options=options)
+        stream.width, stream.height, stream.pix_fmt = 64, 48, "yuv420p"
+        for index in range(40):
+            picture = np.ascontiguousarray(wide[:, index : index + 64])
+            container.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
+        container.mux(stream.encode())
+    movie = Movie(tmp_path / "rgb.mp4")
+    assert len(movie.times) == 40
+    forward = [movie.picture(index) for index in range(40)]
+    for index, picture in enumerate(forward):
+        off = np.abs(picture.astype(int) - wide[:, index : index + 64])
+        assert np.median(off) < 12
+    for index in rng.permutation(40).tolist():
+        np.testing.assert_array_equal(movie.picture(index), forward[index])

@@ -69,17 +69,31 @@ class Movie:
             raise DamagedFileError(self.path, reason) from error
 
     def _picture(self, index: int) -> np.ndarray:
-        time = self.times[index]
-        if not 0 <= self._next <= index or self._key_between(index):
+        if 0 <= self._next <= index and not self._key_between(index):
+            found = self._decoded_at(index)
+            if found is not None:
+                return found
+        # Pictures that are shown before their key picture need the one before that too.
+        before = bisect_right(self.key_times, self.times[index])
+        for key in (before - 1, before - 2, 0):
+            time = self.key_times[max(key, 0)] if self.key_times else self.times[0]
             self._container.seek(time, stream=self._stream, backward=True, any_frame=False)
             self._decoded = self._container.decode(self._stream)
+            found = self._decoded_at(index)
+            if found is not None:
+                return found
+        raise ValueError("it is missing")
+
+    def _decoded_at(self, index: int) -> np.ndarray | None:
+        """Decode on until a picture; None where it does not come."""
+        time = self.times[index]
         for frame in self._decoded:
             if frame.pts is not None and frame.pts >= time:
-                self._next = index + 1
                 if frame.pts > time or (frame.width, frame.height) != self.size:
-                    break
+                    return None
+                self._next = index + 1
                 return np.ascontiguousarray(frame.to_ndarray(format="rgb24"))
-        raise ValueError("it is missing")
+        return None
 
     def _key_between(self, index: int) -> bool:
         """Whether a key picture lies ahead, so that seeking spares decoding all until there."""

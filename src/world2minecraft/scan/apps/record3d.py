@@ -24,6 +24,7 @@ from world2minecraft.scan.apps.stated import (
     files_by_stem,
     number,
     numbers,
+    pose_of_quaternion,
 )
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import ImagePlace
@@ -31,6 +32,8 @@ from world2minecraft.types import Camera
 
 _PICTURES = (".jpg", ".jpeg", ".png")
 _STILL = 1e-6  # Poses that differ by less were never tracked.
+LEAST_LEAN = 0.5  # Cameras that look steeply up or down say little of their roll.
+MAX_ROLL_DEG = 15.0  # Of most frames; held by hand, phones roll by about five.
 
 
 class Record3DSource:
@@ -113,10 +116,20 @@ def _poses(path: AnyPath, stated: dict[str, Any]) -> np.ndarray | None:
 
 
 def _world_up(poses: np.ndarray | None) -> np.ndarray | None:
-    """Return up where it is known: worlds that start with no turn are those of the first frame."""
+    """Return up where it is known: in ARKit's own world, not in that of the first frame.
+
+    Some versions give poses relative to the first, which then is no turn at all; a video that was
+    trimmed may begin later. In a world that leans, cameras that look all around roll.
+    """
     if poses is None or not np.isfinite(poses[0]).all() or abs(poses[0, 3]) > 1 - 1e-6:
         return None
-    return ARKIT_UP
+    finite = poses[np.isfinite(poses).all(axis=1)]
+    cameras = np.stack([pose_of_quaternion(pose[:4], pose[4:]) for pose in finite])
+    up = np.swapaxes(cameras[:, :3, :3], 1, 2) @ ARKIT_UP
+    level = up[np.hypot(up[:, 0], up[:, 1]) > LEAST_LEAN]
+    roll_deg = np.degrees(np.arctan2(level[:, 0], level[:, 1]))
+    off_deg = np.abs((roll_deg + 45) % 90 - 45)
+    return ARKIT_UP if len(level) and np.quantile(off_deg, 0.8) < MAX_ROLL_DEG else None
 
 
 def _depth_size(folder: AnyPath, path: AnyPath, stated: dict[str, Any]) -> tuple[int, int] | None:
