@@ -8,10 +8,10 @@ a ``.sens``, a mesh that is looked at.
 
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import IO, Any, Protocol
 
 import numpy as np
 from PIL import Image, UnidentifiedImageError
@@ -131,8 +131,29 @@ def read_raw(path: ImagePlace) -> np.ndarray:
         return np.array(image)
 
 
+class Openable(Protocol):
+    """What opens like a file: a part of a larger one, for instance."""
+
+    def open(self, mode: str = "rb") -> IO[bytes]:
+        """Open it for reading bytes."""
+        ...
+
+    def stat(self) -> Any:
+        """Return ``st_size`` in bytes."""
+        ...
+
+
+def opened_image(source: Openable) -> AbstractContextManager[Image.Image]:
+    """Open an image that lies within another file, with its size checked.
+
+    Raises:
+        DamagedFileError: it is no image. LimitError: it is over ``MAX_PIXELS``.
+    """
+    return _opened(source)
+
+
 @contextmanager
-def _opened(path: AnyPath) -> Iterator[Image.Image]:
+def _opened(path: AnyPath | Openable) -> Iterator[Image.Image]:
     """Open an image with its size checked; any way to fail becomes one of our errors."""
     try:
         with warnings.catch_warnings():

@@ -10,11 +10,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from world2minecraft.errors import CaptureError, UnknownNameError
+from world2minecraft.errors import CaptureError, DamagedFileError, UnknownNameError
 from world2minecraft.scan.checking import Skipped, check_frames, is_posed
 from world2minecraft.scan.depth import DepthEncoding, find_encoding, read_depth
 from world2minecraft.scan.frames import Capture, FrameFiles
-from world2minecraft.scan.images import ImagePlace
+from world2minecraft.scan.images import ImagePlace, read_raw
 from world2minecraft.scan.labels import attach_labels, check_labels
 from world2minecraft.scan.options import ScanOptions
 from world2minecraft.scan.poses import check_spread
@@ -72,7 +72,7 @@ def judge_capture(
     frames, turned = _upright(frames, capture)
     check_labels(frames)
     looked_at = spread_over([frame for frame in frames if frame.depth_path], SAMPLED_FRAMES)
-    paths = [frame.depth_path for frame in looked_at if frame.depth_path]
+    paths = _decodable([frame.depth_path for frame in looked_at if frame.depth_path])
     encoding = _encoding(paths, options, capture) if paths else DepthEncoding("mm")
     typical_m = _typical_depth(paths, encoding)
     strayed: Skipped = ()
@@ -93,6 +93,18 @@ def _upright(
         return frames, ()
     note = f"the images lie on their side or head; they are read with {SAID[turns]}"
     return tuple(turned_frame(frame, turns) for frame in frames), (note,)
+
+
+def _decodable(paths: list[ImagePlace]) -> list[ImagePlace]:
+    """Return the images that can be decoded: one that cannot is left out when its turn comes."""
+    found = []
+    for path in paths:
+        try:
+            read_raw(path)
+        except DamagedFileError:
+            continue
+        found.append(path)
+    return found or paths
 
 
 def _encoding(paths: Sequence[ImagePlace], options: ScanOptions, capture: Capture) -> DepthEncoding:

@@ -1,0 +1,1 @@
+"""Sources for the formats that RGB-D data sets, depth cameras and photogrammetry write."""

@@ -1,0 +1,97 @@
+"""A COLMAP project: photos whose places and lenses are known, without depth and without a scale.
+
+The model lies in ``sparse/0`` (or ``sparse``, or here), the photos in ``images/`` beside it.
+"""
+
+from pathlib import PurePosixPath
+
+from world2minecraft.archive import AnyPath
+from world2minecraft.errors import CaptureError
+from world2minecraft.scan.datasets.colmap_model import ModelImage, read_model
+from world2minecraft.scan.frames import Capture, FrameFiles
+
+IMAGE_FOLDERS = ("images", "rgb", "image", ".")
+_SAMPLED = 20  # Names that are looked for to tell which folder the photos lie in.
+
+
+class ColmapSource:
+    """Reads a COLMAP model with its photos."""
+
+    layout = "sparse/0/cameras and images (.bin or .txt) with images/*.jpg (COLMAP)"
+
+    def recognise(self, folder: AnyPath) -> bool:
+        """Return whether there is a model; where there are transforms.json too, those are read."""
+        return bool(_models(folder)) and not (folder / "transforms.json").is_file()
+
+    def read(self, folder: AnyPath) -> Capture:
+        """List the photos. Raises CaptureError as ``Source.read`` says."""
+        chosen, *others = _models(folder)
+        images = read_model(chosen)
+        if not images:
+            raise CaptureError(chosen, "holds no photo; run colmap mapper again")
+        place = _image_folder(folder, chosen, images)
+        names = _names(images)
+        frames = tuple(
+            FrameFiles(name, image.camera_to_world, place / image.name, image.camera)
+            for name, image in zip(names, images, strict=True)
+        )
+        notes = ()
+        if others:
+            notes = (f"of {1 + len(others)} models the largest is read, {chosen.name}",)
+        return Capture(folder, "colmap", frames, notes=notes, scale="unknown")
+
+
+def _models(folder: AnyPath) -> list[AnyPath]:
+    """Return the folders with a model, the one of most photos first."""
+    sparse = [folder / "sparse", folder / "colmap" / "sparse"]
+    places = [folder, *sparse]
+    for place in sparse:
+        if place.is_dir():
+            places += sorted((path for path in place.iterdir() if path.is_dir()), key=str)
+    found = [place for place in places if _has_model(place)]
+    return sorted(found, key=lambda place: -_weight(place))
+
+
+def _has_model(place: AnyPath) -> bool:
+    return any(
+        all((place / f"{kind}{suffix}").is_file() for kind in ("cameras", "images"))
+        for suffix in (".bin", ".txt")
+    )
+
+
+def _weight(place: AnyPath) -> int:
+    binary = place / "images.bin"
+    return int((binary if binary.is_file() else place / "images.txt").stat().st_size)
+
+
+def _image_folder(folder: AnyPath, model: AnyPath, images: tuple[ModelImage, ...]) -> AnyPath:
+    """Return the folder in which most of some named photos lie."""
+    for image in images:
+        pure = PurePosixPath(image.name.replace("\\", "/"))
+        if pure.is_absolute() or ".." in pure.parts or "\0" in image.name or not pure.name:
+            raise CaptureError(model, f"names {image.name[:80]!r}; photos must lie inside a folder")
+    tops = list(dict.fromkeys([folder, model.parent, model.parent.parent]))
+    places = [top if name == "." else top / name for top in tops for name in IMAGE_FOLDERS]
+    sampled = images[:: max(1, len(images) // _SAMPLED)]
+
+    def there(place: AnyPath) -> int:
+        return sum((place / image.name).is_file() for image in sampled)
+
+    best = max(places, key=there)
+    if not there(best):
+        raise CaptureError(
+            folder, f"has a model but none of its photos, such as images/{images[0].name[:80]}"
+        )
+    return best
+
+
+def _names(images: tuple[ModelImage, ...]) -> list[str]:
+    """Return a name of its own for each photo, folders told by dots."""
+    names: list[str] = []
+    seen: dict[str, int] = {}
+    for image in images:
+        pure = PurePosixPath(image.name)
+        name = ".".join([*pure.parent.parts, pure.stem])[-150:]
+        count = seen[name] = seen.get(name, 0) + 1
+        names.append(name if count == 1 else f"{name}.{count}")
+    return names

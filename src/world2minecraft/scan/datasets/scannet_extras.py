@@ -1,0 +1,101 @@
+"""What lies beside a ScanNet scene: ``SCENE.txt``, label images, the table of the raw ids."""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.archive import AnyPath, ArchivePath, is_zip
+from world2minecraft.errors import CaptureError, InputError
+from world2minecraft.files import read_bytes
+from world2minecraft.scan.datasets.nyu40 import TABLE, MappedLabels, find_table
+from world2minecraft.scan.datasets.tables import to_floats
+from world2minecraft.scan.images import read_header
+
+LABEL_KINDS = ("label-filt", "label")  # The filtered ones have fewer slips at edges.
+NO_TABLE = f"the label images are left out: put {TABLE} (from the data set) beside the scene"
+
+
+def read_facts(path: AnyPath) -> dict[str, np.ndarray]:
+    """Return the numbers of a ``SCENE.txt`` by name; lines of words are left out.
+
+    Raises:
+        CaptureError: ``axisAlignment`` is no matrix of 16 numbers.
+    """
+    if not path.is_file():
+        return {}
+    facts = {}
+    for line in read_bytes(path, 1 << 20).decode("utf-8", "replace").splitlines():
+        key, _, value = line.partition("=")
+        try:
+            facts[key.strip()] = to_floats(path, value.split())
+        except CaptureError:
+            continue  # Such as sceneType = Apartment.
+    return facts
+
+
+def upright(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | None:
+    """Return the unit vector of the poses' world that points up, where the scene states it.
+
+    ``axisAlignment`` carries the world of the poses to one whose z is up. Test scenes have none.
+    """
+    if "axisAlignment" not in facts:
+        return None
+    values = facts["axisAlignment"]
+    rotation = values.reshape(4, 4)[:3, :3] if len(values) == 16 else np.full((3, 3), np.nan)
+    if not np.abs(rotation @ rotation.T - np.eye(3)).max() < 1e-3:
+        raise CaptureError(path, "axisAlignment must be 16 numbers, a 4x4 rotation and shift")
+    return rotation[2] / np.linalg.norm(rotation[2])
+
+
+def stated_lens(facts: dict[str, np.ndarray], kind: str) -> tuple[float, ...] | None:
+    """Return fx, fy, cx, cy of ``color`` or ``depth`` where the scene's text states them."""
+    keys = [f"{name}_{kind}" for name in ("fx", "fy", "mx", "my")]
+    if not all(len(facts.get(key, ())) == 1 for key in keys):
+        return None
+    return tuple(float(facts[key][0]) for key in keys)
+
+
+def find_labels(scene: AnyPath, name: str) -> tuple[dict[int, MappedLabels], tuple[str, ...]]:
+    """Return label images by the frame's number, and a note where they cannot be used.
+
+    Args:
+        scene: the folder of the scene.
+        name: the scene's name, such as ``scene0000_00``, by which its zips are named.
+    """
+    for kind in LABEL_KINDS:
+        for folder in _label_folders(scene, name, kind):
+            images = {
+                int(path.stem): path for path in folder.glob("*.png") if path.stem.isdecimal()
+            }
+            if images:
+                return _mapped(scene, images)
+    return {}, ()
+
+
+def _label_folders(scene: AnyPath, name: str, kind: str) -> list[AnyPath]:
+    """Return where the label images of a kind lie: a folder, or the published zip of it."""
+    folders: list[AnyPath] = [scene / kind]
+    zipped = scene / f"{name}_2d-{kind}.zip"
+    if isinstance(zipped, Path) and is_zip(zipped):
+        try:
+            inside = ArchivePath(zipped)
+            folders += [inside / kind, inside]
+            folders[-1].is_dir()
+        except (InputError, zipfile.BadZipFile):
+            folders = folders[:1]  # A broken zip of labels must not stop a scan.
+    return [folder for folder in folders if folder.is_dir()]
+
+
+def _mapped(
+    scene: AnyPath, images: dict[int, AnyPath]
+) -> tuple[dict[int, MappedLabels], tuple[str, ...]]:
+    table = find_table([scene, scene.parent, scene.parent.parent])
+    if table is None:
+        try:
+            mode = read_header(images[min(images)]).mode
+        except InputError:
+            return {}, (NO_TABLE,)
+        if mode not in ("L", "P"):
+            return {}, (NO_TABLE,)
+    return {number: MappedLabels(path, table) for number, path in images.items()}, ()

@@ -1,0 +1,59 @@
+"""Numbers in the text files of data sets: read within limits, the wrong word named."""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from world2minecraft.archive import AnyPath
+from world2minecraft.errors import CaptureError
+from world2minecraft.files import read_bytes
+
+_DIGITS = re.compile(r"(\d+)")
+MAX_TEXT_BYTES = 64 << 20  # An hour of motion capture at 300 Hz takes 60 MB.
+
+
+def read_rows(path: AnyPath, limit_bytes: int = MAX_TEXT_BYTES) -> list[list[str]]:
+    """Return the words of each line; empty lines and those that begin with # are left out.
+
+    Raises:
+        InputError: the file is missing. LimitError: it is too large.
+    """
+    text = read_bytes(path, limit_bytes).decode("utf-8", "replace")
+    lines = (line.strip() for line in text.splitlines())
+    return [line.split() for line in lines if line and not line.startswith("#")]
+
+
+def to_floats(path: AnyPath, words: Sequence[str]) -> np.ndarray:
+    """Return words as float64; nan and inf are numbers here.
+
+    Raises:
+        CaptureError: a word is no number.
+    """
+    numbers = []
+    for word in words:
+        try:
+            numbers.append(float(word))
+        except ValueError as error:
+            raise CaptureError(path, f"holds {word[:20]!r} where a number must stand") from error
+    return np.array(numbers, np.float64)
+
+
+def read_matrix(path: AnyPath, shapes: Sequence[tuple[int, int]]) -> np.ndarray:
+    """Return all numbers of a file as a float64 matrix of one of some shapes.
+
+    Raises:
+        CaptureError: it holds another count of numbers. InputError: it is missing.
+    """
+    words = [word for row in read_rows(path, 1 << 20) for word in row]
+    for rows, columns in shapes:
+        if len(words) == rows * columns:
+            return to_floats(path, words).reshape(rows, columns)
+    counts = " or ".join(f"{rows * columns} ({rows}x{columns})" for rows, columns in shapes)
+    raise CaptureError(path, f"must hold {counts} numbers, not {len(words)}")
+
+
+def by_number(path: AnyPath) -> list[tuple[int, str]]:
+    """Return a key that sorts file names by the numbers in them: 9.png before 10.png."""
+    parts = _DIGITS.split(path.name)
+    return [(int(part[:18]), "") if part.isdecimal() else (-1, part) for part in parts]
