@@ -162,6 +162,7 @@ BAD = [
         "depth_m must be finite and not negative; holes are 0",
     ),
     (types.Scan, dict(room_size_m=[4, 0, 2]), "room_size_m must be above 0, not [4.0, 0.0, 2.0]"),
+    (types.Scan, dict(world_up=[0, 2, 0]), "world_up must be a unit vector, not [0.0, 2.0, 0.0]"),
     (
         types.Scan,
         dict(scale="guessed"),

@@ -10,9 +10,10 @@ from scipy.spatial.transform import Rotation
 
 from world2minecraft.coordinates import apply, invert_rigid, rotation_about_z
 from world2minecraft.geometry.surface import collect_surface
-from world2minecraft.scan.align import ImplausibleRoomError, align, align_surface
+from world2minecraft.scan.align import ImplausibleRoomError, align, align_surface, realigned
 from world2minecraft.scan.gravity import find_ground, frame_of_up
 from world2minecraft.scan.surface import profile
+from world2minecraft.types import Scan
 
 
 @pytest.fixture(scope="module")
@@ -119,6 +120,17 @@ def test_up_that_is_known_is_found_though_all_cameras_lie_on_their_side(surfaces
     aligned = align_surface(lying, hint)
     size = surfaces[1]
     _check(aligned.scan_to_room, np.eye(4), aligned.room_size_m, size, degrees=0.3, metres=0.01)
+
+
+def test_a_room_found_anew_keeps_the_up_that_is_known(surfaces):
+    """Cameras that lie on their side say another up, which must not win the second time."""
+    surface = surfaces[0][1]
+    side = np.eye(4)
+    side[:2, :2] = [[0, -1], [1, 0]]
+    lying = replace(surface, cameras=surface.cameras @ side)
+    scan = Scan([], np.eye(4), np.array([4.2, 3.1, 2.6]), (), world_up=np.array([0, 0, 1.0]))
+    assert realigned(scan, lying).scan_to_room[2, 2] > 0.9999
+    assert realigned(replace(scan, world_up=None), lying).scan_to_room[2, 2] < 0.5
 
 
 def test_up_stays_near_what_is_known(surfaces):

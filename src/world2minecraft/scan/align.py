@@ -87,7 +87,7 @@ def realigned(scan: Scan, surface: Surface) -> Scan:
     Where that is no plausible room, the scan stays as it is.
     """
     try:
-        found = align_surface(surface)
+        found = align_surface(surface, scan.world_up)
     except ImplausibleRoomError:
         return scan
     notes = tuple(note for note in scan.notes if not note.startswith(UNSEEN_NOTES))

@@ -75,6 +75,7 @@ def open_scan(
         source=judged.capture.source,
         notes=(*notes, *alignment.notes),
         depth_kind=judged.capture.depth_kind,
+        world_up=judged.capture.world_up,
     )
 
 

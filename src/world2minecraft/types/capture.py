@@ -135,7 +135,8 @@ class Scan:
 
     ``scan_to_room`` carries the scan's frame to the room frame; the inner box of the room is
     from (0, 0, 0) to ``room_size_m``. ``notes`` are sentences for the report; ``name`` is what
-    the scene is called; ``depth_kind`` says what made the depth, and so how it errs.
+    the scene is called; ``depth_kind`` says what made the depth, and so how it errs. ``world_up``
+    is a unit vector of the scan's frame where the capture knows which way is up.
     """
 
     views: ViewStream
@@ -149,9 +150,14 @@ class Scan:
     notes: tuple[str, ...] = ()
     name: str = ""
     depth_kind: Literal["sensor", "stereo", "exact"] = "sensor"
+    world_up: np.ndarray | None = None
 
     def __post_init__(self):
         put = object.__setattr__
+        if self.world_up is not None:
+            put(self, "world_up", checks.floats("world_up", self.world_up, (3,)))
+            if abs(np.linalg.norm(self.world_up) - 1) > 1e-6:
+                raise ValueError(f"world_up must be a unit vector, not {self.world_up.tolist()}")
         put(self, "scan_to_room", checks.transform("scan_to_room", self.scan_to_room))
         put(self, "room_size_m", checks.floats("room_size_m", self.room_size_m, (3,)))
         if (self.room_size_m <= 0).any():

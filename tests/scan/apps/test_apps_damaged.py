@@ -3,6 +3,7 @@
 import json
 import shutil
 import struct
+import sys
 import zipfile
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from app_writers import ROOM_TO_ARKIT, WRITERS, shots_of, stored_lzfse, zipped
 from PIL import Image
 
-from world2minecraft.errors import InputError
+from world2minecraft.errors import InputError, MissingExtraError
 from world2minecraft.scan.apps.exr import ExrImage
 from world2minecraft.scan.apps.lzfse_image import LzfseImage
 from world2minecraft.scan.judged import judge_capture
@@ -108,6 +109,14 @@ def test_depth_of_another_size(room, app):
         return
     Image.fromarray(np.full((90, 40), 900, np.uint16)).save(first(folder, patterns[app]))
     refused(folder, "40x90")
+
+
+@pytest.mark.parametrize(("app", "module"), [("record3d", "lzfse"), ("stray", "av")])
+def test_what_is_not_installed_is_told(room, monkeypatch, app, module):
+    folder = room(app)
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(MissingExtraError, match=r"pip install 'world2minecraft\[capture\]'"):
+        judge_capture(folder, ScanOptions())
 
 
 # Record3D

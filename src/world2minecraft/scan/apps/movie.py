@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
+from world2minecraft.archive import AnyPath, ArchivePath
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, MissingExtraError
 from world2minecraft.scan.images import MAX_PIXELS, ImageHeader
 
@@ -107,16 +107,21 @@ def _one_line(error: Exception) -> str:
 
 
 @lru_cache(maxsize=2)
-def _opened(path: AnyPath, size: int) -> Movie:
+def _opened(path: AnyPath, stamp: tuple[int, int]) -> Movie:
     return Movie(path)
 
 
 def open_movie(path: AnyPath) -> Movie:
-    """Open a video, once for all its pictures. Raises what ``Movie`` raises."""
+    """Open a video once for all its pictures, and again where its file has changed.
+
+    Raises:
+        InputError: it is missing; else what ``Movie`` raises.
+    """
     try:
-        return _opened(path, path.stat().st_size)
-    except FileNotFoundError as error:
-        raise InputError(path, "is not there") from error
+        found = (path.path if isinstance(path, ArchivePath) else path).stat()
+    except OSError as error:
+        raise InputError(path, f"cannot be read: {error.strerror or error}") from error
+    return _opened(path, (found.st_size, found.st_mtime_ns))
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ class Record3DSource:
             return False
         packed = (folder / "metadata").is_file() and (folder / "rgbd").is_dir()
         exported = (folder / "metadata.json").is_file() and (folder / "rgb").is_dir()
-        return packed or (exported and (folder / "depth").is_dir())
+        return packed or (exported and any((folder / "depth").glob("*.exr")))
 
     def read(self, folder: AnyPath) -> Capture:
         """List the frames. Raises CaptureError as ``Source.read`` says."""
