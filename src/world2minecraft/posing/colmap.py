@@ -1,0 +1,39 @@
+"""pycolmap, reached from here alone: loaded late, silent, and with its failures in one line."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
+
+from world2minecraft.errors import CaptureError, MissingExtraError
+
+PLACE = "photos"  # What an error names: a stream of photos has no path.
+
+
+@contextmanager
+def colmap() -> Iterator[Any]:
+    """Give the module, without its log lines; what it raises becomes a CaptureError.
+
+    Raises:
+        MissingExtraError: pycolmap is not installed.
+        CaptureError: it has failed inside the block.
+    """
+    module = loaded()
+    before = module.logging.minloglevel
+    module.logging.minloglevel = 3  # Its errors are raised as well as written.
+    try:
+        yield module
+    except RuntimeError as error:
+        first = (str(error).splitlines() or ["no reason given"])[0][:200]
+        reason = f"their places could not be found ({first}); leave out odd photos and try again"
+        raise CaptureError(PLACE, reason) from error
+    finally:
+        module.logging.minloglevel = before
+
+
+def loaded() -> Any:
+    """Return pycolmap. Raises MissingExtraError where it is not installed."""
+    try:
+        return import_module("pycolmap")
+    except ImportError as error:
+        raise MissingExtraError("finding the places of photos", "capture") from error

@@ -1,0 +1,34 @@
+"""How far the placing of photos is: one stage, whose parts follow each other."""
+
+from dataclasses import dataclass
+
+from world2minecraft.progress import Progress
+
+STAGE = "poses"
+
+
+@dataclass
+class Steps:
+    """Counts the steps of all parts as one row. Parts that turn out shorter are made up for."""
+
+    progress: Progress
+    parts: dict[str, int]
+    at: int = 0
+
+    def done(self, part: str, of: int = 0, count: int = 0) -> None:
+        """Tell one more step of a part, or that ``of`` of its ``count`` own steps are done."""
+        names = list(self.parts)
+        begin = sum(self.parts[name] for name in names[: names.index(part)])
+        end = begin + self.parts[part]
+        ahead = begin + self.parts[part] * of // count if count else max(self.at, begin) + 1
+        self.at = max(self.at, min(ahead, end))
+        self.progress(STAGE, self.at, self.total + 1, part)
+
+    @property
+    def total(self) -> int:
+        """The steps of all parts."""
+        return sum(self.parts.values())
+
+    def end(self) -> None:
+        """Tell that all is done."""
+        self.progress(STAGE, self.total + 1, self.total + 1, "")
