@@ -1,6 +1,7 @@
 """How views are fused: every number that decides it, and where it comes from."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -44,3 +45,25 @@ class FuseParameters:
     merge_m: float = 0.016
     merge_sigmas: float = 3.0
     sure_m: float = 0.003
+
+    def suited(self, depth_kind: str) -> "FuseParameters":
+        """Return the parameters for another kind of depth; what was chosen by hand stays.
+
+        Depth from stereo errs more with distance than a sensor's, and by whole patches.
+        """
+        default = FuseParameters(self.voxel_m)
+        changes = BY_DEPTH_KIND.get(depth_kind, {})
+        untouched = {k: v for k, v in changes.items() if getattr(self, k) == getattr(default, k)}
+        return replace(self, **untouched)
+
+
+BY_DEPTH_KIND: dict[str, dict[str, Any]] = {
+    "stereo": {
+        "free_log_odds": -0.25,
+        "min_share": 0.08,
+        "clear_m": 0.10,
+        "clear_growth": 0.03,
+        "sigma_m": 0.004,
+        "sigma_growth": 0.004,
+    },
+}

@@ -1,6 +1,6 @@
 """How frames are registered: every number that decides it, and where it comes from."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -34,3 +34,11 @@ class RegisterParameters:
         for name in ("scale_sigma", "least_scale_sigma", "held_share"):
             if not 0 <= getattr(self, name) < 0.5:
                 raise ValueError(f"{name} must be 0 to 0.5, not {getattr(self, name)}")
+
+    def suited(self, depth_kind: str) -> "RegisterParameters":
+        """Return the parameters for another kind of depth.
+
+        Poses that stereo was computed from meet to fractions of a pixel already, and what looks at
+        a mesh stands where it says: only a sensor's frames are moved.
+        """
+        return self if depth_kind == "sensor" else replace(self, passes=0)

@@ -50,7 +50,8 @@ class Capture:
     the colour cameras are ``stated`` or a first ``guess`` (EXIF, or none). ``full_trust`` is the
     value of ``trust_path`` that means full trust; 0 always means none. ``world_up`` is a unit
     vector of the world frame where the capture is known to stand upright. ``scale`` and
-    ``scale_sigma`` are as in ``Scan``: ``unknown`` where poses have no unit.
+    ``scale_sigma`` are as in ``Scan``: ``unknown`` where poses have no unit. ``skipped`` are
+    frames that were left out before, with reasons.
     """
 
     folder: AnyPath
@@ -65,6 +66,7 @@ class Capture:
     world_up: np.ndarray | None = None
     scale: Literal["metric", "estimated", "unknown"] = "metric"
     scale_sigma: float = 0.0
+    skipped: tuple[tuple[str, str], ...] = ()
 
 
 class Source(Protocol):

@@ -63,7 +63,16 @@ def judge_capture(
     Raises:
         CaptureError: it cannot be used. LimitError: an image is too large.
     """
-    capture = find_capture(path, options)
+    return judge(find_capture(path, options), options, labels, step)
+
+
+def judge(
+    capture: Capture,
+    options: ScanOptions,
+    labels: Path | None = None,
+    step: Callable[[int, int], None] = lambda done, total: None,
+) -> JudgedCapture:
+    """Check the frames of a capture that was found. Raises what ``judge_capture`` raises."""
     total = len(capture.frames[:: options.every])
     capture = replace(capture, frames=capture.frames[:: options.every])
     frames, skipped = check_frames(capture, lambda done: step(done, total))
@@ -81,7 +90,9 @@ def judge_capture(
     notes = [*capture.notes, *turned]
     if encoding.guessed:
         notes.append(f"depth is read as {encoding.said}, told from its values")
-    return JudgedCapture(capture, frames, (*skipped, *strayed), encoding, typical_m, tuple(notes))
+    return JudgedCapture(
+        capture, frames, (*capture.skipped, *skipped, *strayed), encoding, typical_m, tuple(notes)
+    )
 
 
 def _upright(

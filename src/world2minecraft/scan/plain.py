@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError
+from world2minecraft.errors import CaptureError, UnknownNameError
 from world2minecraft.files import read_json, write_bytes, write_json
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import SUFFIXES
@@ -23,6 +23,10 @@ from world2minecraft.types import Camera, View
 FORMAT = "world2minecraft-capture"
 VERSION = 1
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}")
+DEPTH_KINDS = ("sensor", "stereo", "exact")
+SCALES = ("metric", "estimated", "unknown")
+MOST_NOTES, MOST_NOTE = 30, 400  # Sentences, and letters of each.
+JPEG_QUALITY = 95
 _CAMERA_FIELDS = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 
 
@@ -54,7 +58,18 @@ class PlainSource:
         names = [frame.name for frame in frames]
         if len(set(names)) != len(names):
             raise CaptureError(path, "names a frame twice; every name must be its own")
-        return Capture(folder, "plain", frames, depth_unit=unit, one_matrix="camera" in stated)
+        return Capture(
+            folder,
+            _made_from(path, stated),
+            frames,
+            depth_unit=unit,
+            one_matrix="camera" in stated,
+            notes=_notes(path, stated),
+            depth_kind=_one_of(path, stated, "depth_kind", DEPTH_KINDS),
+            scale=_one_of(path, stated, "scale", SCALES),
+            scale_sigma=_sigma(path, stated),
+            skipped=_skipped(path, stated),
+        )
 
 
 def _files_by_stem(folder: AnyPath) -> dict[str, dict[str, AnyPath]]:
@@ -65,7 +80,7 @@ def _files_by_stem(folder: AnyPath) -> dict[str, dict[str, AnyPath]]:
             for found in sorted((folder / kind).glob("*"))
             if found.suffix.lower() in (*SUFFIXES, ".npy")
         }
-        for kind in ("colour", "depth", "labels")
+        for kind in ("colour", "depth", "labels", "trust")
     }
 
 
@@ -79,7 +94,10 @@ def _frame(
     pose = _matrix(path, entry, "camera_to_world")
     merged = {**stated, **entry}
     depth_to_colour = _matrix(path, merged, "depth_to_colour")
-    problem = "" if pose is not None else "has no camera_to_world in capture.json"
+    posed = any(
+        isinstance(other, dict) and "camera_to_world" in other for other in stated["frames"]
+    )
+    problem = "has no camera_to_world in capture.json" if posed and pose is None else ""
     if colour_path is None and depth_path is None:
         problem = f"has neither colour/{name}.* nor depth/{name}.*"
     return FrameFiles(
@@ -92,7 +110,48 @@ def _frame(
         np.eye(4) if depth_to_colour is None else depth_to_colour,
         files["labels"].get(name),
         problem,
+        files["trust"].get(name) if depth_path else None,
     )
+
+
+def _notes(path: AnyPath, stated: dict[str, Any]) -> tuple[str, ...]:
+    notes = stated.get("notes", [])
+    if not isinstance(notes, list) or not all(isinstance(note, str) for note in notes):
+        raise CaptureError(path, '"notes" must be a list of sentences')
+    return tuple(" ".join(note.split())[:MOST_NOTE] for note in notes[:MOST_NOTES])
+
+
+def _skipped(path: AnyPath, stated: dict[str, Any]) -> tuple[tuple[str, str], ...]:
+    rows = stated.get("skipped", [])
+    right = isinstance(rows, list) and all(
+        isinstance(row, list) and len(row) == 2 and all(isinstance(word, str) for word in row)
+        for row in rows
+    )
+    if not right:
+        raise CaptureError(path, '"skipped" must be a list of [frame, reason]')
+    return tuple((row[0], row[1]) for row in rows)
+
+
+def _made_from(path: AnyPath, stated: dict[str, Any]) -> str:
+    """Return the kind of capture that this one was computed from; of most, plain itself."""
+    name = stated.get("made_from", "plain")
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise CaptureError(path, f'"made_from" must be the name of a kind, not {name!r}')
+    return name
+
+
+def _one_of(path: AnyPath, stated: dict[str, Any], key: str, known: tuple[str, ...]) -> Any:
+    value = stated.get(key, known[0])
+    if value not in known:
+        raise CaptureError(path, f'"{key}" must be one of {", ".join(known)}, not {value!r}')
+    return value
+
+
+def _sigma(path: AnyPath, stated: dict[str, Any]) -> float:
+    value = stated.get("scale_sigma", 0.0)
+    if not isinstance(value, int | float) or not 0 <= value < 10:
+        raise CaptureError(path, f'"scale_sigma" must be a share such as 0.1, not {value!r}')
+    return float(value)
 
 
 def _camera(path: AnyPath, stated: dict[str, Any], key: str) -> Camera:
@@ -127,25 +186,30 @@ def write_plain(
     *,
     depth_unit: str = "mm",
     extra: Mapping[str, Any] | None = None,
+    stated: Mapping[str, Any] | None = None,
+    jpeg: bool = False,
 ) -> None:
     """Write views as a plain capture, one at a time; the bytes depend on the views alone.
 
     Args:
         folder: made where it is missing; files of the same names are replaced.
         views: written in their order. ``camera_to_scan`` becomes ``camera_to_world``.
-        depth_unit: ``"mm"`` (16-bit PNG, rounded) or ``"m"`` (float32 ``.npy``, exact).
+        depth_unit: ``"mm"`` or metres per unit such as ``"0.0002"`` (16-bit PNG, rounded), or
+            ``"m"`` (float32 ``.npy``, exact).
         extra: JSON values to keep under ``"extra"``; readers ignore them.
+        stated: more of what ``capture.json`` says: ``depth_kind``, ``scale``, ``notes`` ...
+        jpeg: write colour as JPEG of high quality, a fifth of the size.
 
     Raises:
-        OutputError: the folder cannot be written. ValueError: another depth unit.
+        OutputError: the folder cannot be written. UnknownNameError: another depth unit.
     """
-    if depth_unit not in ("mm", "m"):
-        raise ValueError(f"depth_unit must be mm or m, not {depth_unit!r}")
+    unit_m = _unit_m(depth_unit)
     root = Path(folder)
-    stated: dict[str, Any] = {"format": FORMAT, "version": VERSION, "depth_unit": depth_unit}
+    more, stated = stated or {}, {"format": FORMAT, "version": VERSION, "depth_unit": depth_unit}
+    stated |= more
     entries = []
     for view in views:
-        _write_images(root, view, depth_unit)
+        _write_images(root, view, unit_m, jpeg)
         entry: dict[str, Any] = {"name": view.name, "camera_to_world": view.camera_to_scan.tolist()}
         for key, value in _shared_values(view).items():
             if stated.setdefault(key, value) != value:
@@ -168,17 +232,34 @@ def _shared_values(view: View) -> dict[str, Any]:
     return values
 
 
-def _write_images(root: Path, view: View, depth_unit: str) -> None:
-    if view.colour is not None:
+def _unit_m(depth_unit: str) -> float | None:
+    """Return the metres of one step of a 16-bit image, or None for float metres."""
+    if depth_unit in ("mm", "m"):
+        return 0.001 if depth_unit == "mm" else None
+    try:
+        unit_m = float(depth_unit)
+    except ValueError:
+        unit_m = 0.0
+    if not 0 < unit_m < 1:
+        raise UnknownNameError("depth unit to write", depth_unit, ("mm", "m", "METRES_PER_UNIT"))
+    return unit_m
+
+
+def _write_images(root: Path, view: View, unit_m: float | None, jpeg: bool) -> None:
+    if view.colour is not None and jpeg:
+        _write_jpeg(root / "colour" / f"{view.name}.jpg", view.colour)
+    elif view.colour is not None:
         _write_png(root / "colour" / f"{view.name}.png", view.colour)
     if view.labels is not None:
         _write_png(root / "labels" / f"{view.name}.png", view.labels)
+    if view.trust is not None:
+        _write_png(root / "trust" / f"{view.name}.png", view.trust)
     if view.depth_m is None:
         return
-    if depth_unit == "mm":
-        millimetres = np.round(view.depth_m.astype(np.float64) * 1000)
-        millimetres[millimetres > 65534] = 0  # Beyond what 16 bits hold it is a hole.
-        _write_png(root / "depth" / f"{view.name}.png", millimetres.astype(np.uint16))
+    if unit_m is not None:
+        steps = np.round(view.depth_m.astype(np.float64) / unit_m)
+        steps[steps > 65534] = 0  # Beyond what 16 bits hold it is a hole.
+        _write_png(root / "depth" / f"{view.name}.png", steps.astype(np.uint16))
     else:
         buffer = io.BytesIO()
         np.save(buffer, np.ascontiguousarray(view.depth_m))
@@ -188,4 +269,11 @@ def _write_images(root: Path, view: View, depth_unit: str) -> None:
 def _write_png(path: Path, pixels: np.ndarray) -> None:
     buffer = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(pixels)).save(buffer, "PNG", compress_level=3)
+    write_bytes(path, buffer.getvalue())
+
+
+def _write_jpeg(path: Path, pixels: np.ndarray) -> None:
+    buffer = io.BytesIO()
+    image = Image.fromarray(np.ascontiguousarray(pixels))
+    image.save(buffer, "JPEG", quality=JPEG_QUALITY, subsampling=0)
     write_bytes(path, buffer.getvalue())
