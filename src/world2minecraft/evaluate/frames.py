@@ -1,16 +1,20 @@
 """The frames that a run used: their cameras, where they truly stood, and where it was said."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from world2minecraft.coordinates import invert_rigid
 from world2minecraft.errors import DamagedFileError
-from world2minecraft.evaluate.truth import Truth
+from world2minecraft.evaluate.truth import Truth, read_truth
 from world2minecraft.files import read_json
 from world2minecraft.scan.sources import find_capture
 from world2minecraft.types import Camera
+
+COMPUTED = "capture"  # Where ``prepare`` keeps what it made.
+LEAST_POSED = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,13 +40,50 @@ def used_frames(out: Path, truth: Truth) -> tuple[UsedFrame, ...]:
         names = [str(name) for name in read_json(path)["frames_used"]]
     except (KeyError, TypeError) as error:
         raise DamagedFileError(path, f"has no list frames_used ({error})") from error
-    frames = {frame.name: frame for frame in find_capture(truth.folder).frames}
+    frames = {frame.name: frame for frame in find_capture(computed(out) or truth.folder).frames}
     strange = [name for name in names if name not in frames]
     if strange:
         raise DamagedFileError(
             path, f"used frame {strange[0]!r}, which {truth.folder} does not have; another capture?"
         )
     return tuple(_used(frames[name], truth) for name in names)
+
+
+def computed(out: Path) -> Path | None:
+    """Return the capture that a run completed before it read it, None where it had all."""
+    return out / COMPUTED if (out / COMPUTED / "capture.json").is_file() else None
+
+
+def truth_of_run(out: Path, folder: Path) -> Truth:
+    """Return the truth of a run, in the frame that its poses are in.
+
+    Poses that were computed from photos have a frame of their own; the truth is laid upon it by a
+    turn and a shift, so that a wrong scale stays a fault.
+
+    Raises:
+        InputError: a file is missing. DamagedFileError: it is no truth, or of other photos.
+    """
+    known, place = read_truth(folder), computed(out)
+    if place is None:
+        return known
+    true = known.camera_to_truth or {}
+    posed = [f for f in find_capture(place).frames if f.name in true]
+    if len(posed) < LEAST_POSED:
+        raise DamagedFileError(folder / "truth.npz", "tells no poses of the photos that were used")
+    stated = [np.asarray(frame.camera_to_world, np.float64) for frame in posed]
+    common = common_move([true[frame.name] for frame in posed], stated)
+    return replace(known, truth_to_scan=common)
+
+
+def common_move(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the rigid 4x4 that carries poses [4, 4] of one frame to another best on average."""
+    between = np.mean([b[:3, :3] @ a[:3, :3].T for a, b in zip(one, other, strict=True)], axis=0)
+    left, _, right = np.linalg.svd(between)
+    move = np.eye(4)
+    move[:3, :3] = left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
+    shifts = [b[:3, 3] - move[:3, :3] @ a[:3, 3] for a, b in zip(one, other, strict=True)]
+    move[:3, 3] = np.mean(shifts, axis=0)
+    return move
 
 
 def _used(frame, truth: Truth) -> UsedFrame:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.coordinates import invert_rigid
-from world2minecraft.evaluate.frames import UsedFrame
+from world2minecraft.evaluate.frames import UsedFrame, common_move
 from world2minecraft.evaluate.truth import Truth
 from world2minecraft.exchange.poses import read_poses
 
@@ -39,12 +39,7 @@ def pose_error(given: Sequence[np.ndarray], true: Sequence[np.ndarray]) -> dict[
     ``mean_mm`` and ``mean_deg`` are in the scan's frame; the ``apart`` ones are what is left once
     all poses were moved by one common turn and shift, which is the frame's own error.
     """
-    turn = _mean_turn([g[:3, :3] @ t[:3, :3].T for g, t in zip(given, true, strict=True)])
-    common = np.eye(4)
-    common[:3, :3] = turn
-    common[:3, 3] = np.mean(
-        [g[:3, 3] - turn @ t[:3, 3] for g, t in zip(given, true, strict=True)], axis=0
-    )
+    common = common_move(true, given)
     together = [common @ t for t in true]
     return {
         "mean_mm": _mean_mm(given, true),
@@ -65,12 +60,6 @@ def scale_error(left: Sequence[float]) -> dict[str, float]:
         "scale_rms_percent": float(np.sqrt((off**2).mean())),
         "scale_mean_percent": float(off.mean()),
     }
-
-
-def _mean_turn(turns: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the rotation nearest to the mean of rotations [3, 3]."""
-    left, _, right = np.linalg.svd(np.mean(turns, axis=0))
-    return left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
 
 
 def _mean_mm(given: Sequence[np.ndarray], true: Sequence[np.ndarray]) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 
 from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
 from world2minecraft.evaluate.frame_error import frame_error
-from world2minecraft.evaluate.frames import UsedFrame, used_frames
+from world2minecraft.evaluate.frames import UsedFrame, truth_of_run, used_frames
 from world2minecraft.evaluate.layout import in_room, layout_facts
 from world2minecraft.evaluate.objects import (
     TrueObjects,
@@ -25,7 +25,7 @@ from world2minecraft.evaluate.objects import (
 from world2minecraft.evaluate.openings import opening_facts
 from world2minecraft.evaluate.poses import pose_facts
 from world2minecraft.evaluate.reach import CROSSED, Reached, reached_cells
-from world2minecraft.evaluate.truth import Truth, read_truth
+from world2minecraft.evaluate.truth import Truth
 from world2minecraft.evaluate.world import world_facts
 from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.exchange.objects import read_objects
@@ -64,7 +64,7 @@ def evaluate_reconstruction(out: Path, truth: Path) -> dict[str, Any]:
     Raises:
         InputError: a file of the run or of the truth is missing or damaged.
     """
-    known = read_truth(truth)
+    known = truth_of_run(out, truth)
     grid, scan_to_room = read_room(out / "room.npz")
     return score_run(out, see_truth(known, used_frames(out, known), scan_to_room, grid.voxel_m))
 

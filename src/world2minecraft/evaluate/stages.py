@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.coordinates import invert_rigid
-from world2minecraft.evaluate.frames import used_frames
+from world2minecraft.evaluate.frames import truth_of_run, used_frames
 from world2minecraft.evaluate.recorded import recorded_parameters
 from world2minecraft.evaluate.score import TrueRoom, cell_facts, score_run, see_truth
 from world2minecraft.evaluate.true_evidence import true_evidence
@@ -24,7 +24,7 @@ from world2minecraft.evaluate.true_objects import (
     put_true_objects,
     put_true_placements,
 )
-from world2minecraft.evaluate.truth import Truth, read_truth
+from world2minecraft.evaluate.truth import Truth
 from world2minecraft.exchange.evidence import write_evidence
 from world2minecraft.exchange.layout import write_layouts
 from world2minecraft.exchange.room import read_room
@@ -115,7 +115,7 @@ class Case:
 
 def open_case(out: Path, truth: Path) -> Case:
     """Open the capture of a run in the true frame. Raises InputError."""
-    known = read_truth(truth)
+    known = truth_of_run(out, truth)
     parameters = recorded_parameters(out)
     frames = used_frames(out, known)
     scan_to_room = invert_rigid(known.truth_to_scan)
