@@ -5,6 +5,7 @@ through the entry point group ``world2minecraft.source``.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from world2minecraft.archive import AnyPath, ArchivePath, is_zip
@@ -62,12 +63,16 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
     for inner in _places(place):
         for source in sources:
             if source.recognise(inner):
-                if isinstance(source, TellableSource):
-                    return source.read_with(inner, options or ScanOptions())
-                return source.read(inner)
+                return replace(_read(source, inner, options), folder=place)
     kind = "is empty" if empty else f"is a {_kind(place)} of another kind"
     layouts = "; ".join(source.layout for source in sources)
     raise CaptureError(place, f"{kind}; a capture is one of these: {layouts}")
+
+
+def _read(source: Source, place: AnyPath, options: ScanOptions | None) -> Capture:
+    if isinstance(source, TellableSource):
+        return source.read_with(place, options or ScanOptions())
+    return source.read(place)
 
 
 def _places(place: Path) -> Iterator[AnyPath]:

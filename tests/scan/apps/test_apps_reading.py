@@ -79,6 +79,8 @@ def test_a_zip_gives_what_its_folder_gives(tmp_path, shots, app, inside):
     folder, expected = views_of(tmp_path / "room")
     packed, found = views_of(archive)
     assert packed.source == folder.source
+    assert packed.folder == archive
+    assert describe_capture(archive).next_command == f"w2m reconstruct {archive} --out OUT"
     np.testing.assert_array_equal(packed.world_up, folder.world_up)
     assert [view.name for view in found] == [view.name for view in expected]
     for one, other in zip(found, expected, strict=True):
