@@ -134,7 +134,7 @@ def test_pairs_are_the_nearest_and_each_image_is_used_once():
     ("name", "text", "words"),
     [
         ("rgb.txt", "", "rgb.txt: must hold lines of seconds and a file"),
-        ("rgb.txt", "1.0 ../../etc/passwd\n", "files must lie inside the folder"),
+        ("rgb.txt", "1.0 ../../etc/passwd\n", "images must lie inside the folder"),
         ("depth.txt", "zero depth/0.png\n", "holds 'zero' where a number must stand"),
         ("depth.txt", "5.0 depth/0.png\n", "no time of rgb.txt lies within 0.02 s"),
         ("groundtruth.txt", "1.0 2 3 4\n", "must hold lines of seconds tx ty tz qx qy qz qw"),

@@ -7,7 +7,8 @@ from pathlib import PurePosixPath
 
 from world2minecraft.archive import AnyPath
 from world2minecraft.errors import CaptureError
-from world2minecraft.scan.datasets.colmap_model import ModelImage, read_model
+from world2minecraft.scan.datasets.colmap_model import read_model
+from world2minecraft.scan.datasets.tables import checked_inside
 from world2minecraft.scan.frames import Capture, FrameFiles
 
 IMAGE_FOLDERS = ("images", "rgb", "image", ".")
@@ -29,11 +30,11 @@ class ColmapSource:
         images = read_model(chosen)
         if not images:
             raise CaptureError(chosen, "holds no photo; run colmap mapper again")
-        place = _image_folder(folder, chosen, images)
-        names = _names(images)
+        files = [checked_inside(chosen, image.name) for image in images]
+        place = _image_folder(folder, chosen, files)
         frames = tuple(
-            FrameFiles(name, image.camera_to_world, place / image.name, image.camera)
-            for name, image in zip(names, images, strict=True)
+            FrameFiles(name, image.camera_to_world, place / str(file), image.camera)
+            for name, file, image in zip(_names(files), files, images, strict=True)
         )
         notes = ()
         if others:
@@ -64,34 +65,29 @@ def _weight(place: AnyPath) -> int:
     return int((binary if binary.is_file() else place / "images.txt").stat().st_size)
 
 
-def _image_folder(folder: AnyPath, model: AnyPath, images: tuple[ModelImage, ...]) -> AnyPath:
+def _image_folder(folder: AnyPath, model: AnyPath, files: list[PurePosixPath]) -> AnyPath:
     """Return the folder in which most of some named photos lie."""
-    for image in images:
-        pure = PurePosixPath(image.name.replace("\\", "/"))
-        if pure.is_absolute() or ".." in pure.parts or "\0" in image.name or not pure.name:
-            raise CaptureError(model, f"names {image.name[:80]!r}; photos must lie inside a folder")
     tops = list(dict.fromkeys([folder, model.parent, model.parent.parent]))
     places = [top if name == "." else top / name for top in tops for name in IMAGE_FOLDERS]
-    sampled = images[:: max(1, len(images) // _SAMPLED)]
+    sampled = files[:: max(1, len(files) // _SAMPLED)]
 
     def there(place: AnyPath) -> int:
-        return sum((place / image.name).is_file() for image in sampled)
+        return sum((place / str(file)).is_file() for file in sampled)
 
     best = max(places, key=there)
     if not there(best):
         raise CaptureError(
-            folder, f"has a model but none of its photos, such as images/{images[0].name[:80]}"
+            folder, f"has a model but none of its photos, such as images/{str(files[0])[:80]}"
         )
     return best
 
 
-def _names(images: tuple[ModelImage, ...]) -> list[str]:
+def _names(files: list[PurePosixPath]) -> list[str]:
     """Return a name of its own for each photo, folders told by dots."""
     names: list[str] = []
     seen: dict[str, int] = {}
-    for image in images:
-        pure = PurePosixPath(image.name)
-        name = ".".join([*pure.parent.parts, pure.stem])[-150:]
+    for file in files:
+        name = ".".join([*file.parent.parts, file.stem])[-150:]
         count = seen[name] = seen.get(name, 0) + 1
         names.append(name if count == 1 else f"{name}.{count}")
     return names

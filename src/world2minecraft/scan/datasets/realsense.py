@@ -136,7 +136,7 @@ def _camera(path: AnyPath, info: Any) -> Camera:
     if np.any(lens) and (model not in _PINHOLES or np.any(lens[5:])):
         # The recorder's inverse model undoes what ours does; its terms are near zero in fact.
         if "inverse" not in model or np.abs(lens[:5]).max() > 0.2:
-            raise CaptureError(path, f"has a lens of the model {model}, which is not read")
+            raise CaptureError(path, f"has a lens of the model {model[:30]!r}, which is not read")
         lens = np.zeros(5)
     size = (int(info.width), int(info.height))
     return stated_camera(path, size, matrix[[0, 4, 2, 5]], lens[:5])

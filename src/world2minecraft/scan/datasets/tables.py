@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from pathlib import PurePosixPath
 
 import numpy as np
 
@@ -57,3 +58,15 @@ def by_number(path: AnyPath) -> list[tuple[int, str]]:
     """Return a key that sorts file names by the numbers in them: 9.png before 10.png."""
     parts = _DIGITS.split(path.name)
     return [(int(part[:18]), "") if part.isdecimal() else (-1, part) for part in parts]
+
+
+def checked_inside(stated_by: AnyPath, name: str) -> PurePosixPath:
+    """Return a file's name that a data set states, which must lie inside its folder.
+
+    Raises:
+        CaptureError: it leaves the folder, or is no name that can be printed.
+    """
+    pure = PurePosixPath(name.replace("\\", "/"))
+    if pure.is_absolute() or ".." in pure.parts or not pure.name or not name.isprintable():
+        raise CaptureError(stated_by, f"names {name[:80]!r}; images must lie inside the folder")
+    return pure

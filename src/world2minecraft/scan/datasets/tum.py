@@ -8,7 +8,6 @@ cy and up to five of k1 k2 p1 p2 k3, as ETH3D has it), or the default of such ca
 """
 
 import re
-from pathlib import PurePosixPath
 
 import numpy as np
 
@@ -22,7 +21,7 @@ from world2minecraft.scan.datasets.lenses import (
     stated_camera,
 )
 from world2minecraft.scan.datasets.pairing import pair_times, pose_between
-from world2minecraft.scan.datasets.tables import read_rows, to_floats
+from world2minecraft.scan.datasets.tables import checked_inside, read_rows, to_floats
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.types import Camera
 
@@ -88,12 +87,7 @@ def _listed(path: AnyPath) -> tuple[np.ndarray, list[AnyPath]]:
     seconds = to_floats(path, [row[0] for row in rows])
     if not np.isfinite(seconds).all():
         raise CaptureError(path, "must begin each line with seconds")
-    files = []
-    for row in rows:
-        pure = PurePosixPath(row[1].replace("\\", "/"))
-        if pure.is_absolute() or ".." in pure.parts or "\0" in row[1] or not pure.name:
-            raise CaptureError(path, f"names {row[1][:80]!r}; files must lie inside the folder")
-        files.append(path.parent / str(pure))
+    files = [path.parent / str(checked_inside(path, row[1])) for row in rows]
     stems = [file.stem for file in files]
     if len(set(stems)) != len(stems):
         raise CaptureError(path, "names a file twice")
