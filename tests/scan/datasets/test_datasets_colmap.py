@@ -115,6 +115,17 @@ def test_missing_photos_are_listed(tmp_path, views):
     assert skipped == (("walk one.000004", "000004.jpg is not there"),)
 
 
+def test_photos_of_another_size_than_most_are_left_out(tmp_path, views):
+    write_colmap(tmp_path, views, text=True)
+    model = tmp_path / "sparse" / "0"
+    with (model / "cameras.txt").open("a") as cameras:
+        cameras.write("9 PINHOLE 120 160 130 130 60 80\n")
+    lines = (model / "images.txt").read_text()
+    (model / "images.txt").write_text(lines.replace(" 7 walk one/000002", " 9 walk one/000002"))
+    skipped = judge_capture(tmp_path, ScanOptions()).skipped
+    assert skipped == (("walk one.000002", "is 120x160; most are 160x120"),)
+
+
 def test_transforms_json_goes_first(tmp_path, views):
     write_colmap(tmp_path, views)
     save_text(tmp_path / "transforms.json", '{"frames": []}')

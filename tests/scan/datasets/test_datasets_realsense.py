@@ -195,7 +195,10 @@ def test_yuyv_pictures_become_rgb(tmp_path, views):
         ({"unit": 5.0}, "states a depth unit of 5.0 m"),
         ({"encoding": "bayer_rggb8"}, "is encoded as 'bayer_rggb8'; read are rgb8"),
         ({"size": (120, 100_000)}, "too few for 100000x120"),
-        ({"model": "Kannala Brandt4", "lens": (0.3, 0, 0, 0, 0)}, "'kannala_brandt4', which is not"),
+        (
+            {"model": "Kannala Brandt4", "lens": (0.3, 0, 0, 0, 0)},
+            "'kannala_brandt4', which is not",
+        ),
     ],
 )
 def test_recordings_that_lack_or_lie(tmp_path, views, refused, options, words):

@@ -3,11 +3,12 @@
 The model lies in ``sparse/0`` (or ``sparse``, or here), the photos in ``images/`` beside it.
 """
 
+from collections import Counter
 from pathlib import PurePosixPath
 
 from world2minecraft.archive import AnyPath
 from world2minecraft.errors import CaptureError
-from world2minecraft.scan.datasets.colmap_model import read_model
+from world2minecraft.scan.datasets.colmap_model import ModelImage, read_model
 from world2minecraft.scan.datasets.tables import checked_inside
 from world2minecraft.scan.frames import Capture, FrameFiles
 
@@ -32,8 +33,15 @@ class ColmapSource:
             raise CaptureError(chosen, "holds no photo; run colmap mapper again")
         files = [checked_inside(chosen, image.name) for image in images]
         place = _image_folder(folder, chosen, files)
+        size = _usual_size(images)
         frames = tuple(
-            FrameFiles(name, image.camera_to_world, place / str(file), image.camera)
+            FrameFiles(
+                name,
+                image.camera_to_world,
+                place / str(file),
+                image.camera,
+                problem=_other_size(image, size),
+            )
             for name, file, image in zip(_names(files), files, images, strict=True)
         )
         notes = ()
@@ -91,3 +99,15 @@ def _names(files: list[PurePosixPath]) -> list[str]:
         count = seen[name] = seen.get(name, 0) + 1
         names.append(name if count == 1 else f"{name}.{count}")
     return names
+
+
+def _usual_size(images: tuple[ModelImage, ...]) -> tuple[int, int]:
+    """Return the size in pixels that most photos have, the first of equals."""
+    counts = Counter((image.camera.width_px, image.camera.height_px) for image in images)
+    return counts.most_common(1)[0][0]
+
+
+def _other_size(image: ModelImage, size: tuple[int, int]) -> str:
+    """Return why a photo is left out: all that go into one reconstruction have one size."""
+    width, height = image.camera.width_px, image.camera.height_px
+    return "" if (width, height) == size else f"is {width}x{height}; most are {size[0]}x{size[1]}"
