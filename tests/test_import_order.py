@@ -48,7 +48,7 @@ ROWS: tuple[tuple[str, ...], ...] = (
     ("parameters", "run_folder"),
     ("steps",),
     ("prepare",),
-    ("pipeline", "rebuild", "plans"),
+    ("pipeline", "rebuild", "plans", "joining"),
     ("live",),
     ("rooms",),
     ("evaluate",),

@@ -1,0 +1,217 @@
+"""Several runs in one frame become one: one grid, one list of objects, open doors between them.
+
+A place belongs to the run in whose room it lies; what another scan saw of it through a door gives
+way. In walls, what any scan met stays.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.errors import UsageError
+from world2minecraft.joining.doors import Doorway
+from world2minecraft.joining.moving import Move, Run, moved
+from world2minecraft.joining.placing import doors_between
+from world2minecraft.metrics.layout import inside_polygon
+from world2minecraft.types import OBSERVED, ObjectInstance, OccupancyGrid, Placement
+
+MOST_CELLS = 600_000_000
+MOST_OBJECTS = 65535
+KEPT_SHARE = 0.5  # Of an object's cells: else it is what was seen through a door.
+BACK_CELLS = 2  # The leaf of a door stands up to so far behind its wall's face.
+WALL = int(SemanticClass.WALL)
+ROOM_CLASSES = (WALL, int(SemanticClass.WINDOW), int(SemanticClass.OBJS))
+
+
+@dataclass(frozen=True, eq=False)
+class Home:
+    """What was joined: one run, the size of its box in metres, and sentences for its report."""
+
+    run: Run
+    size_m: np.ndarray
+    told: tuple[str, ...]
+
+
+def merged(runs: Sequence[Run], name: str = "") -> Home:
+    """Return runs that stand in one frame as one, its corner at the origin.
+
+    Args:
+        runs: as ``place_runs`` gives them.
+        name: of the whole.
+
+    Raises:
+        UsageError: together they are too large.
+    """
+    low = np.min([layout.floor_polygon_m.min(axis=0) for r in runs for layout in r.layouts], axis=0)
+    voxel_m = runs[0].grid.voxel_m
+    base = min(layout.floor_z_m for run in runs for layout in run.layouts)
+    corner = [-int(np.floor(value / voxel_m + 1e-6)) for value in low]
+    shift = Move(0, (corner[0], corner[1], -round(base / voxel_m)))
+    runs = [moved(run, shift) for run in runs]
+    cells, offsets = _one_grid(runs)
+    pairs = doors_between(runs)
+    for mine, theirs in pairs:
+        _open(cells, mine, theirs)
+    instances, placements, dropped = _objects(runs, cells.arrays["instance"], offsets)
+    layouts = tuple(
+        replace(layout, name=_room_name(run, layout.name)) for run in runs for layout in run.layouts
+    )
+    high = np.max([layout.floor_polygon_m.max(axis=0) for layout in layouts], axis=0)
+    top = max(layout.floor_z_m + layout.wall_height_m for layout in layouts)
+    told = [f"{len(pairs)} door{'s' * (len(pairs) != 1)} between the rooms stand open"]
+    if dropped:
+        told.append(f"{dropped} objects that were seen through doors are those of the next room")
+    run = Run(name, cells.grid(instances), instances, placements, layouts)
+    return Home(run, np.round(np.array([*high, top]), 6), tuple(told))
+
+
+def _room_name(run: Run, name: str) -> str:
+    return f"{run.name}: {name}" if name else run.name
+
+
+@dataclass(frozen=True, eq=False)
+class _Cells:
+    """The arrays of a grid while they are written, by name, and the index of their first cell."""
+
+    arrays: dict[str, np.ndarray]
+    first: np.ndarray
+    voxel_m: float
+
+    def slice_of(self, axis: int, low_m: float, high_m: float, more: int = 0) -> slice:
+        """Return the cells between two places along an axis, and some more on both sides."""
+        low, high = (
+            round(value / self.voxel_m) - int(self.first[axis]) for value in (low_m, high_m)
+        )
+        return slice(max(low - more, 0), max(high + more, low + 1, 1))
+
+    def grid(self, instances: Sequence[ObjectInstance]) -> OccupancyGrid:
+        """Return the grid; cells of objects that are gone belong to none."""
+        known = np.zeros(MOST_OBJECTS + 1, bool)
+        known[[one.id for one in instances]] = True
+        instance = self.arrays["instance"]
+        instance[~known[instance]] = 0
+        origin = np.round(self.first * self.voxel_m, 9)
+        return OccupancyGrid(**self.arrays, voxel_m=self.voxel_m, origin_m=origin)
+
+
+def _one_grid(runs: Sequence[Run]) -> tuple[_Cells, list[int]]:
+    """Return the cells of all runs together, and what is added to the ids of each."""
+    voxel_m = runs[0].grid.voxel_m
+    firsts = [np.rint(run.grid.origin_m / voxel_m).astype(int) for run in runs]
+    ends = [first + run.grid.shape for first, run in zip(firsts, runs, strict=True)]
+    first = np.min(firsts, axis=0)
+    shape = tuple((np.max(ends, axis=0) - first).tolist())
+    if np.prod(shape, dtype=np.float64) > MOST_CELLS:
+        raise UsageError("together the rooms are too large for one grid; join fewer of them")
+    offsets = np.cumsum([0, *(_most_id(run) for run in runs)]).tolist()
+    if offsets[-1] > MOST_OBJECTS:
+        raise UsageError(f"together the rooms have over {MOST_OBJECTS:,} objects; join fewer")
+    owner = _owners(runs, first, shape, voxel_m)
+    arrays = {
+        "labels": np.full(shape, UNKNOWN, np.uint8),
+        "confidence": np.zeros(shape, np.float16),
+        "colour": np.zeros((*shape, 3), np.uint8),
+        "source": np.zeros(shape, np.uint8),
+        "instance": np.zeros(shape, np.uint16),
+    }
+    for number, run in enumerate(runs):
+        low = firsts[number] - first
+        view = tuple(slice(a, a + n) for a, n in zip(low, run.grid.shape, strict=True))
+        held, grid = arrays["labels"][view], run.grid
+        own = owner[view[:3]] == number
+        nobodys = owner[view[:3]] < 0
+        known = grid.labels != UNKNOWN
+        solid = known & (grid.labels > 0)
+        # In walls the first scan's word stands, but that surface counts more than air.
+        better = (held == UNKNOWN) | (solid & (held == 0))
+        take = known & (own | (nobodys & better))
+        for name, array in arrays.items():
+            values = getattr(grid, name)
+            if name == "instance":
+                values = np.where(values > 0, values + np.uint16(offsets[number]), values)
+            array[view][take] = values[take]
+    return _Cells(arrays, first, voxel_m), offsets
+
+
+def _most_id(run: Run) -> int:
+    return max([int(run.grid.instance.max(initial=0)), *(one.id for one in run.instances)])
+
+
+def _owners(runs: Sequence[Run], first: np.ndarray, shape: tuple, voxel_m: float) -> np.ndarray:
+    """Return int16 [X, Y, Z]: the run in whose room a cell lies, -1 in walls and outside."""
+    owner = np.full(shape, -1, np.int16)
+    x, y = ((first[a] + np.arange(shape[a]) + 0.5) * voxel_m for a in (0, 1))
+    for number in reversed(range(len(runs))):  # Of two that share a strip the first has it.
+        for layout in runs[number].layouts:
+            polygon = layout.floor_polygon_m
+            spans = [
+                np.flatnonzero((at > polygon[:, a].min()) & (at < polygon[:, a].max()))
+                for a, at in enumerate((x, y))
+            ]
+            if not all(len(span) for span in spans):
+                continue
+            points = np.stack(np.meshgrid(x[spans[0]], y[spans[1]], indexing="ij"), axis=-1)
+            inside = inside_polygon(points.reshape(-1, 2), polygon, 0.0)
+            low = round(layout.floor_z_m / voxel_m) - first[2] - 1
+            high = int(np.ceil((layout.floor_z_m + layout.wall_height_m) / voxel_m)) - first[2] + 1
+            i, j = np.meshgrid(spans[0], spans[1], indexing="ij")
+            inside = inside.reshape(i.shape)
+            owner[i[inside], j[inside], max(low, 0) : max(high, 0)] = number
+    return owner
+
+
+def _open(cells: _Cells, mine: Doorway, theirs: Doorway) -> None:
+    """Make a way through the wall between two doors that meet, and lay a floor in it; in place."""
+    across = mine.outward % 2  # The axis of the way through.
+    along = 1 - across
+    width = min(mine.width_m, theirs.width_m)
+    middle = (mine.middle_m[along] + theirs.middle_m[along]) / 2
+    floor_m = max(mine.floor_z_m, theirs.floor_z_m)
+    head_m = min(mine.floor_z_m + mine.head_m, theirs.floor_z_m + theirs.head_m)
+    ends = sorted((mine.middle_m[across], theirs.middle_m[across]))
+    spans: list[slice] = [slice(0)] * 2
+    spans[along] = cells.slice_of(along, middle - width / 2, middle + width / 2)
+    spans[across] = cells.slice_of(across, ends[0], ends[1], BACK_CELLS)
+    up = cells.slice_of(2, floor_m, head_m)
+    labels = cells.arrays["labels"]
+    way = np.zeros(labels.shape, bool)
+    way[(*spans, up)] = True
+    way &= np.isin(labels, (*ROOM_CLASSES, UNKNOWN))
+    sill = np.zeros(labels.shape, bool)
+    sill[(*spans, slice(max(up.start - 1, 0), max(up.start, 1)))] = True
+    sill &= np.isin(labels, (WALL, UNKNOWN))
+    for part, kind in ((way, SemanticClass.EMPTY), (sill, SemanticClass.FLOOR)):
+        labels[part], cells.arrays["instance"][part] = int(kind), 0
+        cells.arrays["confidence"][part], cells.arrays["source"][part] = 1.0, OBSERVED
+
+
+def _objects(
+    runs: Sequence[Run], instance: np.ndarray, offsets: Sequence[int]
+) -> tuple[tuple[ObjectInstance, ...], tuple[Placement, ...], int]:
+    """Return the objects of which most is left, with new numbers, and how many are gone."""
+    left = np.bincount(instance.reshape(-1), minlength=offsets[-1] + 1)
+    cells = np.argwhere(instance > 0).astype(np.int32)
+    owners = instance[tuple(cells.T)]
+    order = np.argsort(owners, kind="stable")
+    cells, owners = cells[order], owners[order]
+    instances: list[ObjectInstance] = []
+    placements: list[Placement] = []
+    dropped = 0
+    for run, offset in zip(runs, offsets, strict=False):
+        kept: set[int] = set()
+        for one in run.instances:
+            number = one.id + offset
+            if left[number] < KEPT_SHARE * max(len(one.cells), 1):
+                dropped += 1
+                continue
+            kept.add(one.id)
+            start, end = np.searchsorted(owners, [number, number + 1])
+            instances.append(replace(one, id=number, cells=cells[start:end]))
+        placements += [
+            replace(one, object_id=one.object_id + offset)
+            for one in run.placements
+            if one.object_id in kept
+        ]
+    return tuple(instances), tuple(placements), dropped
