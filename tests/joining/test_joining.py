@@ -14,7 +14,7 @@ from world2minecraft.exchange.objects import read_objects, write_objects, write_
 from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.joining import Move, merged, moved, parse_place, place_runs, read_runs
-from world2minecraft.joining.doors import fits
+from world2minecraft.joining.fits import fits
 
 ANYWHERE = Move(3, (17, -40, 2))
 
@@ -80,7 +80,7 @@ def test_rooms_find_their_doors_from_any_frame(turns):
 
 def test_each_room_stays_as_it_was_and_doors_are_open():
     placed = place_runs([kitchen(), hall(), bedroom()])
-    home = merged(placed.runs, "home")
+    home = merged(placed, "home")
     grid = home.run.grid
     for number, run in enumerate(placed.runs):
         mine, theirs = (
@@ -106,7 +106,7 @@ def inside(grid, polygon):
 
 
 def test_objects_keep_their_cells_and_get_numbers_of_their_own():
-    home = merged(place_runs([kitchen(), bedroom()]).runs)
+    home = merged(place_runs([kitchen(), bedroom()]))
     numbers = [one.id for one in home.run.instances]
     assert len(set(numbers)) == len(numbers)
     tables = [one for one in home.run.instances if one.class_id == 8]
@@ -123,7 +123,7 @@ def test_what_was_seen_through_a_door_is_the_next_rooms():
     both = room(KITCHEN, [((1.2, 2.8), (2.2, 2.8), 2.2)], [table(1.2, 1.2)])
     seen = run_of("kitchen", both, room(BED, (), [table(2.6, 4.8)]))
     seen = replace(seen, layouts=seen.layouts[:1])
-    home = merged(place_runs([seen, bedroom()], {"bed": Move()}).runs)
+    home = merged(place_runs([seen, bedroom()], {"bed": Move()}))
     assert len([one for one in home.run.instances if one.class_id == 8]) == 2
     assert any("seen through doors" in text for text in home.told)
 
@@ -168,7 +168,7 @@ def test_a_room_without_a_door_needs_a_place():
 
 def test_rooms_in_one_place_are_refused():
     with pytest.raises(UsageError, match="would stand in one place"):
-        place_runs([kitchen(), bedroom()], {"bed": Move(0, (0, -30, 0))})
+        place_runs([kitchen(), bedroom()], {"bed": Move(1, (75, 0, 0))})
 
 
 @pytest.mark.parametrize(

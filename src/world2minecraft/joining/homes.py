@@ -104,7 +104,7 @@ def join(
     names = [run.name for run in runs]
     by_hand = dict(parse_place(text, names, voxel_m) for text in places)
     placed = place_runs(runs, by_hand)
-    home = merged(placed.runs, out.resolve().name)
+    home = merged(placed, out.resolve().name)
     check_writable(out)
     scan = _scan_of(home, placed)
     _write(out, home, scan)

@@ -11,11 +11,11 @@ import numpy as np
 
 from world2minecraft.classes import UNKNOWN, SemanticClass
 from world2minecraft.errors import UsageError
-from world2minecraft.joining.doors import Doorway
+from world2minecraft.joining.doors import Doorway, head_of, shifted_door
 from world2minecraft.joining.moving import Move, Run, moved
-from world2minecraft.joining.placing import doors_between
+from world2minecraft.joining.placing import Placed
 from world2minecraft.metrics.layout import inside_polygon
-from world2minecraft.types import OBSERVED, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.types import OBSERVED, Layout, ObjectInstance, OccupancyGrid, Placement
 
 MOST_CELLS = 600_000_000
 MOST_OBJECTS = 65535
@@ -34,16 +34,17 @@ class Home:
     told: tuple[str, ...]
 
 
-def merged(runs: Sequence[Run], name: str = "") -> Home:
+def merged(placed: Placed, name: str = "") -> Home:
     """Return runs that stand in one frame as one, its corner at the origin.
 
     Args:
-        runs: as ``place_runs`` gives them.
+        placed: as ``place_runs`` gives them.
         name: of the whole.
 
     Raises:
         UsageError: together they are too large.
     """
+    runs: Sequence[Run] = placed.runs
     low = np.min([layout.floor_polygon_m.min(axis=0) for r in runs for layout in r.layouts], axis=0)
     voxel_m = runs[0].grid.voxel_m
     base = min(layout.floor_z_m for run in runs for layout in run.layouts)
@@ -51,16 +52,17 @@ def merged(runs: Sequence[Run], name: str = "") -> Home:
     shift = Move(0, (corner[0], corner[1], -round(base / voxel_m)))
     runs = [moved(run, shift) for run in runs]
     cells, offsets = _one_grid(runs)
-    pairs = doors_between(runs)
-    for mine, theirs in pairs:
-        _open(cells, mine, theirs)
+    away = np.array(shift.cells) * voxel_m
+    for pair in placed.doors:
+        _open(cells, *(shifted_door(door, away, 0) for door in pair))
     instances, placements, dropped = _objects(runs, cells.arrays["instance"], offsets)
     layouts = tuple(
         replace(layout, name=_room_name(run, layout.name)) for run in runs for layout in run.layouts
     )
     high = np.max([layout.floor_polygon_m.max(axis=0) for layout in layouts], axis=0)
     top = max(layout.floor_z_m + layout.wall_height_m for layout in layouts)
-    told = [f"{len(pairs)} door{'s' * (len(pairs) != 1)} between the rooms stand open"]
+    count = len(placed.doors)
+    told = [f"{count} door{'s' * (count != 1)} between the rooms stand open"]
     if dropped:
         told.append(f"{dropped} objects that were seen through doors are those of the next room")
     run = Run(name, cells.grid(instances), instances, placements, layouts)
@@ -140,26 +142,50 @@ def _most_id(run: Run) -> int:
 
 
 def _owners(runs: Sequence[Run], first: np.ndarray, shape: tuple, voxel_m: float) -> np.ndarray:
-    """Return int16 [X, Y, Z]: the run in whose room a cell lies, -1 in walls and outside."""
+    """Return int16 [X, Y, Z]: the run in whose room a cell lies, -1 in walls and outside.
+
+    Where rooms of two runs overlap, since one looked far through a door, the run has it that
+    knows more of the cells there.
+    """
     owner = np.full(shape, -1, np.int16)
-    x, y = ((first[a] + np.arange(shape[a]) + 0.5) * voxel_m for a in (0, 1))
-    for number in reversed(range(len(runs))):  # Of two that share a strip the first has it.
-        for layout in runs[number].layouts:
-            polygon = layout.floor_polygon_m
-            spans = [
-                np.flatnonzero((at > polygon[:, a].min()) & (at < polygon[:, a].max()))
-                for a, at in enumerate((x, y))
-            ]
-            if not all(len(span) for span in spans):
-                continue
-            points = np.stack(np.meshgrid(x[spans[0]], y[spans[1]], indexing="ij"), axis=-1)
-            inside = inside_polygon(points.reshape(-1, 2), polygon, 0.0)
-            low = round(layout.floor_z_m / voxel_m) - first[2] - 1
-            high = int(np.ceil((layout.floor_z_m + layout.wall_height_m) / voxel_m)) - first[2] + 1
-            i, j = np.meshgrid(spans[0], spans[1], indexing="ij")
-            inside = inside.reshape(i.shape)
-            owner[i[inside], j[inside], max(low, 0) : max(high, 0)] = number
+    for number, run in enumerate(runs):
+        for layout in run.layouts:
+            columns = _columns(layout, first, shape, voxel_m)
+            low = round(layout.floor_z_m / voxel_m) - int(first[2]) - 1
+            high = int(np.ceil((layout.floor_z_m + layout.wall_height_m) / voxel_m)) - int(first[2])
+            layers = slice(max(low, 0), max(high + 1, 0))
+            part = owner[:, :, layers]
+            mine = np.broadcast_to(columns[:, :, None], part.shape)
+            for other in range(number):
+                both = mine & (part == other)
+                counts = [_known_in(runs[n], both, layers, first) for n in (number, other)]
+                if counts[0] <= counts[1]:
+                    mine = mine & ~both
+            part[mine] = number
     return owner
+
+
+def _columns(layout: Layout, first: np.ndarray, shape: tuple, voxel_m: float) -> np.ndarray:
+    """Return bool [X, Y]: the columns whose middle lies in a room's outline."""
+    columns = np.zeros(shape[:2], bool)
+    polygon = layout.floor_polygon_m
+    spans = []
+    for axis in (0, 1):
+        at = (first[axis] + np.arange(shape[axis]) + 0.5) * voxel_m
+        spans.append(np.flatnonzero((at > polygon[:, axis].min()) & (at < polygon[:, axis].max())))
+    if all(len(span) for span in spans):
+        i, j = np.meshgrid(*spans, indexing="ij")
+        points = (np.stack([i, j], axis=-1).reshape(-1, 2) + first[:2] + 0.5) * voxel_m
+        columns[i, j] = inside_polygon(points, polygon, 0.0).reshape(i.shape)
+    return columns
+
+
+def _known_in(run: Run, mask: np.ndarray, layers: slice, first: np.ndarray) -> int:
+    """Return how many cells of a mask, [X, Y, layers] of the whole, a run knows."""
+    cells = np.argwhere(mask) + np.array([0, 0, layers.start]) + first
+    cells -= np.rint(run.grid.origin_m / run.grid.voxel_m).astype(int)
+    cells = cells[((cells >= 0) & (cells < run.grid.shape)).all(axis=1)]
+    return int((run.grid.labels[tuple(cells.T)] != UNKNOWN).sum())
 
 
 def _open(cells: _Cells, mine: Doorway, theirs: Doorway) -> None:
@@ -169,7 +195,7 @@ def _open(cells: _Cells, mine: Doorway, theirs: Doorway) -> None:
     width = min(mine.width_m, theirs.width_m)
     middle = (mine.middle_m[along] + theirs.middle_m[along]) / 2
     floor_m = max(mine.floor_z_m, theirs.floor_z_m)
-    head_m = min(mine.floor_z_m + mine.head_m, theirs.floor_z_m + theirs.head_m)
+    head_m = floor_m + head_of(mine, theirs)
     ends = sorted((mine.middle_m[across], theirs.middle_m[across]))
     spans: list[slice] = [slice(0)] * 2
     spans[along] = cells.slice_of(along, middle - width / 2, middle + width / 2)

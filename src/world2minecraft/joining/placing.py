@@ -2,25 +2,33 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
 from world2minecraft.errors import UsageError
-from world2minecraft.joining.doors import Doorway, Fit, doorways_of, fits, overlap_m2
+from world2minecraft.joining.doors import Doorway, doorways_of
+from world2minecraft.joining.fits import Fit, agreement, fits, known_of, overlap_m2
 from world2minecraft.joining.moving import Move, Run, moved
 
 SURE_BY = 0.15  # A place is taken where it fits better than any other by so much.
 MOST_SHOWN = 4
+MET_M = 0.5  # Doors nearer than that meet.
+ALIKE = 0.85  # Two scans of one room agree by so much.
 HAND_OVERLAP = 0.5  # Of the smaller room: given by hand, yet one room in the other.
 
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """The runs in one frame, the move of each, and sentences on how they were placed."""
+    """The runs in one frame, the move of each, sentences on how they were placed, and doors.
+
+    ``doors`` are pairs that meet, one of each run.
+    """
 
     runs: tuple[Run, ...]
     moves: tuple[Move, ...]
     told: tuple[str, ...]
+    doors: tuple[tuple[Doorway, Doorway], ...]
 
 
 def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -> Placed:
@@ -40,6 +48,7 @@ def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -
     told[first] = f"{first} stands where it was scanned" if first not in hand else told[first]
     moves |= {run.name: hand[run.name] for run in runs if run.name in hand}
     left = [run for run in runs if run.name not in moves]
+    met: list[tuple[Doorway, Doorway]] = []
     while left:
         standing = [moved(run, moves[run.name]) for run in runs if run.name in moves]
         options = {run.name: fits(run, standing) for run in left}
@@ -49,11 +58,20 @@ def place_runs(runs: Sequence[Run], by_hand: Mapping[str, Move] | None = None) -
         best = max(sure, key=lambda name: (options[name][0].score, -_index(runs, name)))
         fit = options[best][0]
         moves[best] = fit.move
-        told[best] = f"{best} was set beside {fit.beside} at a door {fit.door.width_m:.2f} m wide"
+        told[best] = (
+            f"{best} was set beside {fit.beside} at a door {fit.doors[0].width_m:.2f} m wide"
+        )
+        met.append(fit.doors)
         left = [run for run in left if run.name != best]
     placed = tuple(moved(run, moves[run.name]) for run in runs)
-    _check_apart(placed)
-    return Placed(placed, tuple(moves[run.name] for run in runs), tuple(told[r.name] for r in runs))
+    _check_apart(placed, set(hand))
+    met += [pair for pair in doors_between(placed) if not any(_is_one(pair, old) for old in met)]
+    return Placed(
+        placed,
+        tuple(moves[run.name] for run in runs),
+        tuple(told[run.name] for run in runs),
+        tuple(met),
+    )
 
 
 def _is_sure(found: list[Fit]) -> bool:
@@ -69,7 +87,7 @@ def _undecided(left: list[Run], options: Mapping[str, list[Fit]], voxel_m: float
     open_ones = [run for run in left if options[run.name]]
     if not open_ones:
         run = left[0]
-        without = "" if doorways_of(run.layouts) else ": no door was found in it"
+        without = "" if doorways_of(run) else ": no door was found in it"
         return (
             f"{run.name} fits at no door of the other rooms{without}; "
             f"say where it stands: --at {run.name}=X,Y,TURNS (metres, quarter turns)"
@@ -87,11 +105,15 @@ def stated(name: str, move: Move, voxel_m: float) -> str:
     return place + (f",{z:g}" if z else "")
 
 
-def _check_apart(placed: Sequence[Run]) -> None:
+def _check_apart(placed: Sequence[Run], hand: set[str]) -> None:
+    """Refuse runs put by hand into one place, where they did not see the same things."""
     for number, one in enumerate(placed):
         for other in placed[:number]:
             shared = overlap_m2(one.layouts, other.layouts)
-            if shared > HAND_OVERLAP * min(_floor_m2(one), _floor_m2(other)):
+            if shared <= HAND_OVERLAP * min(_floor_m2(one), _floor_m2(other)):
+                continue
+            seen_alike = agreement(known_of(one), known_of(other))[1] >= ALIKE
+            if {one.name, other.name} & hand and not seen_alike:
                 raise UsageError(
                     f"{one.name} and {other.name} would stand in one place, {shared:.1f} m2 of "
                     f"floor in both; move one: --at {one.name}=X,Y,TURNS"
@@ -133,14 +155,19 @@ def parse_place(text: str, names: Sequence[str], voxel_m: float) -> tuple[str, M
 
 
 def doors_between(placed: Sequence[Run]) -> list[tuple[Doorway, Doorway]]:
-    """Return the doors that meet, once each: those of an earlier run and of a later one."""
+    """Return the doors of the rooms' outlines that meet: of an earlier run and of a later one."""
+    doors = [[door for door in doorways_of(run) if door.sure] for run in placed]
     pairs = []
-    for number, one in enumerate(placed):
-        for other in placed[number + 1 :]:
-            for mine in doorways_of(one.layouts):
-                for theirs in doorways_of(other.layouts):
-                    apart = np.array(theirs.middle_m) - mine.middle_m
-                    opposite = (mine.outward - theirs.outward) % 4 == 2
-                    if opposite and np.abs(apart).max() < 0.5:
-                        pairs.append((mine, theirs))
+    for number, own in enumerate(doors):
+        for others in doors[number + 1 :]:
+            for mine, theirs in product(own, others):
+                apart = np.array(theirs.middle_m) - mine.middle_m
+                opposite = (mine.outward - theirs.outward) % 4 == 2
+                if opposite and np.abs(apart).max() < MET_M:
+                    pairs.append((mine, theirs))
     return pairs
+
+
+def _is_one(pair: tuple[Doorway, Doorway], other: tuple[Doorway, Doorway]) -> bool:
+    middles = [np.mean([door.middle_m for door in doors], axis=0) for doors in (pair, other)]
+    return float(np.abs(middles[0] - middles[1]).max()) < MET_M
