@@ -25,6 +25,7 @@ SOURCES = Registry(
         "scanner_app": "world2minecraft.scan.apps.scanner_app:ScannerAppSource",
         "scannet_sens": "world2minecraft.scan.datasets.scannet_sens:ScanNetSensSource",
         "scannet_folder": "world2minecraft.scan.datasets.scannet_folder:ScanNetFolderSource",
+        "scannetpp": "world2minecraft.scan.datasets.scannetpp:ScanNetPpSource",
         "tum": "world2minecraft.scan.datasets.tum:TumSource",
         "replica": "world2minecraft.scan.datasets.replica:ReplicaSource",
         "sun": "world2minecraft.scan.datasets.sun:SunSource",
