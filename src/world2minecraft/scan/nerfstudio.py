@@ -176,7 +176,8 @@ def _focal(path: AnyPath, stated: dict[str, Any], width: float) -> float:
 
 def _number(path: AnyPath, stated: dict[str, Any], key: str, default: float | None = None) -> float:
     value = stated.get(key, default)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    right = isinstance(value, int | float) and not isinstance(value, bool)
+    if not right or not abs(value) < 1e300:  # A whole number of JSON may be of any length.
         raise CaptureError(path, f'"{key}" must be a number, not {str(value)[:40]}')
     return float(value)
 
@@ -186,7 +187,7 @@ def _pose(path: AnyPath, entry: dict[str, Any], scale: float) -> np.ndarray | No
         return None
     try:
         pose = np.array(entry["transform_matrix"], np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         pose = np.zeros(0)
     if pose.shape == (3, 4):
         pose = np.vstack([pose, [0, 0, 0, 1]])

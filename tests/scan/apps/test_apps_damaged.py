@@ -381,3 +381,44 @@ def test_the_3d_scanner_app_without_pictures(room):
     for path in folder.glob("*.jpg"):
         path.unlink()
     refused(folder, "frame_00000.jpg", "All Data")
+
+
+# All of them
+
+
+NASTY = (None, True, "x", [], {}, [[]], [None], ["a"], [[1, 2], [3]], 0, -1, 10**400, 1e308, NAN)
+STATED = {
+    "record3d": "metadata",
+    "polycam": "keyframes/corrected_cameras/*.json",
+    "scanner_app": "frame_00000.json",
+    "nerfstudio": "transforms.json",
+}
+
+
+@pytest.mark.parametrize("app", STATED)
+def test_whatever_a_file_states_is_read_or_refused_in_one_line(room, written, tmp_path, app):
+    """Each value of each key, replaced by each of many that no app writes."""
+    if app == "nerfstudio":
+        folder = tmp_path / "room"
+        folder.mkdir()
+        Image.new("RGB", (160, 120)).save(folder / "0.png")
+        lens = {"fl_x": 100.0, "fl_y": 100.0, "cx": 80, "cy": 60, "w": 160, "h": 120, "k4": 0}
+        frame = {"file_path": "0.png", "transform_matrix": np.eye(4).tolist(), "depth_path": "0"}
+        more = {"applied_scale": 1.0, "integer_depth_scale": 1.0, "camera_angle_x": 1.0}
+        stated = lens | more | {"mask_path": "0.png", "frames": [frame]}
+        (folder / "transforms.json").write_text(json.dumps(stated))
+    else:
+        folder = room(app)
+        for pattern in ("*.jpg", "corrected_cameras/*.json"):
+            for more in sorted(folder.rglob(pattern))[2:]:
+                more.unlink()
+    path = first(folder, STATED[app])
+    whole = json.loads(path.read_text())
+    for key in whole:
+        for value in NASTY:
+            path.write_text(json.dumps(whole | {key: value}))
+            try:
+                judge_capture(folder, ScanOptions())
+            except InputError as error:
+                assert "\n" not in str(error)
+                assert len(str(error)) < 1000

@@ -19,6 +19,7 @@ from world2minecraft.scan.apps.stated import (
     camera,
     files_by_stem,
     number,
+    stated_float,
 )
 from world2minecraft.scan.frames import Capture, FrameFiles
 
@@ -89,8 +90,7 @@ def _pose(path: AnyPath, stated: dict[str, Any]) -> np.ndarray:
     for row in range(3):
         for column in range(4):
             key = f"t_{row}{column}"
-            value = stated.get(key)
-            if isinstance(value, bool) or not isinstance(value, int | float):
+            if key not in stated:
                 raise CaptureError(path, f'lacks "{key}" of the pose')
-            matrix[row, column] = value
+            matrix[row, column] = stated_float(stated[key])
     return arkit_pose(matrix)

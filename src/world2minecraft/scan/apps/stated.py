@@ -18,6 +18,7 @@ from world2minecraft.files import read_bytes
 from world2minecraft.types import Camera
 
 ARKIT_UP = np.array([0.0, 1.0, 0.0])
+MOST_M = 1e9
 MAX_TEXT_BYTES = 64 << 20  # An hour of odometry at 60 Hz takes about 30 MB.
 
 
@@ -27,10 +28,20 @@ def number(path: AnyPath, stated: Mapping[str, Any], key: str) -> float:
     Raises:
         CaptureError: it is missing, or is no such number.
     """
-    value = stated.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise CaptureError(path, f'"{key}" must be a number, not {str(value)[:40]}')
-    return float(value)
+    value = stated_float(stated.get(key))
+    if not math.isfinite(value):
+        raise CaptureError(path, f'"{key}" must be a number, not {str(stated.get(key))[:40]}')
+    return value
+
+
+def stated_float(value: object) -> float:
+    """Return a number of JSON; NaN for what is none, infinity for a whole number too long."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return math.nan
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
 
 
 def numbers(path: AnyPath, key: str, values: object, count: int) -> np.ndarray:
@@ -61,13 +72,17 @@ def camera(path: AnyPath, size: tuple[float, float], lens: Sequence[float]) -> C
 
 
 def arkit_pose(matrix: np.ndarray) -> np.ndarray:
-    """Return the pose with OpenCV axes, float64 [4, 4], of ARKit's 4x4 camera transform."""
-    return opengl_to_opencv_pose(np.asarray(matrix, np.float64))
+    """Return the pose with OpenCV axes, float64 [4, 4], of ARKit's 4x4 camera transform.
+
+    What no pose can hold becomes NaN: tracking was lost.
+    """
+    stated = np.asarray(matrix, np.float64)
+    return opengl_to_opencv_pose(np.where(np.abs(stated) < MOST_M, stated, np.nan))
 
 
 def arkit_pose_of_quaternion(quaternion: np.ndarray, place_m: np.ndarray) -> np.ndarray:
     """Return the pose with OpenCV axes of ARKit's quaternion x, y, z, w and place in metres."""
-    return opengl_to_opencv_pose(pose_of_quaternion(quaternion, place_m))
+    return arkit_pose(pose_of_quaternion(quaternion, place_m))
 
 
 def pose_of_quaternion(quaternion: np.ndarray, place_m: np.ndarray) -> np.ndarray:

@@ -81,7 +81,10 @@ class StraySource:
 def _rows(path: AnyPath) -> Rows:
     """Return what the odometry states, by the number of the frame."""
     lines = csv.reader(io.StringIO(read_text(path)))
-    header = [word.strip() for word in next(lines, [])]
+    try:
+        header = [word.strip() for word in next(lines, [])]
+    except csv.Error as error:
+        raise CaptureError(path, "is no table of commas and numbers") from error
     missing = [name for name in ("frame", *_POSE) if name not in header]
     if missing:
         raise CaptureError(path, f"must begin with a line of names; it lacks {missing[0]}")
