@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.posing.colmap import colmap
-from world2minecraft.posing.features import Features
+from world2minecraft.posing.features import Features, unit_px
 from world2minecraft.posing.lenses import Lens, from_colmap, to_colmap
 from world2minecraft.posing.links import Links
 from world2minecraft.posing.parameters import PosingParameters
@@ -65,11 +65,13 @@ def solved(
         links: what they share.
         poses: camera-to-world of those that are placed, by number.
         lenses: the shared lenses; with ``free`` False each keeps its camera.
-        gate_px: an observation farther from its point is dropped.
+        gate_px: an observation farther from its point is dropped; of a picture 640 wide.
         parameters: the seed and more.
         free: move poses and lenses, not points alone.
         tolerance: adjusting ends when a step gains a smaller share.
     """
+    unit = unit_px(photos)
+    gate_px = gate_px * unit
     with colmap() as pycolmap:
         model = _model(pycolmap, photos, poses, lenses, free)
         graph = _graph(pycolmap, photos, links, poses)
@@ -77,8 +79,9 @@ def solved(
         _triangulate(pycolmap, model, graph, manager, gate_px, parameters)
         manager.filter_all_points3D(gate_px, LEAST_DEG)
         if model.num_points3D():
+            options = _adjusting(pycolmap, free, unit, tolerance)
             fixed = [n + 1 for n, lens in enumerate(lenses) if lens.is_fixed or not free]
-            _adjust(pycolmap, model, free, fixed, tolerance)
+            _adjust(pycolmap, model, options, fixed)
             manager.filter_all_points3D(gate_px, LEAST_DEG)
         return _read(photos, model, poses)
 
@@ -128,16 +131,20 @@ def _triangulate(
     triangulator.merge_all_tracks(options)
 
 
-def _adjust(pycolmap: Any, model: Any, free: bool, fixed: list[int], tolerance: float) -> None:
-    """Move points, and with ``free`` poses and lenses but those ``fixed``, to where they fit."""
+def _adjusting(pycolmap: Any, free: bool, unit: float, tolerance: float) -> Any:
     options = pycolmap.BundleAdjustmentOptions()
     options.print_summary = False
     options.refine_rig_from_world = free
     options.ceres.loss_function_type = pycolmap.LossFunctionType.CAUCHY
-    options.ceres.loss_function_scale = 1.0
+    options.ceres.loss_function_scale = unit
     options.ceres.solver_options.num_threads = 1  # Sums in another order are other sums.
     options.ceres.solver_options.max_num_iterations = 50
     options.ceres.solver_options.function_tolerance = tolerance
+    return options
+
+
+def _adjust(pycolmap: Any, model: Any, options: Any, fixed: list[int]) -> None:
+    """Move what the options let move, but for the lenses ``fixed``, to where it fits best."""
     config = pycolmap.BundleAdjustmentConfig()
     for image in sorted(model.reg_image_ids()):
         config.add_image(image)

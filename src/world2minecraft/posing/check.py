@@ -8,7 +8,7 @@ from world2minecraft.errors import CaptureError
 from world2minecraft.posing import reasons
 from world2minecraft.posing.bundle import Solved, solved
 from world2minecraft.posing.colmap import PLACE
-from world2minecraft.posing.features import Features, gather
+from world2minecraft.posing.features import Features, gather, unit_px
 from world2minecraft.posing.find import (
     each_camera,
     focal_facts,
@@ -72,7 +72,9 @@ def check_poses(
     poses = {i: p for i, one in enumerate(features) if (p := one.camera_to_scan) is not None}
     shared = each_camera(lenses)
     cameras = {i: one.camera or shared[i] for i, one in enumerate(features)}
-    wrong = outliers(epipolar_px(features, links, poses, cameras), chosen)
+    unit = unit_px(features)
+    off_px = epipolar_px(features, links, poses, cameras)
+    wrong = outliers(off_px, unit, chosen)
     stated = Stated(features, lenses, links, poses, wrong, chosen)
     measured = _measured(stated, cameras)
     if len(measured.points) < LEAST_POINTS and len(links.matches) < 2:
@@ -81,9 +83,13 @@ def check_poses(
             f"share too few details to check their poses ({len(measured.points)} points); "
             "take pictures that overlap, with the lights on",
         )
-    before = measured.median_px
-    good = before <= chosen.good_px and all(lens.known == "stated" for lens in lenses)
-    made = _kept(stated, measured, cameras) if good else _moved(stated, before, steps)
+    before = _error_px(measured, off_px, wrong)
+    good = before <= unit * chosen.good_px and all(lens.known == "stated" for lens in lenses)
+    made = (
+        _kept(stated, measured, before, cameras)
+        if good
+        else _moved(stated, measured, before, steps)
+    )
     steps.end()
     return made
 
@@ -100,6 +106,16 @@ def _measured(stated: Stated, cameras: dict[int, Camera]) -> Solved:
         stated.parameters,
         free=False,
     )
+
+
+def _error_px(measured: Solved, off_px: dict[int, float], wrong: set[int]) -> float:
+    """Return how far off the stated poses are, in pixels.
+
+    Points exist only where matches meet within a gate, so poses that are far off look better by
+    points than they are; the epipolar error has no gate.
+    """
+    usual = [off for i, off in off_px.items() if i not in wrong]
+    return max(measured.median_px, float(np.median(usual)) if usual else 0.0)
 
 
 def _exact(cameras: dict[int, Camera], poses: dict) -> list[Lens]:
@@ -121,7 +137,9 @@ def _rescued(stated: Stated, found: Solved, cameras: dict[int, Camera]) -> dict[
     return fresh
 
 
-def _kept(stated: Stated, measured: Solved, cameras: dict[int, Camera]) -> SparseScene:
+def _kept(
+    stated: Stated, measured: Solved, before: float, cameras: dict[int, Camera]
+) -> SparseScene:
     """Return the scene with all good poses as they were stated."""
     fresh = _rescued(stated, measured, cameras)
     kept = {i: (cameras[i], p) for i, p in stated.poses.items() if i not in stated.wrong}
@@ -131,7 +149,7 @@ def _kept(stated: Stated, measured: Solved, cameras: dict[int, Camera]) -> Spars
         stated.photos, stated.links, poses, _exact(cameras, poses), gate,
         stated.parameters, free=False,
     )  # fmt: skip
-    error = round(measured.median_px, 4)
+    error = round(before, 4)
     facts = {
         "error_before_px": error,
         "error_after_px": error,
@@ -143,7 +161,7 @@ def _kept(stated: Stated, measured: Solved, cameras: dict[int, Camera]) -> Spars
     return _scene(stated, found, None, kept, fresh, facts)
 
 
-def _moved(stated: Stated, before: float, steps: Steps) -> SparseScene:
+def _moved(stated: Stated, measured: Solved, before: float, steps: Steps) -> SparseScene:
     """Return the scene with poses and lenses that fit the pixels, in the stated frame."""
     notes = stated.notes
     found = _refined(stated)
@@ -160,7 +178,7 @@ def _moved(stated: Stated, before: float, steps: Steps) -> SparseScene:
         "error_after_px": round(found.median_px, 4),
         "moved_median_mm": round(1000 * float(np.median(moved)), 3),
         "turned_median_deg": round(float(np.median(change.off_deg)), 4),
-        "scale_correction": round(change.scale, 6),
+        "scale_correction": _scale(measured, found, change),
         "mount_mm": [round(1000 * float(part), 1) for part in change.mount_m],
         **_focals(stated, found),
     }
@@ -171,6 +189,13 @@ def _moved(stated: Stated, before: float, steps: Steps) -> SparseScene:
     )
     fresh = {i: pose for i, pose in found.poses.items() if i not in shared}
     return _scene(stated, found, change, {}, fresh, facts)
+
+
+def _scale(measured: Solved, found: Solved, change: Similarity) -> float | None:
+    """Return how much deeper everything is now than by the stated poses."""
+    if len(measured.points) < LEAST_POINTS:
+        return None
+    return round(change.scale * middle_depth(found) / middle_depth(measured), 4)
 
 
 def _refined(stated: Stated) -> Solved | None:
@@ -187,7 +212,8 @@ def _refined(stated: Stated) -> Solved | None:
     poses = {**found.poses, **fresh}
     if later:
         found = refined(stated.photos, links, poses, lenses, later, chosen)
-    if found.median_px > SETTLED_PX or len(found.poses) < 0.5 * len(linked):
+    settled = found.median_px <= SETTLED_PX * unit_px(stated.photos)
+    if not settled or len(found.poses) < 0.5 * len(linked):
         return None
     return found
 

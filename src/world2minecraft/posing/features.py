@@ -42,6 +42,12 @@ class Features:
         return self.width_px, self.height_px
 
 
+def unit_px(photos: list[Features]) -> float:
+    """Return what a pixel of a picture of 640 is in these, 0.5 to 3: limits in pixels grow so."""
+    longer = float(np.median([max(photo.size) for photo in photos])) if photos else 640.0
+    return min(max(longer / 640, 0.5), 3.0)
+
+
 def gather(photos: PhotoStream, parameters: PosingParameters, steps: Steps) -> list[Features]:
     """Return the features of all photos, in their order.
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PosingParameters:
-    """How features are taken, matched, and made into poses.
+    """How features are taken, matched, and made into poses. Pixels are those of 640 wide pictures.
 
     working_px: pixels of the image that features are sought in; smaller pictures are enlarged up
         to twice. 640x480 in its own size gives half the points and 0.8 px instead of 0.68.

@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.posing.bundle import Solved
 from world2minecraft.posing.colmap import colmap
-from world2minecraft.posing.features import Features
+from world2minecraft.posing.features import Features, unit_px
 from world2minecraft.posing.lenses import normalised, to_colmap
 from world2minecraft.posing.links import Links
 from world2minecraft.posing.parameters import PosingParameters
@@ -47,12 +47,12 @@ def sampson(first: np.ndarray, second: np.ndarray, first_to_second: np.ndarray) 
     return np.abs((b * lines).sum(axis=1)) / np.sqrt(np.maximum(steep, 1e-24))
 
 
-def outliers(off_px: dict[int, float], parameters: PosingParameters) -> set[int]:
+def outliers(off_px: dict[int, float], unit: float, parameters: PosingParameters) -> set[int]:
     """Return the photos whose stated poses are wrong, not merely inexact."""
     if len(off_px) < 4:
         return set()  # Of three, nobody can say which one is wrong.
     usual = float(np.median(list(off_px.values())))
-    limit = max(parameters.outlier_px, parameters.outlier_times * usual)
+    limit = max(unit * parameters.outlier_px, parameters.outlier_times * usual)
     return {i for i, off in off_px.items() if off > limit}
 
 
@@ -83,7 +83,7 @@ def placed_anew(
     with colmap() as pycolmap:
         options = pycolmap.AbsolutePoseEstimationOptions()
         options.ransac.random_seed = parameters.seed
-        options.ransac.max_error = 4.0
+        options.ransac.max_error = 4.0 * unit_px(photos)
         answer = pycolmap.estimate_and_refine_absolute_pose(
             photos[photo].pixels[rows[:, 0]],
             found.points[rows[:, 1]],

@@ -11,6 +11,7 @@ from world2minecraft.posing.links import Links
 from world2minecraft.types import Camera
 
 FEW_FEATURES = 60  # A photo with fewer shows a bare wall, or is out of focus.
+CHANCE = 6  # So many features match by chance.
 BLURRED = 0.5  # Times the usual sharpness.
 HABIT = "walk sideways around the room, with most of each picture in the next"
 
@@ -45,7 +46,10 @@ def _reason(i: int, photos: list[Features], inside: set[int], links: Links, usua
 
 def _nearest(i: int, inside: set[int], links: Links) -> int:
     """Return the placed photo that is most like one, by what both show, then by order."""
-    return min(inside, key=lambda j: (-links.alike[i, j], abs(i - j), j)) if inside else i
+    if not inside:
+        return i
+    shared = np.maximum(links.alike[i] - CHANCE, 0)
+    return min(inside, key=lambda j: (-shared[j], abs(i - j), j))
 
 
 def check_enough(photos: list[Features], least: int) -> None:

@@ -74,8 +74,12 @@ def align_similarity(given: np.ndarray, wanted: np.ndarray, mounted: bool = Fals
     mount = np.zeros(3)
     for _ in range(ROUNDS):
         near, turned = _weights(turns, a, b - axes @ mount, (rotation, scale, shift), reach[1])
+        before = np.concatenate([rotation.ravel(), [scale], mount])
         rotation = _rotation(turns, a, b - axes @ mount, scale, near, turned)
         scale, shift, mount = _rest(a @ rotation.T, b, axes if mounted else None, near, scale)
+        after = np.concatenate([rotation.ravel(), [scale], mount])
+        if np.allclose(before, after, rtol=1e-12, atol=1e-12):
+            break
     off_m = _distances(a, b - axes @ mount, rotation, scale, shift)
     return Similarity(scale, rotation, shift, off_m, np.degrees(_angles(turns, rotation)), mount)
 
