@@ -136,6 +136,13 @@ def test_units_stated_and_not(tmp_path, views):
     assert capture.notes == ("the bag states no depth unit: millimetres are taken",)
 
 
+def test_a_large_bag_within_a_zip_is_not_held_in_memory(tmp_path, views, refused, monkeypatch):
+    (tmp_path / "x").mkdir()
+    write_bag(tmp_path / "x" / "room.bag", views[:2])
+    monkeypatch.setattr("world2minecraft.scan.datasets.slices.MAX_ZIPPED_BYTES", 10_000)
+    refused(zipped(tmp_path / "x", tmp_path / "a.zip"), "within a zip; unpack the zip first")
+
+
 def test_streams_that_are_not_locked_pair_by_time(tmp_path, views):
     with BagWriter(tmp_path / "a.bag") as bag:
         for name, camera in ((COLOUR, views[0].colour_camera), (DEPTH, views[0].depth_camera)):

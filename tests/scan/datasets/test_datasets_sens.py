@@ -90,6 +90,13 @@ def test_the_folder_of_a_scene_and_a_zip_of_it_are_the_same_scan(tmp_path, views
     same_views(open_scan(zipped(scene, tmp_path / "scene.zip")), views, colour_off=60)
 
 
+def test_a_large_file_within_a_zip_is_not_held_in_memory(tmp_path, views, refused, monkeypatch):
+    (tmp_path / "scene").mkdir()
+    write_sens(tmp_path / "scene" / "a.sens", views)
+    monkeypatch.setattr("world2minecraft.scan.datasets.slices.MAX_ZIPPED_BYTES", 10_000)
+    refused(zipped(tmp_path / "scene", tmp_path / "a.zip"), "within a zip; unpack the zip first")
+
+
 def test_times_units_and_lost_frames(tmp_path, views):
     path = write_sens(tmp_path / "a.sens", views, lost=(3, 7), shift=4000.0)
     capture = find_capture(path)

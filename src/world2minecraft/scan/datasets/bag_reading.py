@@ -17,6 +17,7 @@ import numpy as np
 
 from world2minecraft.archive import AnyPath, ArchivePath
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, MissingExtraError
+from world2minecraft.scan.datasets.slices import check_zipped
 from world2minecraft.scan.images import MAX_PIXELS, ImageHeader
 
 MAX_CHUNK_BYTES = 256 << 20  # Recorders close a chunk at 0.75 MB or after one large picture.
@@ -60,6 +61,7 @@ class Bag:
         self.path = path
         self._latest: tuple[str, int, Any] | None = None
         self._types = get_typestore(Stores.ROS1_NOETIC)
+        check_zipped(path)
         with _refusing(path):
             self._reader: Any = Reader(cast(Any, path))  # A zip's member opens like a file.
             self._reader.open()

@@ -22,6 +22,7 @@ from world2minecraft.types import Camera
 
 WITHIN_S = 0.025  # Streams of 30 Hz that are not locked lie up to 17 ms apart.
 DEFAULT_UNIT_M = 0.001
+MAX_GROUPS = 8  # Of streams whose places to each other are known; cameras have one or two.
 MAGIC = b"#ROSBAG V"
 _RECORDED = re.compile(r"(/device_\d+/sensor_\d+)/(Color|Depth)_\d+/image/data")
 _UNITS = re.compile(r"/device_\d+/sensor_\d+/option/Depth[ _]Units/value")
@@ -150,14 +151,17 @@ def _depth_to_colour(path: AnyPath, bag: Any, pair: _Pair) -> np.ndarray:
     if not pair.recorded:
         return np.eye(4)
     to_stream = []
-    for stream in (pair.colour, pair.depth):
-        message = bag.first(stream.topic.removesuffix("/image/data") + "/tf/0")
-        if message is None:
-            raise CaptureError(path, "does not say how its lenses stand to each other (tf/0)")
+    prefixes = [stream.topic.removesuffix("/image/data") for stream in (pair.colour, pair.depth)]
+    known = set(bag.topics())
+    groups = [n for n in range(MAX_GROUPS) if all(f"{p}/tf/{n}" in known for p in prefixes)]
+    if not groups:
+        raise CaptureError(path, "does not say how its lenses stand to each other (tf/0)")
+    for prefix in prefixes:
+        message = bag.first(f"{prefix}/tf/{groups[0]}")
         t, q = message.translation, message.rotation
         to_stream.append(pose_of(np.array([t.x, t.y, t.z]), np.array([q.x, q.y, q.z, q.w])))
     if not all(np.isfinite(transform).all() for transform in to_stream):
-        raise CaptureError(path, "says that its lenses stand nowhere (tf/0 is not finite)")
+        raise CaptureError(path, "says that its lenses stand nowhere (tf is not finite)")
     return to_stream[0] @ invert_rigid(to_stream[1])
 
 

@@ -14,7 +14,7 @@ from typing import IO
 import numpy as np
 
 from world2minecraft.archive import AnyPath, ArchivePath
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.files import read_bytes
 from world2minecraft.scan.images import MAX_PIXELS, ImageHeader, opened_image
 
@@ -74,12 +74,25 @@ def opened_file(path: AnyPath) -> IO[bytes]:
         InputError: it is missing. LimitError: a member is too large: unpack the zip first.
     """
     if isinstance(path, ArchivePath):
+        check_zipped(path)
         stamp = path.path.stat()
         return io.BytesIO(_held(path, (stamp.st_size, stamp.st_mtime_ns)))
     try:
         return path.open("rb")
     except OSError as error:
         raise InputError(path, f"cannot be read: {error.strerror or error}") from error
+
+
+def check_zipped(path: AnyPath) -> None:
+    """Refuse a large file within a zip, which cannot be sought in but only held in memory.
+
+    Raises:
+        LimitError: it is over ``MAX_ZIPPED_BYTES``.
+    """
+    if isinstance(path, ArchivePath) and path.is_file():
+        size = int(path.stat().st_size)
+        if size > MAX_ZIPPED_BYTES:
+            raise LimitError(path, f"has {size:,} bytes within a zip; unpack the zip first")
 
 
 @lru_cache(maxsize=1)
