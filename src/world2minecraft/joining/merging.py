@@ -20,6 +20,7 @@ from world2minecraft.types import OBSERVED, Layout, ObjectInstance, OccupancyGri
 MOST_CELLS = 600_000_000
 MOST_OBJECTS = 65535
 KEPT_SHARE = 0.5  # Of an object's cells: else it is what was seen through a door.
+FREE_SHARE = 0.5
 BACK_CELLS = 2  # The leaf of a door stands up to so far behind its wall's face.
 WALL = int(SemanticClass.WALL)
 ROOM_CLASSES = (WALL, int(SemanticClass.WINDOW), int(SemanticClass.OBJS))
@@ -202,6 +203,8 @@ def _open(cells: _Cells, mine: Doorway, theirs: Doorway) -> None:
     spans[across] = cells.slice_of(across, ends[0], ends[1], BACK_CELLS)
     up = cells.slice_of(2, floor_m, head_m)
     labels = cells.arrays["labels"]
+    if not (mine.sure and theirs.sure) and (labels[(*spans, up)] == 0).mean() < FREE_SHARE:
+        return  # Both were read off free cells; where there is none, there is no door.
     way = np.zeros(labels.shape, bool)
     way[(*spans, up)] = True
     way &= np.isin(labels, (*ROOM_CLASSES, UNKNOWN))

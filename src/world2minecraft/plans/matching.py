@@ -12,11 +12,13 @@ from scipy.signal import fftconvolve
 from world2minecraft.coordinates import rotation_about_z
 from world2minecraft.exchange.roomplan import CapturedPlan
 from world2minecraft.label.morphology import grown
-from world2minecraft.plans.outlines import moved_plan, straightened
+from world2minecraft.metrics.layout import inside_polygon
+from world2minecraft.plans.outlines import moved_plan, placed_rooms, straightened
 from world2minecraft.types import FusedEvidence
 
 BAND_M = (0.4, 2.0)  # Of the heights at which walls are looked for.
 UPRIGHT_SHARE = 0.35  # Of a column's layers in that band: a wall half hidden, or seen through.
+THINGS_M = (0.15, 1.6)  # Of the heights at which furniture is looked for.
 STEP_M = 0.04
 SAME_FIT = 0.6  # Of the walls that were seen, so much meets surface: they are the same room.
 LAID_FIT = 0.6
@@ -122,17 +124,67 @@ def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndar
             f"is no plan of this room: at best {best:.0%} of its walls meet walls of the scan, "
             f"{LAID_FIT:.0%} are needed; leave out --plan, or give the plan of this room"
         )
-    best, turns, shift = places[0]
-    for fit, other, away in places[1:]:
-        if best - fit < LEAST_LEAD and (other != turns or np.linalg.norm(away - shift) > APART_M):
-            raise PlanMismatchError(
-                f"fits this scan in several ways ({best:.0%} and {fit:.0%} of its walls meet "
-                "walls): export scan and plan from one walk, so that they share one frame"
-            )
+    rivals = [places[0]]
+    for place in places[1:]:
+        if places[0][0] - place[0] < LEAST_LEAD and not any(_is_one(place, one) for one in rivals):
+            rivals.append(place)
+    laid = [moved_plan(plan, _move_of(turns, shift)) for _, turns, shift in rivals]
+    if len(laid) == 1:
+        told = f"the plan was laid on the scan's walls; {rivals[0][0]:.0%} of them meet"
+        return LaidPlan(laid[0], rivals[0][0], told)
+    inner = [furniture_fit(one, evidence) for one in laid]
+    order = sorted(range(len(laid)), key=lambda n: (-inner[n], n))
+    first, second = order[:2]
+    if inner[first] - inner[second] < LEAST_LEAD:
+        raise PlanMismatchError(
+            f"fits this scan in several ways ({rivals[first][0]:.0%} and {rivals[second][0]:.0%} "
+            "of its walls meet walls, and the furniture does not tell): export scan and plan "
+            "from one walk, so that they share one frame"
+        )
+    fit = rivals[first][0]
+    told = f"the plan was laid on the scan's walls and furniture; {fit:.0%} of its walls meet"
+    return LaidPlan(laid[first], fit, told)
+
+
+def furniture_fit(plan: CapturedPlan, evidence: FusedEvidence) -> float:
+    """Return how well the boxes of a plan's furniture cover what stands in the room, 0 to 1.
+
+    It is the overlap, from above, of boxes and of columns that hold surface at their height,
+    over what either has within the rooms.
+    """
+    low, high = (
+        int(np.clip(round((z - evidence.origin_m[2]) / evidence.voxel_m), 0, None))
+        for z in THINGS_M
+    )
+    stands = (evidence.log_odds[:, :, low:high] > 0).any(axis=2)
+    axes = [
+        evidence.origin_m[axis] + (np.arange(stands.shape[axis]) + 0.5) * evidence.voxel_m
+        for axis in (0, 1)
+    ]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    within = np.zeros(len(points), bool)
+    boxes = np.zeros(len(points), bool)
+    for room in placed_rooms(plan):
+        within |= inside_polygon(points, room.outline_m, 0.0)
+        for item in room.room.objects:
+            turn = np.radians(item.yaw_deg)
+            front = np.array([np.cos(turn), np.sin(turn)])
+            offset = points - item.center_m[:2]
+            deep, wide = offset @ front, offset @ np.array([-front[1], front[0]])
+            boxes |= (np.abs(deep) <= item.size_m[0] / 2) & (np.abs(wide) <= item.size_m[1] / 2)
+    held = stands.reshape(-1) & within
+    boxes &= within
+    return float((held & boxes).sum() / max(int((held | boxes).sum()), 1))
+
+
+def _move_of(turns: int, shift: np.ndarray) -> np.ndarray:
     move = rotation_about_z(90.0 * turns)
     move[:2, 3] = shift
-    told = f"the plan was laid on the scan's walls; {best:.0%} of them meet"
-    return LaidPlan(moved_plan(plan, move), best, told)
+    return move
+
+
+def _is_one(place: tuple, other: tuple) -> bool:
+    return place[1] == other[1] and float(np.linalg.norm(place[2] - other[2])) <= APART_M
 
 
 def _shifts(

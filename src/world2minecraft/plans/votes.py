@@ -1,6 +1,7 @@
 """What a plan says of a scan's cells, as votes; and openings that the scan did not show.
 
 Evidence wins: only cells in which the scan met surface are voted on, none is added or taken away.
+Floor, ceiling and walls are left to the scan: it knows their planes better than a plan does.
 """
 
 from collections.abc import Sequence
@@ -10,16 +11,14 @@ import numpy as np
 
 from world2minecraft.classes import CLASS_COUNT, SemanticClass
 from world2minecraft.coordinates import cell_centers_m
-from world2minecraft.exchange.roomplan import CapturedPlan, PlanObject, PlanSurface
-from world2minecraft.metrics.layout import inside_polygon
+from world2minecraft.exchange.roomplan import CapturedPlan, PlanObject
 from world2minecraft.plans.furniture import class_of
 from world2minecraft.plans.outlines import PlacedRoom, placed_rooms
 from world2minecraft.types import FusedEvidence, Layout, Opening
 
-WALL_M = 0.12  # RoomPlan's walls are off by some centimetres.
-EDGE_M = 0.02  # Beyond a room's outline its walls stand.
-LEVEL_M = 0.10
-AROUND_M = 0.06  # Boxes of furniture are close; what sticks out of them still belongs to it.
+EDGE_M = 0.02
+IN_WALL_M = (-0.02, 0.15)  # Behind a wall's face: glass and leaves stand back.
+LEVEL_M = 0.05
 ON_WALL_M = 0.30  # An opening of the plan lies so near to a wall of the scan.
 PLAN_SHARE = 0.5  # Beside votes that are there: labels of images see edges, a plan does not.
 CLASS_OF_KIND = {"window": SemanticClass.WINDOW, "door": SemanticClass.OBJS}
@@ -38,8 +37,8 @@ def plan_votes(evidence: FusedEvidence, plan: CapturedPlan) -> FusedEvidence:
     points = points + evidence.offset_sum[tuple(cells.T)] / hits
     label, weight = np.zeros(len(points), np.int64), np.zeros(len(points))
     for room in placed_rooms(plan):
-        _vote_for_structure(points, room, label, weight)
         _vote_for_objects(points, room, label, weight)
+        _vote_for_openings(points, room, label, weight)
     votes = evidence.votes.astype(np.float32)
     said = label > 0
     at = tuple(cells[said].T)
@@ -69,57 +68,46 @@ def with_plan_openings(layouts: Sequence[Layout], planned: Sequence[Layout]) -> 
     return tuple(result)
 
 
-def _vote_for_structure(
+def _vote_for_openings(
     points: np.ndarray, room: PlacedRoom, label: np.ndarray, weight: np.ndarray
 ) -> None:
-    within = inside_polygon(points[:, :2], room.outline_m, EDGE_M)
-    for height, kind in (
-        (room.floor_z_m, SemanticClass.FLOOR),
-        (room.floor_z_m + room.height_m, SemanticClass.CEILING),
-    ):
-        level = within & (np.abs(points[:, 2] - height) < LEVEL_M)
-        label[level], weight[level] = kind, 1.0
-    for wall in room.room.walls:
-        near = _near(points, wall)
-        inside = (points[:, 2] > wall.bottom_m + LEVEL_M) & (points[:, 2] < wall.top_m - LEVEL_M)
-        label[near & inside], weight[near & inside] = SemanticClass.WALL, wall.confidence
+    """Let windows and doors claim what lies in the wall, and not the curtains before it."""
+    middle = room.outline_m.mean(axis=0)
     for opening in room.room.openings:
         kind = CLASS_OF_KIND.get(opening.kind)
-        if kind is not None:
-            high = (points[:, 2] > opening.bottom_m + 0.02) & (points[:, 2] < opening.top_m)
-            cut = _near(points, opening) & high & (points[:, 2] > room.floor_z_m + LEVEL_M)
-            label[cut], weight[cut] = kind, opening.confidence
+        if kind is None:
+            continue
+        along = (opening.end_m - opening.start_m) / max(opening.length_m, 1e-9)
+        out = np.array([along[1], -along[0]])
+        out = out if (opening.start_m - middle) @ out >= 0 else -out
+        offset = points[:, :2] - opening.start_m
+        place, depth = offset @ along, offset @ out
+        high = (points[:, 2] > opening.bottom_m + EDGE_M) & (points[:, 2] < opening.top_m - EDGE_M)
+        cut = (place > EDGE_M) & (place < opening.length_m - EDGE_M) & high
+        cut &= (depth > IN_WALL_M[0]) & (depth < IN_WALL_M[1])
+        cut &= points[:, 2] > room.floor_z_m + LEVEL_M
+        label[cut], weight[cut] = kind, opening.confidence
 
 
 def _vote_for_objects(
     points: np.ndarray, room: PlacedRoom, label: np.ndarray, weight: np.ndarray
 ) -> None:
-    """Let furniture claim what lies in its box; around it only what is no structure."""
-    over = points[:, 2] > room.floor_z_m + 0.5 * LEVEL_M
-    for item in room.room.objects:
-        free = (label == 0) | (label > SemanticClass.WINDOW)
-        claimed = over & (_in_box(points, item, 0.0) | (free & _in_box(points, item, AROUND_M)))
-        claimed &= (label == 0) | (weight <= item.confidence) | ~free
+    """Let furniture claim what lies in its box; where boxes meet, the smaller one has it."""
+    over = points[:, 2] > room.floor_z_m + LEVEL_M
+    for item in sorted(room.room.objects, key=lambda item: -float(np.prod(item.size_m))):
+        claimed = over & _in_box(points, item)
         label[claimed], weight[claimed] = class_of(item), item.confidence
 
 
-def _near(points: np.ndarray, surface: PlanSurface) -> np.ndarray:
-    """Return which points lie near an upright surface, seen from above."""
-    along = (surface.end_m - surface.start_m) / max(surface.length_m, 1e-9)
-    offset = points[:, :2] - surface.start_m
-    place = offset @ along
-    off = offset @ np.array([-along[1], along[0]])
-    return np.asarray((place > 0) & (place < surface.length_m) & (np.abs(off) < WALL_M))
-
-
-def _in_box(points: np.ndarray, item: PlanObject, around_m: float) -> np.ndarray:
+def _in_box(points: np.ndarray, item: PlanObject) -> np.ndarray:
+    """Return which points lie in a thing's box: right behind it the wall begins."""
     turn = np.radians(item.yaw_deg)
     front = np.array([np.cos(turn), np.sin(turn)])
     offset = points - item.center_m
     across = np.stack(
         [offset[:, :2] @ front, offset[:, :2] @ np.array([-front[1], front[0]]), offset[:, 2]]
     )
-    inside = np.abs(across) <= item.size_m[:, None] / 2 + around_m
+    inside = np.abs(across) <= item.size_m[:, None] / 2
     return np.asarray(inside.all(axis=0))
 
 
