@@ -154,6 +154,14 @@ def test_published_label_zips_become_classes(tmp_path, views):
     assert describe_capture(path).labelled == 12
 
 
+def test_a_broken_zip_of_labels_is_told_and_stops_nothing(tmp_path, views):
+    path = write_sens(tmp_path / "scene0000_00.sens", views[:2])
+    (tmp_path / "scene0000_00_2d-label.zip").write_bytes(b"PK\x03\x04" + bytes(50))
+    capture = find_capture(path)
+    assert len(capture.frames) == 2
+    assert capture.notes[0].startswith("scene0000_00_2d-label.zip is left out: it is no whole zip")
+
+
 def test_a_table_without_its_columns_is_refused(tmp_path, views, refused):
     path = write_sens(tmp_path / "scene0000_00.sens", views)
     write_labels(tmp_path / "label", views, [1])

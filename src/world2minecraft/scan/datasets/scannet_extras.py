@@ -1,6 +1,5 @@
 """What lies beside a ScanNet scene: ``SCENE.txt``, label images, the table of the raw ids."""
 
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -63,28 +62,33 @@ def find_labels(scene: AnyPath, name: str) -> tuple[dict[int, MappedLabels], tup
         scene: the folder of the scene.
         name: the scene's name, such as ``scene0000_00``, by which its zips are named.
     """
-    for kind in LABEL_KINDS:
-        for folder in _label_folders(scene, name, kind):
-            images = {
-                int(path.stem): path for path in folder.glob("*.png") if path.stem.isdecimal()
-            }
-            if images:
-                return _mapped(scene, images)
-    return {}, ()
+    notes: list[str] = []
+    for place in [place for kind in LABEL_KINDS for place in _label_places(scene, name, kind)]:
+        try:
+            images = _numbered(place)
+        except InputError as error:  # A broken zip of labels must not stop a scan.
+            broken = place.path if isinstance(place, ArchivePath) else place
+            notes.append(f"{broken.name} is left out: it {error.reason}")
+            continue
+        if images:
+            mapped, more = _mapped(scene, images)
+            return mapped, (*notes, *more)
+    return {}, tuple(dict.fromkeys(notes))
 
 
-def _label_folders(scene: AnyPath, name: str, kind: str) -> list[AnyPath]:
-    """Return where the label images of a kind lie: a folder, or the published zip of it."""
-    folders: list[AnyPath] = [scene / kind]
+def _label_places(scene: AnyPath, name: str, kind: str) -> list[AnyPath]:
+    """Return where label images of a kind may lie: a folder, or the published zip of it."""
+    places: list[AnyPath] = [scene / kind]
     zipped = scene / f"{name}_2d-{kind}.zip"
     if isinstance(zipped, Path) and is_zip(zipped):
-        try:
-            inside = ArchivePath(zipped)
-            folders += [inside / kind, inside]
-            folders[-1].is_dir()
-        except (InputError, zipfile.BadZipFile):
-            folders = folders[:1]  # A broken zip of labels must not stop a scan.
-    return [folder for folder in folders if folder.is_dir()]
+        places += [ArchivePath(zipped, kind), ArchivePath(zipped)]
+    return places
+
+
+def _numbered(folder: AnyPath) -> dict[int, AnyPath]:
+    """Return the images of a folder by their number; none where it is missing."""
+    found = folder.glob("*.png") if folder.is_dir() else ()
+    return {int(path.stem): path for path in found if path.stem.isdecimal() and len(path.stem) <= 9}
 
 
 def _mapped(
