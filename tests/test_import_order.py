@@ -63,6 +63,7 @@ ROWS: tuple[tuple[str, ...], ...] = (
 RANK = {name: rank for rank, row in enumerate(ROWS) for name in row}
 TORCH = ("torch", "lightning", "torchvision")
 TORCH_FOLDERS = ("learn",)
+TORCH_FILES = ("stereo/hf.py",)  # Networks of others, asked for by name.
 HEAVY_FOR_HELP = ("numpy", "numba", "scipy", "sklearn", "PIL", "rich", "jinja2", "pydantic")
 
 FILES = sorted(SOURCE.rglob("*.py"))
@@ -115,7 +116,10 @@ def test_every_package_has_its_place():
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
 def test_imports_go_upward(path):
-    complaints = [complaint(owner(path), name) for name in imports_of(path)]
+    names = imports_of(path)
+    if path.relative_to(SOURCE).as_posix() in TORCH_FILES:
+        names = [name for name in names if name.split(".")[0] not in TORCH]
+    complaints = [complaint(owner(path), name) for name in names]
     assert not [text for text in complaints if text]
 
 
