@@ -1,0 +1,129 @@
+"""Depth of every photo: swept alone, confirmed by others, filled where planes say how."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from world2minecraft.coordinates import invert_rigid
+from world2minecraft.errors import CaptureError
+from world2minecraft.geometry.lifting import pixel_rays
+from world2minecraft.progress import Progress, silent
+from world2minecraft.render.threads import side_by_side
+from world2minecraft.stereo.agree import confirm
+from world2minecraft.stereo.neighbours import DEPTH_PERCENTILES, chosen_neighbours
+from world2minecraft.stereo.parameters import StereoParameters
+from world2minecraft.stereo.small import SmallPhoto, small_photos
+from world2minecraft.stereo.sweep import depth_range, sweep
+from world2minecraft.types import DepthMap, PhotoStream, SparseScene
+
+AT_ONCE = 2  # Photos swept side by side; each needs about 60 MB.
+SURE = 255
+LEAST_GUIDES = 20
+STAGE = "stereo"
+
+
+def depth_maps(
+    photos: PhotoStream,
+    scene: SparseScene,
+    parameters: StereoParameters | None = None,
+    progress: Progress = silent,
+    guide: DepthModel | None = None,
+) -> Iterator[DepthMap]:
+    """Yield the depth of each photo of a scene, in its order.
+
+    Args:
+        photos: read once; those that the scene does not name are left out.
+        scene: where they were taken, in any unit; the depths are in the same.
+        parameters: how.
+        progress: told of the stage ``stereo``.
+
+    Raises:
+        CaptureError: no photo has another that sees the same, or one is missing.
+    """
+    values = parameters or StereoParameters()
+    small = small_photos(photos, scene, values.width_px, silent)
+    swept, neighbours = swept_depths(small, values, progress)
+    for number, photo in enumerate(small):
+        yield confirmed(number, small, swept, neighbours, values)
+        progress(STAGE, len(small) + number + 1, 2 * len(small), photo.name)
+
+
+def swept_depths(
+    small: list[SmallPhoto], values: StereoParameters, progress: Progress = silent
+) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Return each photo's depth float32 [h, w] by itself, and the numbers of its neighbours."""
+    every_m = np.concatenate([photo.guide_m for photo in small])
+    if not len(every_m):
+        raise CaptureError("photos", "share no points; depth cannot be found: take more, nearer")
+    known = [p.guide_m if len(p.guide_m) > LEAST_GUIDES else every_m for p in small]
+    usual = np.array([np.percentile(found, DEPTH_PERCENTILES) for found in known])
+    neighbours = chosen_neighbours(small, usual, values.neighbours, values.angle_deg)
+    if not any(len(found) for found in neighbours):
+        raise CaptureError("photos", "no two see the same from places far enough apart for depth")
+    swept: list[np.ndarray] = [np.zeros(0, np.float32)] * len(small)
+
+    def one(number: int) -> None:
+        others = [small[other] for other in neighbours[number]]
+        swept[number] = _swept(small[number], others, every_m, values)
+
+    for first in range(0, len(small), AT_ONCE):
+        side_by_side(one, range(first, min(first + AT_ONCE, len(small))))
+        done = min(first + AT_ONCE, len(small))
+        progress(STAGE, done, 2 * len(small), small[done - 1].name)
+    return swept, neighbours
+
+
+def _swept(
+    photo: SmallPhoto, others: list[SmallPhoto], every_m: np.ndarray, values: StereoParameters
+) -> np.ndarray:
+    if not others:
+        return np.zeros((photo.camera.height_px, photo.camera.width_px), np.float32)
+    return sweep(photo, others, depth_range(photo, every_m), values)
+
+
+def confirmed(
+    number: int,
+    small: list[SmallPhoto],
+    swept: list[np.ndarray],
+    neighbours: list[np.ndarray],
+    values: StereoParameters,
+) -> DepthMap:
+    """Return the depth of a photo that its neighbours' depths confirm."""
+    photo = small[number]
+    votes, mean = votes_of(number, small, swept, neighbours[number], values.agreement)
+    sure = votes >= min(values.agreeing, max(1, len(neighbours[number])))
+    trust = np.where(sure, SURE, 0).astype(np.uint8)
+    return DepthMap(photo.name, photo.camera, np.where(trust > 0, mean, np.float32(0)), trust)
+
+
+def votes_of(
+    number: int,
+    small: list[SmallPhoto],
+    swept: list[np.ndarray],
+    others: np.ndarray,
+    agreement: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return how many others confirm each pixel's depth, uint8 [h, w], and the mean depth."""
+    photo = small[number]
+    votes = np.zeros(swept[number].shape, np.uint8)
+    mean = swept[number].copy()
+    if not len(others):
+        return votes, mean
+    # Photos upright and lying have other shapes; each shape is asked at once.
+    total = np.zeros(votes.shape, np.float64)
+    for shape in sorted({swept[other].shape for other in others}):
+        same = [other for other in others if swept[other].shape == shape]
+        found, middle = confirm(
+            swept[number], pixel_rays(photo.camera),
+            np.stack([swept[other] for other in same]),
+            np.array([invert_rigid(small[o].camera_to_scan) @ photo.camera_to_scan for o in same]),
+            np.array([_lens(small[other]) for other in same]), agreement,
+        )  # fmt: skip
+        total += middle.astype(np.float64) * (found + 1.0) - swept[number]
+        votes += found
+    return votes, ((total + swept[number]) / (votes + 1.0)).astype(np.float32)
+
+
+def _lens(photo: SmallPhoto) -> list[float]:
+    camera = photo.camera
+    return [camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px]

@@ -1,0 +1,86 @@
+"""Photos made small and straight, all of them at once in memory, and where they were taken."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.coordinates import invert_rigid
+from world2minecraft.errors import CaptureError
+from world2minecraft.geometry.lifting import project
+from world2minecraft.geometry.undistort import pinhole_of, undistorted
+from world2minecraft.progress import Progress
+from world2minecraft.types import Camera
+from world2minecraft.types.photos import PhotoStream, SparseScene
+
+LEAST_SIDE_PX = 16  # So that windows lie in it.
+
+
+@dataclass(frozen=True, eq=False)
+class SmallPhoto:
+    """A photo of ``width_px`` without distortion, its pose, and what is known of its depths.
+
+    ``guide_px`` float64 [G, 2] and ``guide_m`` float64 [G] are the sparse points that were seen in
+    it: where, and their z-depth; ``guide_point`` int64 [G] are their numbers, rising.
+    """
+
+    name: str
+    camera: Camera
+    camera_to_scan: np.ndarray
+    colour: np.ndarray
+    guide_px: np.ndarray
+    guide_m: np.ndarray
+    guide_point: np.ndarray
+
+    @property
+    def grey(self) -> np.ndarray:
+        """The brightest channel, float32 from -128 to 127: it tells red from black, grey hardly."""
+        return self.colour.max(axis=2).astype(np.float32) - np.float32(128)
+
+
+def small_photos(
+    photos: PhotoStream, scene: SparseScene, width_px: int, progress: Progress
+) -> list[SmallPhoto]:
+    """Return the photos of a scene in its order, made small one after the other.
+
+    Raises:
+        CaptureError: a photo of the scene is missing, or is of another size than its camera.
+    """
+    order = {name: frame for frame, name in enumerate(scene.names)}
+    found: dict[str, SmallPhoto] = {}
+    for photo in photos:
+        if photo.name not in order or photo.name in found:
+            continue
+        found[photo.name] = _small(photo.name, photo.colour, scene, order[photo.name], width_px)
+        progress("shrink", len(found), len(order), photo.name)
+    missing = [name for name in scene.names if name not in found]
+    if missing:
+        raise CaptureError(missing[0], "the scene has this photo, but the photos do not")
+    return [found[name] for name in scene.names]
+
+
+def _small(name, colour, scene: SparseScene, frame: int, width_px: int) -> SmallPhoto:
+    camera, pose = scene.cameras[frame], scene.camera_to_scan[frame]
+    if colour.shape[:2] != (camera.height_px, camera.width_px):
+        raise CaptureError(
+            name,
+            f"the photo is {colour.shape[1]}x{colour.shape[0]}, "
+            f"but its camera is {camera.width_px}x{camera.height_px}",
+        )
+    target = pinhole_of(camera, min(width_px, camera.width_px))
+    if min(target.width_px, target.height_px) < LEAST_SIDE_PX:
+        raise CaptureError(name, f"the photo must have sides of {LEAST_SIDE_PX} pixels or more")
+    seen = np.unique(scene.track_point[scene.track_frame == frame])
+    points_m = _in_camera(scene.points_m[seen], pose)
+    ahead = points_m[:, 2] > 0
+    points_m, seen = points_m[ahead], seen[ahead]
+    at_px = project(points_m, target)
+    inside = ((at_px >= 0) & (at_px < (target.width_px, target.height_px))).all(axis=1)
+    return SmallPhoto(
+        name, target, pose, undistorted(colour, camera, target),
+        at_px[inside], points_m[inside, 2], seen[inside],
+    )  # fmt: skip
+
+
+def _in_camera(points_m: np.ndarray, camera_to_scan: np.ndarray) -> np.ndarray:
+    scan_to_camera = invert_rigid(camera_to_scan)
+    return points_m.astype(np.float64) @ scan_to_camera[:3, :3].T + scan_to_camera[:3, 3]
