@@ -117,3 +117,27 @@ def test_photos_from_one_place_give_no_depth():
 def test_parameters_are_checked(name, value):
     with pytest.raises(ValueError, match=name):
         StereoParameters(**{name: value})
+
+
+class Knowing:
+    """A model that knows the plane, at twice its distance."""
+
+    name, kind = "knowing", "metric"
+
+    def predict(self, colour, camera):
+        return np.full(colour.shape[:2], 4.0, np.float32)
+
+
+def test_a_guide_fills_what_is_open_and_touches_nothing_else():
+    photos, _ = row_of_photos(0.0, 4)
+    scene = scene_of(photos, 0.0)
+    strict = replace(FEW, agreeing=3)
+    alone = list(depth_maps(photos, scene, strict))
+    guided = list(depth_maps(photos, scene, strict, guide=Knowing()))
+    for one, more in zip(alone, guided, strict=True):
+        known = one.depth_m > 0
+        assert not known.all()
+        np.testing.assert_array_equal(more.depth_m[known], one.depth_m[known])
+        assert (more.depth_m[~known] > 0).mean() > 0.9
+        assert np.abs(more.depth_m[~known & (more.depth_m > 0)] - 2).max() < 0.05
+        assert set(np.unique(more.trust[~known])) <= {0, 96}

@@ -10,6 +10,7 @@ from world2minecraft.geometry.lifting import pixel_rays
 from world2minecraft.progress import Progress, silent
 from world2minecraft.render.threads import side_by_side
 from world2minecraft.stereo.agree import confirm
+from world2minecraft.stereo.guide import DepthModel, filled
 from world2minecraft.stereo.neighbours import DEPTH_PERCENTILES, chosen_neighbours
 from world2minecraft.stereo.parameters import StereoParameters
 from world2minecraft.stereo.small import SmallPhoto, small_photos
@@ -36,6 +37,7 @@ def depth_maps(
         scene: where they were taken, in any unit; the depths are in the same.
         parameters: how.
         progress: told of the stage ``stereo``.
+        guide: a network that fills what stays open, with low trust; see guide.py.
 
     Raises:
         CaptureError: no photo has another that sees the same, or one is missing.
@@ -44,8 +46,18 @@ def depth_maps(
     small = small_photos(photos, scene, values.width_px, silent)
     swept, neighbours = swept_depths(small, values, progress)
     for number, photo in enumerate(small):
-        yield confirmed(number, small, swept, neighbours, values)
+        found = confirmed(number, small, swept, neighbours, values)
+        yield found if guide is None else _guided(found, photo, guide)
         progress(STAGE, len(small) + number + 1, 2 * len(small), photo.name)
+
+
+def _guided(found: DepthMap, photo: SmallPhoto, guide: DepthModel) -> DepthMap:
+    """Fill what is open by a network's guess."""
+    guess = guide.predict(photo.colour, photo.camera)
+    depth_m, trust = filled(
+        found.depth_m, found.trust, guess, guide.kind, photo.guide_px, photo.guide_m
+    )
+    return DepthMap(found.name, found.camera, depth_m, trust)
 
 
 def swept_depths(
