@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.posing.anchors import ANCHORS, anchor_pixels, anchored
 from world2minecraft.posing.colmap import colmap
 from world2minecraft.posing.features import Features, unit_px
-from world2minecraft.posing.lenses import Lens, from_colmap, to_colmap
+from world2minecraft.posing.lenses import Lens, each_camera, from_colmap, to_colmap
 from world2minecraft.posing.links import Links
 from world2minecraft.posing.parameters import PosingParameters
 from world2minecraft.types import Camera
@@ -57,6 +58,7 @@ def solved(
     parameters: PosingParameters,
     free: bool = True,
     tolerance: float = 1e-6,
+    stated: dict[int, np.ndarray] | None = None,
 ) -> Solved:
     """Return points for the posed photos, and with ``free`` better poses and lenses.
 
@@ -69,6 +71,7 @@ def solved(
         parameters: the seed and more.
         free: move poses and lenses, not points alone.
         tolerance: adjusting ends when a step gains a smaller share.
+        stated: poses that hold their photos where these see little (see ``anchors``).
     """
     unit = unit_px(photos)
     gate_px = gate_px * unit
@@ -81,7 +84,8 @@ def solved(
         if model.num_points3D():
             options = _adjusting(pycolmap, free, unit, tolerance)
             fixed = [n + 1 for n, lens in enumerate(lenses) if lens.is_fixed or not free]
-            _adjust(pycolmap, model, options, fixed)
+            held = anchored(pycolmap, model, stated or {}, each_camera(lenses)) if free else []
+            _adjust(pycolmap, model, options, fixed, held)
             manager.filter_all_points3D(gate_px, LEAST_DEG)
         return _read(photos, model, poses)
 
@@ -94,8 +98,9 @@ def _model(pycolmap: Any, photos: list[Features], poses: dict, lenses: list[Lens
         camera = to_colmap(pycolmap, lens.camera, number + 1, simple)
         model.add_camera_with_trivial_rig(camera)
         for i in placed:
+            pixels = np.concatenate([photos[i].pixels, anchor_pixels(lens.camera)])
             image = pycolmap.Image(
-                name=str(i), keypoints=photos[i].pixels, camera_id=number + 1, image_id=i + 1
+                name=str(i), keypoints=pixels, camera_id=number + 1, image_id=i + 1
             )
             inverse = np.linalg.inv(poses[i])
             there = pycolmap.Rigid3d(pycolmap.Rotation3d(inverse[:3, :3]), inverse[:3, 3])
@@ -106,7 +111,7 @@ def _model(pycolmap: Any, photos: list[Features], poses: dict, lenses: list[Lens
 def _graph(pycolmap: Any, photos: list[Features], links: Links, poses: dict) -> Any:
     graph = pycolmap.CorrespondenceGraph()
     for i in sorted(poses):
-        graph.add_image(i + 1, len(photos[i].pixels))
+        graph.add_image(i + 1, len(photos[i].pixels) + ANCHORS)
     for (i, j), geometry in links.geometry.items():
         if i in poses and j in poses:
             graph.add_two_view_geometry(i + 1, j + 1, geometry)
@@ -143,15 +148,20 @@ def _adjusting(pycolmap: Any, free: bool, unit: float, tolerance: float) -> Any:
     return options
 
 
-def _adjust(pycolmap: Any, model: Any, options: Any, fixed: list[int]) -> None:
-    """Move what the options let move, but for the lenses ``fixed``, to where it fits best."""
+def _adjust(pycolmap: Any, model: Any, options: Any, fixed: list[int], held: list[int]) -> None:
+    """Move what the options let move to where it fits best, but for lenses and points listed."""
     config = pycolmap.BundleAdjustmentConfig()
     for image in sorted(model.reg_image_ids()):
         config.add_image(image)
     for camera in fixed:
         config.set_constant_cam_intrinsics(camera)
-    config.fix_gauge(pycolmap.BundleAdjustmentGauge.TWO_CAMS_FROM_WORLD)
+    for point in held:
+        config.add_constant_point(point)
+    if not held:
+        config.fix_gauge(pycolmap.BundleAdjustmentGauge.TWO_CAMS_FROM_WORLD)
     pycolmap.create_default_bundle_adjuster(options, config, model).solve()
+    for point in held:
+        model.delete_point3D(point)
 
 
 def _read(photos: list[Features], model: Any, poses: dict[int, np.ndarray]) -> Solved:

@@ -1,6 +1,6 @@
 """Photos with stated poses and lenses: these are measured, and put right where they are off."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -10,13 +10,12 @@ from world2minecraft.posing.bundle import Solved, solved
 from world2minecraft.posing.colmap import PLACE
 from world2minecraft.posing.features import Features, gather, unit_px
 from world2minecraft.posing.find import (
-    each_camera,
     focal_facts,
     refined,
     solved_from_nothing,
     with_cameras,
 )
-from world2minecraft.posing.lenses import Lens, shared_lenses
+from world2minecraft.posing.lenses import Lens, each_camera, shared_lenses
 from world2minecraft.posing.links import Links, link_photos
 from world2minecraft.posing.outcome import middle_depth, scene
 from world2minecraft.posing.parameters import PosingParameters
@@ -31,6 +30,8 @@ LEAST_POINTS = 50  # Fewer say nothing of poses.
 LEAST_MOUNTED = 12  # Poses for the place of another sensor on the device to be sought.
 MOUNT_GAIN = 0.75  # It must bring the centres so much nearer (0.55 on the real kitchen),
 MOUNT_REACH = 0.2  # and be no farther than so many times the depth that is seen.
+RICH_PHOTO = 80  # Points that a photo sees on average, to be free of what is stated,
+NEARLY_PX = 4.0  # unless that is off by more. Bare generated rooms: 20 and 2 px.
 SETTLED_PX = 1.5  # Refined poses that are off by more have run away.
 
 
@@ -164,7 +165,7 @@ def _kept(
 def _moved(stated: Stated, measured: Solved, before: float, steps: Steps) -> SparseScene:
     """Return the scene with poses and lenses that fit the pixels, in the stated frame."""
     notes = stated.notes
-    found = _refined(stated)
+    found = _refined(stated, _is_poor(stated, measured, before))
     if found is None:
         notes.append("the stated poses are too far off to start from: places were found anew")
         found, more, _ = solved_from_nothing(
@@ -198,20 +199,32 @@ def _scale(measured: Solved, found: Solved, change: Similarity) -> float | None:
     return round(change.scale * middle_depth(found) / middle_depth(measured), 4)
 
 
-def _refined(stated: Stated) -> Solved | None:
-    """Return better poses from the stated ones, or None where these lead nowhere."""
+def _is_poor(stated: Stated, measured: Solved, before: float) -> bool:
+    """Return whether the photos see too little to overrule poses that are nearly right."""
+    unit = unit_px(stated.photos)
+    seen = len(measured.track_photo) / max(1, len(measured.poses))
+    return seen < RICH_PHOTO and before < NEARLY_PX * unit
+
+
+def _refined(stated: Stated, poor: bool) -> Solved | None:
+    """Return better poses from the stated ones, or None where these lead nowhere.
+
+    In a ``poor`` capture these hold their photos, and the lens is taken for right.
+    """
     links, chosen = stated.links, stated.parameters
     linked = {i for pair in links.matches for i in pair}
     poses = {i: p for i, p in stated.poses.items() if i not in stated.wrong and i in linked}
     if len(poses) < 2:
         return None
+    trusted = dict(poses) if poor else None
+    lenses = [replace(one, known="assumed") if poor else one for one in stated.lenses]
     first, later = chosen.gates_px[:1], chosen.gates_px[1:]
-    found = refined(stated.photos, links, poses, stated.lenses, first, chosen)
-    lenses = with_cameras(stated.lenses, found.cameras)
+    found = refined(stated.photos, links, poses, lenses, first, chosen, trusted)
+    lenses = with_cameras(lenses, found.cameras)
     fresh = _rescued(stated, found, each_camera(lenses))
     poses = {**found.poses, **fresh}
     if later:
-        found = refined(stated.photos, links, poses, lenses, later, chosen)
+        found = refined(stated.photos, links, poses, lenses, later, chosen, trusted)
     settled = found.median_px <= SETTLED_PX * unit_px(stated.photos)
     if not settled or len(found.poses) < 0.5 * len(linked):
         return None

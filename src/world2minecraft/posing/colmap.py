@@ -23,7 +23,9 @@ def colmap() -> Iterator[Any]:
     module.logging.minloglevel = 3  # Its errors are raised as well as written.
     try:
         yield module
-    except RuntimeError as error:
+    except (RuntimeError, ValueError) as error:
+        if isinstance(error, ValueError) and not str(error).startswith("["):
+            raise  # Ours; those of its own checks begin with its source file.
         first = (str(error).splitlines() or ["no reason given"])[0][:200]
         reason = f"their places could not be found ({first}); leave out odd photos and try again"
         raise CaptureError(PLACE, reason) from error

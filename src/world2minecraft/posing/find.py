@@ -8,7 +8,7 @@ from world2minecraft.posing import reasons
 from world2minecraft.posing.bundle import LEAST_POINTS, Solved, solved
 from world2minecraft.posing.features import Features, gather
 from world2minecraft.posing.joining import joined
-from world2minecraft.posing.lenses import Lens, is_sane, shared_lenses, usual_camera
+from world2minecraft.posing.lenses import Lens, each_camera, is_sane, shared_lenses, usual_camera
 from world2minecraft.posing.links import Links, link_photos
 from world2minecraft.posing.mapping import Model, mapped
 from world2minecraft.posing.outcome import middle_depth, scene
@@ -16,7 +16,7 @@ from world2minecraft.posing.parameters import PosingParameters
 from world2minecraft.posing.similarity import Similarity
 from world2minecraft.posing.steps import Steps
 from world2minecraft.progress import Progress, silent
-from world2minecraft.types import Camera, SparseScene
+from world2minecraft.types import SparseScene
 from world2minecraft.types.photos import PhotoStream
 
 MIDDLE_DEPTH = 2.5  # What is seen in rooms is about so many metres away; only a start for scale.
@@ -142,26 +142,25 @@ def refined(
     lenses: list[Lens],
     gates_px: tuple[float, ...],
     parameters: PosingParameters,
+    stated: dict[int, np.ndarray] | None = None,
 ) -> Solved:
     """Return poses and lenses after a round for each gate; photos that see too little are left."""
     found = None
     for gate in gates_px:
         last = gate == gates_px[-1]
         found = solved(
-            photos, links, poses, lenses, gate, parameters, tolerance=1e-5 if last else 1e-3
-        )
+            photos, links, poses, lenses, gate, parameters,
+            tolerance=1e-5 if last else 1e-3, stated=stated,
+        )  # fmt: skip
         poses = {i: pose for i, pose in found.poses.items() if found.seen_by(i) >= LEAST_POINTS}
         lenses = with_cameras(lenses, found.cameras)
         if last and len(poses) < len(found.poses):
-            found = solved(photos, links, poses, lenses, gate, parameters, tolerance=1e-5)
+            found = solved(
+                photos, links, poses, lenses, gate, parameters, tolerance=1e-5, stated=stated
+            )
     if found is None:
         raise ValueError("there must be a gate")
     return found
-
-
-def each_camera(lenses: list[Lens]) -> dict[int, Camera]:
-    """Return the camera of each photo's lens."""
-    return {i: lens.camera for lens in lenses for i in lens.photos}
 
 
 def with_cameras(lenses: list[Lens], cameras: dict) -> list[Lens]:

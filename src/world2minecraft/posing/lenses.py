@@ -32,6 +32,11 @@ class Lens:
         return self.known == "assumed"
 
 
+def each_camera(lenses: list[Lens]) -> dict[int, Camera]:
+    """Return the camera of each photo's lens."""
+    return {i: lens.camera for lens in lenses for i in lens.photos}
+
+
 def usual_camera(width_px: int, height_px: int, focal: float = GUESS) -> Camera:
     """Return a camera without distortion whose focal length is usual for the longer side."""
     focal_px = focal * max(width_px, height_px)
