@@ -17,10 +17,11 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from world2minecraft.archive import AnyPath, ArchivePath
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.errors import DamagedFileError, InputError, LimitError, MissingExtraError
 
 MAX_PIXELS = 64_000_000  # A 48-megapixel phone photo passes; decoding it takes 144 MB.
 FORMATS = ("PNG", "JPEG", "TIFF", "PPM", "WEBP", "BMP")
+HEIF_SUFFIXES = (".heic", ".heif", ".hif")  # What phones write; read by an extra.
 SUFFIXES = (".png", ".jpg", ".jpeg", ".tiff", ".tif", ".ppm", ".pgm", ".webp", ".bmp")
 
 
@@ -109,7 +110,9 @@ def check_whole(path: ImagePlace) -> None:
         kind = image.format
         if kind == "PNG":
             image.verify()
-    if kind == "JPEG" and b"\xff\xd9" not in _tail(path, 4096):
+    if path.suffix.lower() in HEIF_SUFFIXES:
+        _check_boxes(path)
+    if kind in ("JPEG", "MPO") and b"\xff\xd9" not in _tail(path, 4096):
         raise DamagedFileError(path, "is cut short (a JPEG without its end); copy it again")
 
 
@@ -143,7 +146,7 @@ class Openable(Protocol):
         ...
 
 
-def opened_image(source: Openable) -> AbstractContextManager[Image.Image]:
+def opened_image(source: AnyPath | Openable) -> AbstractContextManager[Image.Image]:
     """Open an image that lies within another file, with its size checked.
 
     Raises:
@@ -158,7 +161,8 @@ def _opened(path: AnyPath | Openable) -> Iterator[Image.Image]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Ours is the stricter limit, checked below.
-            with path.open("rb") as stream, Image.open(stream, formats=FORMATS) as image:
+            formats = _formats(path)
+            with path.open("rb") as stream, Image.open(stream, formats=formats) as image:
                 _check_pixels(path, *image.size)
                 yield image
     except Image.DecompressionBombError as error:
@@ -173,6 +177,35 @@ def _opened(path: AnyPath | Openable) -> Iterator[Image.Image]:
     except (OSError, SyntaxError, ValueError, EOFError, IndexError, MemoryError) as error:
         # Pillow raises SyntaxError for a PNG whose chunks fail their check sums.
         raise DamagedFileError(path, f"is damaged ({_one_line(error)}); copy it again") from error
+
+
+def _formats(path: object) -> tuple[str, ...]:
+    """Return the formats to try; the reader of HEIF is looked for only where one is met."""
+    if str(getattr(path, "suffix", "")).lower() not in HEIF_SUFFIXES:
+        return FORMATS
+    try:
+        import pillow_heif  # noqa: PLC0415
+    except ImportError as error:
+        raise MissingExtraError("reading HEIC photos", "capture") from error
+    pillow_heif.register_heif_opener(thumbnails=False)
+    return (*FORMATS, "HEIF")  # A JPEG that was given the wrong name is read all the same.
+
+
+def _check_boxes(path: AnyPath) -> None:
+    """Check that the boxes of a HEIF file end where the file does."""
+    size, at = path.stat().st_size, 0
+    with path.open("rb") as stream:
+        while at < size:
+            stream.seek(at)
+            head = stream.read(16)
+            if at == 0 and head[4:8] != b"ftyp":
+                return  # It is named so, and is something else.
+            length = int.from_bytes(head[:4], "big")
+            if length == 1:
+                length = int.from_bytes(head[8:16], "big")
+            at = size if length == 0 else at + max(length, 8)
+    if at > size:
+        raise DamagedFileError(path, "is cut short (its last part is missing); copy it again")
 
 
 def _check_pixels(path: object, width_px: int, height_px: int) -> None:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.scan.depth import DepthEncoding
 
-OPTION_NAMES = ("depth_unit", "every", "colour_camera", "unit", "up", "inside")
+OPTION_NAMES = ("depth_unit", "every", "colour_camera", "unit", "up", "inside", "frames")
 SOLID_UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048}
+LEAST_FRAMES = 3  # Two photos cannot check each other.
 UP_AXES = ("x", "y", "z", "-x", "-y", "-z")
 
 
@@ -28,6 +29,8 @@ class ScanOptions:
     """Of a mesh or a cloud: which of its own axes points up; else told from its surfaces."""
     inside: tuple[float, float, float] | None = None
     """Of a mesh or a cloud: a point inside the room, in the file's own units and axes."""
+    frames: int | None = None
+    """How many pictures to take of a video (else 100 at most) or a folder of photos (else all)."""
 
 
 def parse_options(options: Mapping[str, str]) -> ScanOptions:
@@ -55,7 +58,16 @@ def parse_options(options: Mapping[str, str]) -> ScanOptions:
         _one_of("unit", options.get("unit"), tuple(SOLID_UNITS_M)),
         _one_of("up", options.get("up"), UP_AXES),
         _point("inside", options.get("inside")),
+        _frames(options.get("frames")),
     )
+
+
+def _frames(value: str | None) -> int | None:
+    if value is None:
+        return None
+    if not value.isascii() or not value.isdigit() or not LEAST_FRAMES <= int(value) < 10**5:
+        raise UsageError(f"frames must be a whole number of {LEAST_FRAMES} or more, not {value!r}")
+    return int(value)
 
 
 def _one_of(name: str, value: str | None, known: tuple[str, ...]) -> str | None:

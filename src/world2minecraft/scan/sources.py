@@ -35,6 +35,8 @@ SOURCES = Registry(
         "colmap": "world2minecraft.scan.datasets.colmap:ColmapSource",
         "nerfstudio": "world2minecraft.scan.nerfstudio:NerfstudioSource",
         "seven_scenes": "world2minecraft.scan.seven_scenes:SevenScenesSource",
+        "video": "world2minecraft.scan.video:VideoSource",
+        "photos": "world2minecraft.scan.photo_folder:PhotoFolderSource",
     },
 )
 MAX_WRAPPINGS = 3  # Folders that hold nothing but a folder, as zips often do.
