@@ -8,7 +8,7 @@ from scipy.ndimage import gaussian_filter
 from tests.posing.box_room import poses
 
 from world2minecraft.errors import CaptureError, MissingExtraError
-from world2minecraft.posing import PosingParameters, colmap, find_poses
+from world2minecraft.posing import PosingParameters, colmap, find_poses, reasons
 from world2minecraft.posing.bundle import projected
 from world2minecraft.posing.features import sharpness
 from world2minecraft.posing.joining import joined
@@ -159,6 +159,14 @@ def test_failures_of_colmap_are_one_line():
     assert str(caught.value) == (
         "photos: their places could not be found ([x.cc:1] Check failed); "
         "leave out odd photos and try again"
+    )
+
+
+def test_a_few_placed_photos_are_no_room():
+    assert str(reasons.too_few(6, 40)) == (
+        "photos: only 6 of 40 could be placed, too few to trust; walk sideways around the room, "
+        "with most of each picture in the next, and stand back so that furniture and corners are "
+        "seen"
     )
 
 

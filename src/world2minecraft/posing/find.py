@@ -22,6 +22,7 @@ from world2minecraft.types.photos import PhotoStream
 MIDDLE_DEPTH = 2.5  # What is seen in rooms is about so many metres away; only a start for scale.
 OTHER_FOCALS = (0.5, 1.2)  # By the longer side: wide lenses of phones, and long ones.
 ENOUGH = 0.6  # A model of this share of the linked photos needs no second trial.
+LEAST_SHARE = 0.25  # Fewer make no room; of bare walls 6 of 40 made one that was wrong.
 LEAST_PHOTOS = 3
 
 
@@ -47,6 +48,8 @@ def find_poses(
     lenses = shared_lenses(features)
     links = link_photos(features, lenses, chosen, steps)
     found, notes, models = solved_from_nothing(features, lenses, links, chosen, steps)
+    if len(found.poses) < LEAST_SHARE * len(features):
+        raise reasons.too_few(len(found.poses), len(features))
     steps.end()
     change = Similarity(
         MIDDLE_DEPTH / middle_depth(found), np.eye(3), np.zeros(3), np.zeros(0), np.zeros(0)

@@ -66,6 +66,15 @@ def check_enough(photos: list[Features], least: int) -> None:
         )
 
 
+def too_few(placed: int, given: int) -> CaptureError:
+    """Return the error for photos of which only a few could be placed."""
+    return CaptureError(
+        PLACE,
+        f"only {placed} of {given} could be placed, too few to trust; {HABIT}, and stand back so "
+        "that furniture and corners are seen",
+    )
+
+
 def refuse(photos: list[Features], links: Links, cameras: dict[int, Camera]) -> CaptureError:
     """Return the error for photos that make no model at all."""
     linked = {i for pair in links.matches for i in pair}
