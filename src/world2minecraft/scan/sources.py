@@ -35,6 +35,7 @@ SOURCES = Registry(
         "colmap": "world2minecraft.scan.datasets.colmap:ColmapSource",
         "nerfstudio": "world2minecraft.scan.nerfstudio:NerfstudioSource",
         "seven_scenes": "world2minecraft.scan.seven_scenes:SevenScenesSource",
+        "solid": "world2minecraft.scan.solids.source:SolidSource",
         "video": "world2minecraft.scan.video:VideoSource",
         "photos": "world2minecraft.scan.photo_folder:PhotoFolderSource",
     },

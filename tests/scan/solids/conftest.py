@@ -1,0 +1,9 @@
+"""The box room of the scan tests once more, as triangles and points."""
+
+import pytest
+from solid_rooms import room_quads
+
+
+@pytest.fixture(scope="session")
+def quads():
+    return room_quads()
