@@ -61,10 +61,10 @@ def test_a_missing_folder_a_file_an_empty_folder_and_another_kind(tmp_path):
     (tmp_path / "scan.zip").write_bytes(b"PK")
     _refused(tmp_path / "scan.zip", "is a file (.zip) of another kind; a capture is one of these")
     (tmp_path / "empty").mkdir()
-    _refused(tmp_path / "empty", "is empty; a capture is one of these", "capture.json")
+    _refused(tmp_path / "empty", "is empty; a capture is one of these", "plain layout")
     (tmp_path / "music").mkdir()
     (tmp_path / "music" / "song.txt").write_text("la")
-    _refused(tmp_path / "music", "another kind", "transforms.json", "frame-000000.color.png")
+    _refused(tmp_path / "music", "another kind, which holds 1 .txt;", "7-Scenes", "captures.md")
 
 
 @pytest.mark.parametrize("layout", list(WRITERS))

@@ -85,11 +85,11 @@ def test_the_summary_of_the_kitchen(shared_data):
     summary = describe_capture(shared_data / "redkitchen_rgbd")
     assert (summary.source, summary.usable, summary.lost_poses) == ("seven_scenes", 40, 0)
     assert summary.depth_size_px == summary.colour_size_px == (640, 480)
-    assert "one stated matrix" in " ".join(summary.warnings)
+    assert "one stated matrix" in " ".join(doubt.text for doubt in summary.doubts)
 
 
 def test_a_folder_of_another_kind_is_refused(shared_data):
     from world2minecraft.errors import CaptureError
 
-    with pytest.raises(CaptureError, match="of another kind; a capture is one of these"):
+    with pytest.raises(CaptureError, match="of another kind, which holds .*; a capture"):
         open_scan(shared_data / "layoutgpt_outputs")

@@ -124,6 +124,28 @@ def read_colour(path: ImagePlace) -> np.ndarray:
         return np.array(image.convert("RGB"), np.uint8)
 
 
+def read_small(path: ImagePlace, longest_px: int) -> np.ndarray:
+    """Decode a colour image to at most ``longest_px`` a side, uint8 [h, w, 3] sRGB.
+
+    A JPEG is decoded at an eighth to a half of its size where that is enough, which is several
+    times as fast. Raises what ``read_header`` raises.
+    """
+    if not isinstance(path, _FILES):
+        image = Image.fromarray(path.colour())
+        return _at_most(image, longest_px)
+    with _opened(path) as image:
+        image.draft("RGB", (longest_px, longest_px))
+        return _at_most(image.convert("RGB"), longest_px)
+
+
+def _at_most(image: Image.Image, longest_px: int) -> np.ndarray:
+    share = min(1.0, longest_px / max(image.size))
+    size = (max(1, round(image.width * share)), max(1, round(image.height * share)))
+    if size != image.size:
+        image = image.resize(size, Image.Resampling.BOX)
+    return np.array(image, np.uint8)
+
+
 def read_raw(path: ImagePlace) -> np.ndarray:
     """Decode an image of single values as it is stored, [H, W] of any number type."""
     if not isinstance(path, _FILES):

@@ -4,6 +4,7 @@ A new kind is one file with a ``Source``, one line here and one test; other pack
 through the entry point group ``world2minecraft.source``.
 """
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -68,9 +69,12 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
         for source in sources:
             if source.recognise(inner):
                 return replace(_read(source, inner, options), folder=place)
-    kind = "is empty" if empty else f"is a {_kind(place)} of another kind"
-    layouts = "; ".join(source.layout for source in sources)
-    raise CaptureError(place, f"{kind}; a capture is one of these: {layouts}")
+    kind = "is empty" if empty else f"is a {_kind(place)} of another kind{_held(place)}"
+    known = ", ".join(_called(source.layout) for source in sources)
+    raise CaptureError(
+        place,
+        f"{kind}; a capture is one of these: {known}; docs/captures.md shows the files of each",
+    )
 
 
 def _read(source: Source, place: AnyPath, options: ScanOptions | None) -> Capture:
@@ -98,3 +102,27 @@ def _kind(place: Path) -> str:
     if place.is_dir():
         return "folder"
     return "zip" if is_zip(place) else f"file ({place.suffix or 'no suffix'})"
+
+
+def _held(place: Path) -> str:
+    """Return what a folder holds, in words: that tells which part of an export is missing."""
+    if not place.is_dir():
+        return ""
+    entries = list(place.iterdir())
+    kinds = Counter(
+        "folders" if entry.is_dir() else entry.suffix.lower() or "files without suffix"
+        for entry in entries
+    )
+    most = sorted(kinds.items(), key=lambda item: (-item[1], item[0]))[:4]
+    return ", which holds " + ", ".join(f"{count} {kind}" for kind, count in most)
+
+
+def _called(layout: str) -> str:
+    """Return the name of a layout: what stands in brackets at its end, or all of it.
+
+    Example:
+        >>> _called("rgb.txt, depth.txt and groundtruth.txt (TUM RGB-D)")
+        'TUM RGB-D'
+    """
+    name = layout.rpartition("(")[2].rstrip(")") if layout.endswith(")") else layout
+    return layout if name.startswith(".") else name

@@ -56,7 +56,7 @@ def test_one_frame_is_a_capture_and_its_extrinsics_tell_what_is_up(tmp_path, vie
     pose = capture.frames[0].camera_to_world
     np.testing.assert_allclose(pose[:3, :3], pitch[:3, :3], atol=1e-8)
     assert not pose[:3, 3].any()
-    assert "only 1 frames" in " ".join(describe_capture(tmp_path).warnings)
+    assert "only 1 frame" in " ".join(describe_capture(tmp_path).warnings)
 
 
 def test_the_true_depth_goes_before_the_filled_one(tmp_path, views):

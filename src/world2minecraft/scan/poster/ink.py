@@ -1,0 +1,118 @@
+"""The sheet that a poster is drawn on: colours, type and shapes, drawn double and made smaller."""
+
+import unicodedata
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+DOUBLE = 2  # Lines and letters are drawn at twice the size: edges come out smooth.
+PAPER, INK, FAINT, RULE = (252, 251, 248), (34, 38, 43), (112, 118, 125), (219, 216, 208)
+PANEL = (243, 241, 235)
+OK, WARN, STOP = (62, 142, 96), (214, 138, 22), (196, 62, 46)
+FIRST, LAST = (16, 118, 150), (214, 62, 110)  # Of a camera's path.
+LEVELS = {"ok": OK, "warn": WARN, "stop": STOP}
+Colour = tuple[int, int, int]
+Point = tuple[float, float]
+
+
+def blend(one: Colour, other: Colour, share: float) -> Colour:
+    """Return the colour that lies a share of the way from one to another."""
+    mixed = [round(a + (b - a) * share) for a, b in zip(one, other, strict=True)]
+    return mixed[0], mixed[1], mixed[2]
+
+
+class Sheet:
+    """A page in final pixels; whatever is drawn may lie between them."""
+
+    def __init__(self, width_px: int, height_px: int):
+        self.image = Image.new("RGB", (width_px * DOUBLE, height_px * DOUBLE), PAPER)
+        self.draw = ImageDraw.Draw(self.image)
+
+    def text(
+        self, at: Point, words: str, size: float, colour: Colour = INK, *,
+        bold: bool = False, anchor: str = "la",
+    ) -> None:  # fmt: skip
+        """Write one line; ``anchor`` is Pillow's, such as ``mm`` for the middle."""
+        font = ImageFont.load_default(size * DOUBLE)
+        self.draw.text(
+            (at[0] * DOUBLE, at[1] * DOUBLE), plain(words), colour, font, anchor,
+            stroke_width=1 if bold else 0, stroke_fill=colour,
+        )  # fmt: skip
+
+    def width(self, words: str, size: float) -> float:
+        """Return how wide a line is, in final pixels."""
+        return self.draw.textlength(plain(words), ImageFont.load_default(size * DOUBLE)) / DOUBLE
+
+    def wrapped(self, words: str, size: float, width: float) -> list[str]:
+        """Cut a text into lines of at most a width."""
+        lines, line = [], ""
+        for word in words.split():
+            tried = f"{line} {word}".strip()
+            if line and self.width(tried, size) > width:
+                lines.append(line)
+                tried = word
+            line = tried
+        return [*lines, line] if line else lines
+
+    def clipped(self, words: str, size: float, width: float) -> str:
+        """Return a text cut in its middle where it is wider than ``width``."""
+        if self.width(words, size) <= width:
+            return words
+        keep = len(words)
+        while keep > 4 and self.width(_cut(words, keep), size) > width:
+            keep -= 1
+        return _cut(words, keep)
+
+    def box(
+        self, corner: Point, size: Point, fill: Colour | None = None,
+        outline: Colour | None = None, radius: float = 0, line: float = 1,
+    ) -> None:  # fmt: skip
+        """Draw a rectangle with round corners."""
+        ends = (*corner, corner[0] + size[0], corner[1] + size[1])
+        self.draw.rounded_rectangle(
+            [value * DOUBLE for value in ends], radius * DOUBLE, fill, outline, round(line * DOUBLE)
+        )
+
+    def line(self, points: list[Point], colour: Colour, width: float = 1) -> None:
+        """Draw a line through points."""
+        flat = [(x * DOUBLE, y * DOUBLE) for x, y in points]
+        self.draw.line(flat, colour, max(1, round(width * DOUBLE)), joint="curve")
+
+    def shape(self, points: list[Point], fill: Colour, alpha: float = 1.0) -> None:
+        """Fill a polygon, through which one sees where ``alpha`` is under 1."""
+        flat = np.array(points) * DOUBLE
+        low = np.floor(flat.min(axis=0)).astype(int)
+        high = np.ceil(flat.max(axis=0)).astype(int) + 1
+        mask = Image.new("L", (int(high[0] - low[0]), int(high[1] - low[1])), 0)
+        corners = [(float(x), float(y)) for x, y in flat - low]
+        ImageDraw.Draw(mask).polygon(corners, round(255 * alpha))
+        self.image.paste(fill, (int(low[0]), int(low[1])), mask)
+
+    def dot(self, at: Point, radius: float, fill: Colour, outline: Colour | None = None) -> None:
+        """Draw a disc."""
+        ends = (at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius)
+        width = 2 if outline else 0
+        self.draw.ellipse([value * DOUBLE for value in ends], fill, outline, width)
+
+    def picture(self, pixels: np.ndarray, corner: Point, size: Point, smooth: bool = True) -> None:
+        """Put uint8 [H, W, 3] into a box, stretched to it."""
+        target = (round(size[0] * DOUBLE), round(size[1] * DOUBLE))
+        how = Image.Resampling.BICUBIC if smooth else Image.Resampling.NEAREST
+        at = (round(corner[0] * DOUBLE), round(corner[1] * DOUBLE))
+        self.image.paste(Image.fromarray(pixels).resize(target, how), at)
+
+    def finished(self) -> np.ndarray:
+        """Return the page, uint8 [H, W, 3]."""
+        return np.asarray(self.image.reduce(DOUBLE))
+
+
+def plain(words: str) -> str:
+    """Return a text in letters that the font has: those of ASCII, accents left out."""
+    split = unicodedata.normalize("NFKD", words)
+    kept = "".join(letter for letter in split if not unicodedata.combining(letter))
+    return kept.encode("ascii", "replace").decode()
+
+
+def _cut(words: str, keep: int) -> str:
+    front = keep // 2
+    return f"{words[:front]}...{words[len(words) - (keep - front) :]}" if keep else "..."
