@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from world2minecraft.stereo.agree import confirm
 from world2minecraft.stereo.cost import sweep_costs
+from world2minecraft.stereo.islands import without_islands
 from world2minecraft.stereo.paths import best_planes, sum_paths
 
 
@@ -139,3 +141,17 @@ def test_others_confirm_what_they_see_at_the_same_distance():
     np.testing.assert_array_equal(votes, slow_votes)
     np.testing.assert_allclose(mean, slow_mean, rtol=1e-6)
     assert votes.max() > 1
+
+
+def test_islands_are_pieces_that_jumps_and_holes_cut_off():
+    rng = np.random.default_rng(5)
+    levels = ndimage.zoom(rng.integers(1, 4, (6, 8)), 4, order=0)
+    depth = np.where(rng.random(levels.shape) < 0.35, 0, levels).astype(np.float32)
+    expected = depth.copy()
+    for level in (1, 2, 3):
+        pieces, count = ndimage.label(depth == level)
+        for piece in range(1, count + 1):
+            if (pieces == piece).sum() < 9:
+                expected[pieces == piece] = 0
+    assert 0 < (expected > 0).sum() < (depth > 0).sum()
+    np.testing.assert_array_equal(without_islands(depth, 9, 0.2), expected)

@@ -11,6 +11,7 @@ from world2minecraft.progress import Progress, silent
 from world2minecraft.render.threads import side_by_side
 from world2minecraft.stereo.agree import confirm
 from world2minecraft.stereo.guide import DepthModel, filled
+from world2minecraft.stereo.islands import without_islands
 from world2minecraft.stereo.neighbours import DEPTH_PERCENTILES, chosen_neighbours
 from world2minecraft.stereo.parameters import StereoParameters
 from world2minecraft.stereo.small import SmallPhoto, small_photos
@@ -18,7 +19,7 @@ from world2minecraft.stereo.sweep import depth_range, sweep
 from world2minecraft.types import DepthMap, PhotoStream, SparseScene
 
 AT_ONCE = 2  # Photos swept side by side; each needs about 60 MB.
-SURE = 255
+TRUST = np.array([48, 48, 96, 160, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
 LEAST_GUIDES = 20
 STAGE = "stereo"
 
@@ -103,9 +104,12 @@ def confirmed(
     """Return the depth of a photo that its neighbours' depths confirm."""
     photo = small[number]
     votes, mean = votes_of(number, small, swept, neighbours[number], values.agreement)
-    sure = votes >= min(values.agreeing, max(1, len(neighbours[number])))
-    trust = np.where(sure, SURE, 0).astype(np.uint8)
-    return DepthMap(photo.name, photo.camera, np.where(trust > 0, mean, np.float32(0)), trust)
+    asked = max(1, len(neighbours[number]))
+    depth_m = np.where(votes >= min(values.agreeing, asked), mean, np.float32(0))
+    least_px = round(values.island_share * depth_m.size)
+    depth_m = without_islands(depth_m, least_px, values.island_step)
+    trust = TRUST[np.clip(4 - min(asked, 4) + votes, 0, 4)]
+    return DepthMap(photo.name, photo.camera, depth_m, np.where(depth_m > 0, trust, np.uint8(0)))
 
 
 def votes_of(
