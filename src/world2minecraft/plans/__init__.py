@@ -6,12 +6,15 @@ and windows that were not seen. ``find_roomplan`` tells whether a path holds a p
 """
 
 from world2minecraft.exchange.roomplan import find_roomplan, read_roomplan
+from world2minecraft.plans.beside import add_plan_openings, voted_by_plan
 from world2minecraft.plans.matching import LaidPlan, PlanMismatchError, laid_plan
 from world2minecraft.plans.outlines import layouts_of, straightened
 from world2minecraft.plans.votes import plan_votes, with_plan_openings
 from world2minecraft.plans.world import PlanWorld, build_plan
 
 __all__ = [
+    "add_plan_openings",
+    "voted_by_plan",
     "LaidPlan",
     "PlanMismatchError",
     "PlanWorld",
