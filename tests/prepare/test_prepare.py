@@ -15,8 +15,9 @@ from world2minecraft.parameters import Parameters
 from world2minecraft.prepare import open_prepared, prepared, preparing
 from world2minecraft.prepare.scaling import depth_ratios, normalised
 from world2minecraft.scan import open_scan, write_plain
-from world2minecraft.types import DepthMap, SparseScene
+from world2minecraft.types import Camera, DepthMap, SparseScene, View
 
+CAMERA = Camera(320, 240, 260.0, 260.0, 160.0, 120.0)
 UNIT_M = 0.37  # What one unit of the stand-in's scene is.
 
 
@@ -52,7 +53,12 @@ def scene_of(views, unit_m=1.0):
 
 @pytest.fixture(scope="module")
 def views():
-    return BoxRoom().views(16)
+    room = BoxRoom()
+    shots = [(pose, *room.render(pose, CAMERA)) for pose in room.poses(16)]
+    return [
+        View(f"{index:06d}", pose, colour, CAMERA, depth, CAMERA)
+        for index, (pose, depth, colour) in enumerate(shots)
+    ]
 
 
 @pytest.fixture
@@ -64,7 +70,7 @@ def stood_in(views, monkeypatch):
         calls.append("check" if next(iter(photos)).camera_to_scan is not None else "find")
         return scene_of(views, UNIT_M if calls[-1] == "find" else 1.0)
 
-    def deep(photos, scene, parameters, progress):
+    def deep(photos, scene, parameters, progress, guide):
         calls.append("stereo")
         size = np.linalg.norm(scene.camera_to_scan[1, :3, 3] - scene.camera_to_scan[0, :3, 3])
         true = np.linalg.norm(views[1].camera_to_scan[:3, 3] - views[0].camera_to_scan[:3, 3])

@@ -144,17 +144,16 @@ def run(
     style_note(chosen)
     compiling_note()
     drawn = plan_in(capture)
-    with shown() as progress:
-        if drawn is not None:
-            built = make_from_plan(drawn, out, chosen, progress, scene_name(capture))
-        else:
-            if follow:
-                watch(capture, out, chosen, labels, follow_idle_s, progress)
-            facts = make(capture, out, chosen, start, labels, progress)
     if drawn is not None:
+        with shown() as progress:
+            built = make_from_plan(drawn, out, chosen, progress, scene_name(capture))
         say_plan(out, built)
-    else:
-        say_where(out, facts)
+        return
+    with shown() as progress:
+        if follow:
+            watch(capture, out, chosen, labels, follow_idle_s, progress)
+        facts = make(capture, out, chosen, start, labels, progress)
+    say_where(out, facts)
 
 
 def watch(

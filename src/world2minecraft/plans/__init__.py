@@ -13,11 +13,10 @@ from world2minecraft.plans.votes import plan_votes, with_plan_openings
 from world2minecraft.plans.world import PlanWorld, build_plan
 
 __all__ = [
-    "add_plan_openings",
-    "voted_by_plan",
     "LaidPlan",
     "PlanMismatchError",
     "PlanWorld",
+    "add_plan_openings",
     "build_plan",
     "find_roomplan",
     "laid_plan",
@@ -25,5 +24,6 @@ __all__ = [
     "plan_votes",
     "read_roomplan",
     "straightened",
+    "voted_by_plan",
     "with_plan_openings",
 ]

@@ -31,6 +31,7 @@ from world2minecraft.types import SparseScene, View
 
 FOLDER = "capture"
 STAMP = "prepared.json"
+NAMELESS = "photos"  # What steps that know no path call the capture.
 UNIT = "0.0002"  # Metres a step: a scene of median depth 2.5 is kept to 13.
 LEAST_PHOTOS = 3
 Told = dict[str, Any]
@@ -60,7 +61,12 @@ def prepared(capture: Path, out: Path, chosen: Parameters, progress: Progress = 
     folder, stamp = out / FOLDER, stamp_of(capture, chosen)
     if not _made_before(folder, stamp):
         (folder / STAMP).unlink(missing_ok=True)
-        _prepare(found, folder, chosen, progress)
+        try:
+            _prepare(found, folder, chosen, progress)
+        except CaptureError as error:
+            if error.path != NAMELESS:
+                raise
+            raise CaptureError(found.folder, error.reason) from error
         write_json(folder / STAMP, stamp)
     return folder
 

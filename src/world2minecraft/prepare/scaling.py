@@ -133,14 +133,17 @@ def clicked(
         UsageError: a point is written otherwise, or no photo has its name.
     """
     cameras = {frame.name: frame.colour_camera for frame in judged.frames}
-    points = []
-    for name, (x, y) in (_clicked(first), _clicked(second)):
+
+    def found(text: str) -> tuple[str, tuple[float, float]]:
+        name, (x, y) = _clicked(text)
         camera = cameras.get(name)
         if camera is None:
             raise UnknownNameError("photo", name, cameras)
         wide, high = size_of(name)
-        points += [name, (x * camera.width_px / wide, y * camera.height_px / high)]
-    return KnownPoints(*points, length_m)
+        return name, (x * camera.width_px / wide, y * camera.height_px / high)
+
+    (image_a, point_a), (image_b, point_b) = found(first), found(second)
+    return KnownPoints(image_a, point_a, image_b, point_b, length_m)
 
 
 def _clicked(text: str) -> tuple[str, tuple[float, float]]:
