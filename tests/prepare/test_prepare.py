@@ -198,7 +198,7 @@ def test_what_was_made_is_taken_again_until_something_changes(tmp_path, views, s
 
 
 def test_too_few_photos_and_a_known_length_of_what_has_depth(tmp_path, views, stood_in):
-    with pytest.raises(CaptureError, match=r"at least 3"):
+    with pytest.raises(CaptureError, match="holds 2 photos that can be used; take 30 or more"):
         prepared(write_photos(tmp_path / "two", views[:2]), tmp_path / "OUT", Parameters())
     write_plain(tmp_path / "in", views)
     with pytest.raises(UsageError, match="has depth in metres; leave out --known"):

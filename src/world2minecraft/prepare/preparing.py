@@ -66,7 +66,9 @@ def prepared(capture: Path, out: Path, chosen: Parameters, progress: Progress = 
         except CaptureError as error:
             if error.path != NAMELESS:
                 raise
-            raise CaptureError(found.folder, error.reason) from error
+            posed = any(frame.camera_to_world is not None for frame in found.frames)
+            lead = "" if posed else "states no poses, and its pictures do not tell them: "
+            raise CaptureError(found.folder, lead + error.reason) from error
         write_json(folder / STAMP, stamp)
     return folder
 
