@@ -17,6 +17,7 @@ from world2minecraft.cli.build_options import (
 )
 
 if TYPE_CHECKING:
+    from world2minecraft.archive import AnyPath
     from world2minecraft.parameters import Parameters
     from world2minecraft.progress import Progress
 
@@ -48,6 +49,9 @@ Follow = Annotated[
 ]
 
 
+FollowIdle = Annotated[
+    float, typer.Option("--follow-idle-s", help="Seconds without a new frame that end --follow.")
+]
 Known = Annotated[
     tuple[str, float] | None,
     typer.Option("--known", metavar="NAME METRES", help='A length: "table height" 0.72.'),
@@ -89,43 +93,19 @@ def run(
     mc_version: Version = "1.20.1",
     settings: Settings = None,
     follow: Follow = False,
-    follow_idle_s: Annotated[
-        float,
-        typer.Option("--follow-idle-s", help="Seconds without a new frame that end --follow."),
-    ] = 60.0,
+    follow_idle_s: FollowIdle = 60.0,
 ) -> None:
     """Turn a capture into a Minecraft world.
 
     The world opens in creative mode, standing in the room. A run that was cut off goes on from
-    its last finished stage when the same command is given again.
-
-    Args:
-        capture: what to read; ``w2m scan`` tells what it holds.
-        out: the folder to write.
-        voxel: the cell's size in metres.
-        blocks_per_metre: the scale.
-        style: what furniture is made of.
-        palette: which blocks may be used.
-        formats: further forms of the build.
-        start: the stage to begin at.
-        labels: 2D label images.
-        labeller: how cells are labelled.
-        method: how objects and poses are found.
-        known: a length that gives photos their scale.
-        known_points: the same by two clicked points.
-        depth_model: a network beside stereo.
-        plan: a RoomPlan beside the scan; alone it is a capture.
-        mc_version: the game version.
-        settings: further parameters.
-        follow: keep room.npz and preview.png fresh while frames come, then finish.
-        follow_idle_s: how long to wait for a new frame.
+    its last finished stage when the same command is given again. Photos and videos are given
+    poses and depth first, which takes a minute or two.
     """
-    from world2minecraft.cli.from_plan import make_from_plan, plan_in, say_plan
+    from world2minecraft.cli.from_plan import plan_in
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
     from world2minecraft.errors import UsageError
     from world2minecraft.parameters import Parameters, with_method, with_settings
-    from world2minecraft.prepare import scene_name
 
     chosen = Parameters(
         voxel,
@@ -145,15 +125,23 @@ def run(
     compiling_note()
     drawn = plan_in(capture)
     if drawn is not None:
-        with shown() as progress:
-            built = make_from_plan(drawn, out, chosen, progress, scene_name(capture))
-        say_plan(out, built)
-        return
+        return from_plan(drawn, capture, out, chosen)
     with shown() as progress:
         if follow:
             watch(capture, out, chosen, labels, follow_idle_s, progress)
         facts = make(capture, out, chosen, start, labels, progress)
     say_where(out, facts)
+
+
+def from_plan(drawn: "AnyPath", capture: Path, out: Path, chosen: "Parameters") -> None:
+    """Build what a RoomPlan alone says."""
+    from world2minecraft.cli.from_plan import make_from_plan, say_plan
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.prepare import scene_name
+
+    with shown() as progress:
+        built = make_from_plan(drawn, out, chosen, progress, scene_name(capture))
+    say_plan(out, built)
 
 
 def watch(

@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.errors import CaptureError, InputError
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
 from world2minecraft.scan.frames import FrameFiles
-from world2minecraft.scan.images import read_header
+from world2minecraft.scan.images import ImagePlace, read_header
 from world2minecraft.scan.judged import JudgedCapture
 from world2minecraft.scan.photos import CapturePhotos
 from world2minecraft.scan.stream import read_view
@@ -65,7 +65,7 @@ def posed_frame(frame: FrameFiles, scene: SparseScene, index: int) -> FrameFiles
     """
     camera = frame.depth_camera
     if camera is None and frame.depth_path is not None:
-        camera = _resized(frame, scene.cameras[index])
+        camera = _resized(frame.depth_path, scene.cameras[index])
     return replace(
         frame,
         camera_to_world=scene.camera_to_scan[index],
@@ -76,14 +76,13 @@ def posed_frame(frame: FrameFiles, scene: SparseScene, index: int) -> FrameFiles
     )
 
 
-def _resized(frame: FrameFiles, camera: Camera) -> Camera:
-    assert frame.depth_path is not None
-    size = read_header(frame.depth_path).size
+def _resized(depth_path: ImagePlace, camera: Camera) -> Camera:
+    size = read_header(depth_path).size
     try:
         return camera.resized(*size)
     except ValueError as error:
         raise CaptureError(
-            frame.depth_path,
+            depth_path,
             f"has other proportions than its colour image: {error}; state its intrinsics in a "
             "capture.json (docs/captures.md)",
         ) from error

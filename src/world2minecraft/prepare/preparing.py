@@ -57,6 +57,7 @@ def prepared(capture: Path, out: Path, chosen: Parameters, progress: Progress = 
         if chosen.known is not None or chosen.known_points is not None:
             raise UsageError(f"{capture} has depth in metres; leave out --known")
         return capture
+    fresh = not out.exists()
     check_writable(out)
     folder, stamp = out / FOLDER, stamp_of(capture, chosen)
     if not _made_before(folder, stamp):
@@ -64,6 +65,8 @@ def prepared(capture: Path, out: Path, chosen: Parameters, progress: Progress = 
         try:
             _prepare(found, folder, chosen, progress)
         except CaptureError as error:
+            if fresh and not any(out.iterdir()):
+                out.rmdir()
             if error.path != NAMELESS:
                 raise
             posed = any(frame.camera_to_world is not None for frame in found.frames)
