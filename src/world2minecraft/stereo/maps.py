@@ -20,7 +20,7 @@ from world2minecraft.stereo.sweep import depth_range, sweep
 from world2minecraft.types import DepthMap, PhotoStream, SparseScene
 
 AT_ONCE = 2  # Photos swept side by side; each needs about 60 MB.
-TRUST = np.array([48, 48, 96, 160, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
+TRUST = np.array([30, 60, 130, 180, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
 DECIDING = 160  # Trust of depth that may decide where a flat patch lies.
 GUESSED = np.uint8(96)
 LEAST_GUIDES = 20
