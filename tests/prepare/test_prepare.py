@@ -246,6 +246,8 @@ def test_trust_scale_and_notes_go_through_a_plain_capture(tmp_path, views):
         ("notes", "one", '"notes" must be a list'),
         ("skipped", [["x"]], '"skipped" must be a list of'),
         ("depth_kind", 3, '"depth_kind" must be one of'),
+        ("world_up", [0, 0, 0], '"world_up" must be three numbers'),
+        ("world_up", "up", '"world_up" must be three numbers'),
     ],
 )
 def test_what_a_plain_capture_states_is_checked(tmp_path, views, key, value, words):

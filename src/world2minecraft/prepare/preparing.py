@@ -133,9 +133,11 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
     else:
         views, told = _with_stereo(photos, scene, chosen, progress), {}
         kind = "stereo"
+    up = found.world_up
     stated = {
         "made_from": found.source,
         "depth_kind": kind,
+        "world_up": up.tolist() if up is not None and judged.posed else None,
         "scale": scale,
         "notes": [*judged.notes, *scene.notes],
         "skipped": [[*row] for row in (*judged.skipped, *photos.damaged.items(), *scene.left_out)],
