@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PIL import Image
-from tests.box_room import BoxRoom
+from tests.exact_room import BoxRoom
 
 from world2minecraft.coordinates import apply, invert_rigid
 from world2minecraft.errors import CaptureError, UnknownNameError, UsageError

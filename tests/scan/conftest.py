@@ -1,5 +1,5 @@
 """The box room."""
 
-from tests.box_room import CAMERA, BoxRoom, box_room
+from tests.exact_room import CAMERA, BoxRoom, box_room
 
 __all__ = ["CAMERA", "BoxRoom", "box_room"]
