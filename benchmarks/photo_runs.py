@@ -9,8 +9,9 @@ def main() -> int:
     """Run the command."""
     which, *words = sys.argv[1:]
     if which == "sgbm":
-        from benchmarks import rival_sgbm
         from world2minecraft.prepare import preparing
+
+        from benchmarks import rival_sgbm
 
         preparing.depth_maps = rival_sgbm.depth_maps
     return run(words)
