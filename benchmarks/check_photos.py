@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.photo_inputs import kitchen_inputs, room_inputs
-from benchmarks.photo_table import best_similarity, compare, poses_of, refined
+from benchmarks.photo_table import best_similarity, compare, poses_of
 
 COLUMNS = ("precision", "precision where known", "recall", "free found", "wrong free")
 
@@ -73,7 +73,7 @@ def report(name: str, folder: Path, ways: list[str]) -> dict[str, dict[str, floa
         carry, scale = None, 0.0
         if kind == "unposed":
             found = poses_of(out / "capture" / "capture.json")
-            carry = refined(reference, out, best_similarity(found, true))
+            carry = best_similarity(found, true)
             scale = np.linalg.det(carry[:3, :3]) ** (1 / 3)
         row = rows[way] = compare(reference, out, carry)
         cells = " ".join(f"{row[column]:16.3f}" for column in COLUMNS)

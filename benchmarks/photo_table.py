@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
+from world2minecraft.posing.similarity import align_similarity
+
 REACH_VOXELS = 3**0.5 + 0.01
 
 
@@ -91,47 +93,16 @@ def poses_of(capture_file: Path) -> dict[str, np.ndarray]:
     return {f["name"]: np.array(f["camera_to_world"]) for f in frames if "camera_to_world" in f}
 
 
-def best_similarity(
-    found: dict[str, np.ndarray], true: dict[str, np.ndarray], rounds: int = 3
-) -> np.ndarray:
-    """Return the 4x4 similarity that carries found camera centres to the true ones best.
+def best_similarity(found: dict[str, np.ndarray], true: dict[str, np.ndarray]) -> np.ndarray:
+    """Return the 4x4 similarity that carries found poses to the true ones best.
 
-    Umeyama's closed form; the farthest tenth is left out in further rounds.
+    True poses may be those of a depth sensor beside the colour camera: where it sits and how it
+    is turned is found with the similarity.
     """
     names = sorted(set(found) & set(true))
-    source = np.array([found[name][:3, 3] for name in names])
-    target = np.array([true[name][:3, 3] for name in names])
-    keep = np.ones(len(names), bool)
+    poses = (np.array([given[name] for name in names]) for given in (found, true))
+    best = align_similarity(*poses, mounted=len(names) >= 8)
     similarity = np.eye(4)
-    for _ in range(rounds):
-        similarity = _umeyama(source[keep], target[keep])
-        off = np.linalg.norm(moved(source, similarity) - target, axis=1)
-        keep = off <= np.quantile(off, 0.9)
-    return similarity
-
-
-def _umeyama(source: np.ndarray, target: np.ndarray) -> np.ndarray:
-    middle, goal = source.mean(axis=0), target.mean(axis=0)
-    left, sizes, right = np.linalg.svd((target - goal).T @ (source - middle))
-    flip = np.diag([1, 1, np.sign(np.linalg.det(left @ right))])
-    turn = left @ flip @ right
-    scale = (sizes * np.diag(flip)).sum() / ((source - middle) ** 2).sum()
-    similarity = np.eye(4)
-    similarity[:3, :3] = scale * turn
-    similarity[:3, 3] = goal - scale * turn @ middle
-    return similarity
-
-
-def refined(reference: Path, result: Path, similarity: np.ndarray, rounds: int = 8) -> np.ndarray:
-    """Return a similarity brought nearer by laying cells on their nearest reference cells.
-
-    Camera centres alone leave a per cent of scale open where the path is short.
-    """
-    true, found = read_cells(reference / "room.npz"), read_cells(result / "room.npz")
-    tree = cKDTree(true.occupied_m)
-    for _ in range(rounds):
-        at = moved(found.occupied_m, similarity)
-        off, index = tree.query(at)
-        near = off < 2.5 * true.voxel_m
-        similarity = _umeyama(at[near], true.occupied_m[index[near]]) @ similarity
+    similarity[:3, :3] = best.scale * best.rotation
+    similarity[:3, 3] = best.shift_m
     return similarity
