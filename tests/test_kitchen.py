@@ -2,10 +2,13 @@
 
 import colorsys
 import json
+import shutil
 
 import numpy as np
 import pytest
 from benchmarks.check_tsdf import compare, read_frames
+from benchmarks.photo_table import best_similarity, poses_of
+from benchmarks.photo_table import compare as compare_rooms
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.minecraft.colours import colours_of
@@ -70,3 +73,45 @@ def is_red(red: float, green: float, blue: float) -> bool:
 def is_wooden(red: float, green: float, blue: float) -> bool:
     hue, saturation, _ = colorsys.rgb_to_hsv(red, green, blue)
     return saturation > 0.2 and 0.05 < hue < 0.16
+
+
+@pytest.fixture(scope="module")
+def from_photos(kitchen, tmp_path_factory):
+    """A reconstruction from the colour images alone: no poses, no depth, no lens."""
+    folder = tmp_path_factory.mktemp("photos")
+    for path in sorted((kitchen / "frames").glob("*.color.*")):
+        shutil.copy(path, folder / f"{path.name.split('.')[0]}{path.suffix}")
+    out = tmp_path_factory.mktemp("from_photos") / "OUT"
+    assert w2m(["reconstruct", str(folder), "--out", str(out)]) == 0
+    return out
+
+
+@pytest.fixture(scope="module")
+def photos_to_depth(kitchen, from_photos):
+    """The similarity that lays the photos' frame on the depth camera's."""
+    found = poses_of(from_photos / "capture" / "capture.json")
+    stated = {name: np.loadtxt(kitchen / "frames" / f"{name}.pose.txt") for name in found}
+    return best_similarity(found, stated)
+
+
+def test_photos_alone_give_the_room_that_depth_gives(half, from_photos, photos_to_depth):
+    figures = compare_rooms(half, from_photos, photos_to_depth)
+    assert figures["precision where known"] >= 0.95
+    assert figures["recall"] >= 0.87
+    assert figures["free found"] >= 0.70
+    assert figures["wrong free"] <= 0.20
+
+
+def test_the_scale_of_photos_is_judged_within_15_percent(from_photos, photos_to_depth):
+    scale = np.linalg.det(photos_to_depth[:3, :3]) ** (1 / 3)
+    assert 0.85 <= scale <= 1.15
+    told = json.loads((from_photos / "scan.json").read_text())
+    assert told["scale"] == "estimated"
+    assert 0.01 <= told["scale_sigma"] <= 0.20
+
+
+def test_cupboards_of_photos_are_red_too(from_photos):
+    volume = read_built(from_photos / "build")
+    colour = colours_of(volume.palette)[volume.states] / 255.0
+    red = [is_red(*rgb) for rgb in colour[np.isin(volume.semantic, (8, 10))]]
+    assert np.mean(red) > 0.10
