@@ -9,9 +9,8 @@ def main() -> int:
     """Run the command."""
     which, *words = sys.argv[1:]
     if which == "sgbm":
-        from world2minecraft.prepare import preparing
-
         from benchmarks import rival_sgbm
+        from world2minecraft.prepare import preparing
 
         preparing.depth_maps = rival_sgbm.depth_maps
     return run(words)

@@ -3,6 +3,7 @@
 Each stage owns its own parameters and their defaults; here they are only joined.
 """
 
+import json
 from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
@@ -15,7 +16,9 @@ from world2minecraft.fuse import CleanParameters, FuseParameters
 from world2minecraft.label import LABELLERS
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.occupy import PREDICTORS
+from world2minecraft.posing import PosingParameters
 from world2minecraft.register import RegisterParameters
+from world2minecraft.stereo import StereoParameters
 
 
 @dataclass(frozen=True)
@@ -26,17 +29,27 @@ class Parameters:
     not. labeller: ``auto`` takes ``votes`` where the capture has 2D labels, else
     ``geometric``. mend: clean up what is built as a person would; ``w2m clean OUT --list`` tells
     what that was. formats: further forms of the build, such as ``litematic,nbt,glb``.
+    depth_model: a network whose depth fills what stereo leaves open, such as ``hf:ORG/NAME``.
+    plan: the path of a RoomPlan of the same room, as more evidence.
+    known: a length by its name, such as ``("table height", 0.72)``; known_points: two places in
+    photos, each ``PHOTO:x,y``, and the metres between them; both give a capture its scale.
     """
 
     voxel_m: float = 0.08
     blocks_per_metre: float = 4.0
     predictor: str = "depth"
+    depth_model: str = ""
+    plan: str = ""
     labeller: str = "auto"
     mc_version: str = "1.20.1"
     seed: int = 0
     mend: bool = True
     formats: str = ""
+    known: tuple[str, float] | None = None
+    known_points: tuple[str, str, float] | None = None
     capture: dict[str, str] = field(default_factory=dict)
+    posing: PosingParameters = field(default_factory=PosingParameters)
+    stereo: StereoParameters = field(default_factory=StereoParameters)
     register: RegisterParameters = field(default_factory=RegisterParameters)
     fuse: FuseParameters = field(default_factory=FuseParameters)
     clean: CleanParameters = field(default_factory=CleanParameters)
@@ -66,8 +79,8 @@ class Parameters:
         return tuple(name.strip() for name in self.formats.split(",") if name.strip())
 
     def as_json(self) -> dict[str, Any]:
-        """Return the parameters as plain values."""
-        return asdict(self)
+        """Return the parameters as JSON holds them: tuples are lists there."""
+        return json.loads(json.dumps(asdict(self)))
 
 
 def check_name(kind: str, name: str, known: tuple[str, ...]) -> None:
@@ -77,6 +90,7 @@ def check_name(kind: str, name: str, known: tuple[str, ...]) -> None:
 
 
 METHODS = ("best", "paper")
+NOT_SET = ("known", "known_points")  # They have options of their own.
 
 
 def with_method(parameters: Parameters, method: str) -> Parameters:
@@ -127,7 +141,7 @@ def parameter_keys(value: Any = None, prefix: str = "") -> list[str]:
         inner = getattr(value, entry.name)
         if is_dataclass(inner):
             keys += parameter_keys(inner, f"{prefix}{entry.name}.")
-        elif not isinstance(inner, dict):
+        elif not isinstance(inner, dict | tuple) and entry.name not in NOT_SET:
             keys.append(prefix + entry.name)
     return keys
 
@@ -161,6 +175,6 @@ def _parse(example: Any, text: str, key: str) -> Any:
         raise UsageError(
             f"--set {key} takes a {type(example).__name__} such as {example}, not {text!r}"
         ) from None
-    if example is None or isinstance(example, str):
+    if (example is None and key not in NOT_SET) or isinstance(example, str):
         return text
     raise UsageError(f"{key} cannot be set from the command line")

@@ -24,15 +24,15 @@ from world2minecraft.exchange.scan import placed_as_written, read_registration, 
 from world2minecraft.fuse import fuse_views
 from world2minecraft.occupy import predictor
 from world2minecraft.parameters import Parameters
+from world2minecraft.plans import add_plan_openings, voted_by_plan
+from world2minecraft.prepare import open_prepared
 from world2minecraft.progress import Progress, silent
 from world2minecraft.register import corrected, register, told
 from world2minecraft.run_folder import RunFolder, hash_capture
-from world2minecraft.scan import open_scan, realigned, settled
+from world2minecraft.scan import realigned, settled
 from world2minecraft.steps import LATER_STEPS
 from world2minecraft.types import Scan
 
-# Names of folders that say nothing of their scene.
-NAMELESS = ("capture", "frames", "scan", "data", "input")
 STAGES = ("scan", "register", "fuse", *LATER_STEPS)
 
 
@@ -60,16 +60,15 @@ def reconstruct(
     """
     chosen = parameters or Parameters()
     run = RunFolder(out, STAGES, start)
-    options = {"voxel_m": chosen.voxel_m, "labels": labels, "options": chosen.capture}
     with run.timed("scan"):
-        scan = replace(open_scan(capture, progress=progress, **options), name=scene_name(capture))
+        scan = open_prepared(capture, out, chosen, labels, progress)
     run.begin(manifest(capture, labels, chosen))
     if run.needs("scan"):
         with run.stage("scan"):
             write_scan(run.path("scan.json"), scan)
     if run.needs("register"):
         with run.stage("register"):
-            found = register(scan, chosen.register, progress)
+            found = register(scan, chosen.register.suited(scan.depth_kind), progress)
             scan = realigned(corrected(scan, found.corrections), found.surface)
             scan = told(scan, found.corrections.facts)
             write_poses(run.path("poses.npz"), found.corrections)
@@ -79,22 +78,22 @@ def reconstruct(
     if run.needs("fuse"):
         with run.stage("fuse"):
             views = predictor(chosen.predictor).predict(scan)
-            write_evidence(run.path("evidence.npz"), fuse_views(views, scan, chosen.fuse, progress))
-            scan = settled(scan)
+            rules = chosen.fuse.suited(scan.depth_kind)
+            evidence, scan = fuse_views(views, scan, rules, progress), settled(scan)
+            if chosen.plan:
+                evidence, told_of_plan = voted_by_plan(evidence, Path(chosen.plan))
+                scan = replace(scan, notes=(*scan.notes, *told_of_plan))
+            write_evidence(run.path("evidence.npz"), evidence)
             write_scan(run.path("scan.json"), scan, read_registration(run.path("scan.json")))
     for stage, step in LATER_STEPS.items():
         if run.needs(stage):
             progress(stage, 0, 1)
             with run.stage(stage):
                 step(run.folder, chosen)
+                if stage == "label" and chosen.plan:
+                    add_plan_openings(run.folder, Path(chosen.plan))
             progress(stage, 1, 1)
     return scan
-
-
-def scene_name(capture: Path) -> str:
-    """Return what a capture's scene is called: its folder's name, where that says anything."""
-    name = capture.resolve().name.replace("_", " ")
-    return name if name.isprintable() and name not in NAMELESS else ""
 
 
 def registered_before(scan: Scan, out: Path) -> Scan:
@@ -113,6 +112,7 @@ def manifest(capture: Path, labels: Path | None, chosen: Parameters) -> dict:
         "program": __version__,
         "capture": hash_capture(capture),
         "labels": None if labels is None else hash_capture(labels),
+        "plan": hash_capture(Path(chosen.plan)) if chosen.plan else None,
         "parameters": chosen.as_json(),
         "versions": {name: version(name) for name in ("numpy", "scipy", "scikit-learn", "numba")},
     }

@@ -82,5 +82,5 @@ def test_a_room_plan(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(roomplan, "read_roomplan", lambda path: plan)
     assert w2m(["scan", "Room.json"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].startswith("Room.json: a RoomPlan capture, 1 rooms")
+    assert lines[0].startswith("Room.json: a RoomPlan capture, 1 room, 0 walls")
     assert lines[-1] == "next: w2m reconstruct Room.json --out OUT"

@@ -193,6 +193,7 @@ def test_a_hole_of_a_pixel_does_not_matter(box_room):
         ("table height", 72, UsageError, "must be 0.3 to 1.3 m, not 72; lengths are in metres"),
         ("table height", float("nan"), UsageError, "must be 0.3 to 1.3 m"),
         ("distance", 1.0, UsageError, "needs two points"),
+        ("door-height", 2.0, UsageError, "door height is not measured by itself: give two points"),
         ("", 1.0, UnknownNameError, "known: "),
     ],
 )

@@ -15,12 +15,15 @@ def plan_in(capture: Path) -> "AnyPath | None":
 
     A capture with frames and a plan is a capture; its plan is given by ``--plan``.
     """
+    from world2minecraft.archive import is_zip
     from world2minecraft.errors import InputError
     from world2minecraft.plans import find_roomplan
     from world2minecraft.scan.sources import find_capture
 
     if capture.suffix.lower() == ".json":
         return find_roomplan(capture)
+    if capture.is_file() and not is_zip(capture):  # A video is not looked through for this.
+        return None
     try:
         find_capture(capture)
     except InputError:

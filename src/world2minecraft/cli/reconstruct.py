@@ -17,11 +17,15 @@ from world2minecraft.cli.build_options import (
 )
 
 if TYPE_CHECKING:
+    from world2minecraft.archive import AnyPath
     from world2minecraft.parameters import Parameters
     from world2minecraft.progress import Progress
 
 EXAMPLES = """\
 w2m reconstruct my_scan --out OUT                         the whole way
+w2m reconstruct IMG_2041.MOV --out OUT                    a phone's video; a folder of photos too
+w2m reconstruct my_photos --out OUT --known "table height" 0.72
+w2m reconstruct room.glb --out OUT                        a mesh or a point cloud
 w2m reconstruct my_scan --out OUT --blocks-per-metre 2    smaller, coarser
 w2m reconstruct my_scan --out OUT --labels my_labels      with 2D label images
 w2m reconstruct my_scan --out OUT --from build            build again, all before kept
@@ -45,8 +49,33 @@ Follow = Annotated[
 ]
 
 
+FollowIdle = Annotated[
+    float, typer.Option("--follow-idle-s", help="Seconds without a new frame that end --follow.")
+]
+Known = Annotated[
+    tuple[str, float] | None,
+    typer.Option("--known", metavar="NAME METRES", help='A length: "table height" 0.72.'),
+]
+KnownPoints = Annotated[
+    tuple[str, str, float] | None,
+    typer.Option(
+        "--known-points",
+        metavar="A:x,y B:x,y METRES",
+        help="Two pixels, of photos A and B, and the metres between what they show.",
+    ),
+]
+DepthModel = Annotated[
+    str, typer.Option("--depth-model", metavar="hf:ID", help="A network that fills stereo's gaps.")
+]
+Plan = Annotated[
+    Path | None, typer.Option("--plan", help="A RoomPlan of the same room, as more evidence.")
+]
+
+
 def run(
-    capture: Annotated[Path, typer.Argument(help="A folder of posed RGB-D frames.")],
+    capture: Annotated[
+        Path, typer.Argument(help="Photos, a video, a scan, a mesh ...; w2m scan tells.")
+    ],
     out: Annotated[Path, typer.Option("--out", help="The folder of the results.")],
     voxel: Annotated[float, typer.Option("--voxel", help="Size of a cell, in metres.")] = 0.08,
     blocks_per_metre: Scale = 4.0,
@@ -57,53 +86,62 @@ def run(
     labels: LabelImages = None,
     labeller: Annotated[str, typer.Option("--labeller", help="auto, votes or geometric.")] = "auto",
     method: Method = "best",
+    known: Known = None,
+    known_points: KnownPoints = None,
+    depth_model: DepthModel = "",
+    plan: Plan = None,
     mc_version: Version = "1.20.1",
     settings: Settings = None,
     follow: Follow = False,
-    follow_idle_s: Annotated[
-        float,
-        typer.Option("--follow-idle-s", help="Seconds without a new frame that end --follow."),
-    ] = 60.0,
+    follow_idle_s: FollowIdle = 60.0,
 ) -> None:
     """Turn a capture into a Minecraft world.
 
     The world opens in creative mode, standing in the room. A run that was cut off goes on from
-    its last finished stage when the same command is given again.
-
-    Args:
-        capture: the folder to read; ``w2m scan`` tells what it holds.
-        out: the folder to write.
-        voxel: the cell's size in metres.
-        blocks_per_metre: the scale.
-        style: what furniture is made of.
-        palette: which blocks may be used.
-        formats: further forms of the build.
-        start: the stage to begin at.
-        labels: 2D label images.
-        labeller: how cells are labelled.
-        method: how objects and poses are found.
-        mc_version: the game version.
-        settings: further parameters.
-        follow: keep room.npz and preview.png fresh while frames come, then finish.
-        follow_idle_s: how long to wait for a new frame.
+    its last finished stage when the same command is given again. Photos and videos are given
+    poses and depth first, which takes a minute or two.
     """
+    from world2minecraft.cli.from_plan import plan_in
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
     from world2minecraft.errors import UsageError
     from world2minecraft.parameters import Parameters, with_method, with_settings
 
-    chosen = Parameters(voxel, blocks_per_metre, labeller=labeller, mc_version=mc_version)
+    chosen = Parameters(
+        voxel,
+        blocks_per_metre,
+        labeller=labeller,
+        mc_version=mc_version,
+        known=known,
+        known_points=known_points,
+        depth_model=depth_model,
+        plan="" if plan is None else str(plan),
+    )
     chosen = with_build_options(with_method(chosen, method), style, palette, formats)
     chosen = with_settings(chosen, settings or [])
     if follow and start is not None:
         raise UsageError("--follow reads a whole capture; leave out --from")
     style_note(chosen)
     compiling_note()
+    drawn = plan_in(capture)
+    if drawn is not None:
+        return from_plan(drawn, capture, out, chosen)
     with shown() as progress:
         if follow:
             watch(capture, out, chosen, labels, follow_idle_s, progress)
         facts = make(capture, out, chosen, start, labels, progress)
     say_where(out, facts)
+
+
+def from_plan(drawn: "AnyPath", capture: Path, out: Path, chosen: "Parameters") -> None:
+    """Build what a RoomPlan alone says."""
+    from world2minecraft.cli.from_plan import make_from_plan, say_plan
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.prepare import scene_name
+
+    with shown() as progress:
+        built = make_from_plan(drawn, out, chosen, progress, scene_name(capture))
+    say_plan(out, built)
 
 
 def watch(
@@ -130,13 +168,11 @@ def make(
 ) -> dict[str, Any]:
     """Run the pipeline and write its report; return what ``report.json`` holds."""
     from world2minecraft.pipeline import reconstruct, registered_before
+    from world2minecraft.prepare import open_prepared
     from world2minecraft.report import write_report
-    from world2minecraft.scan import open_scan
 
     if start == "report":
-        options = {"labels": labels, "options": chosen.capture}
-        scan = open_scan(capture, voxel_m=chosen.voxel_m, progress=progress, **options)
-        scan = registered_before(scan, out)
+        scan = registered_before(open_prepared(capture, out, chosen, labels, progress), out)
     else:
         scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
     truth = capture if (capture / "truth.npz").is_file() else None

@@ -14,7 +14,6 @@ w2m rooms scan my_room --out capture                    what w2m rooms generate 
 w2m rooms scan --seed 7 --kind kitchen --out capture    a room of its own
 w2m rooms scan --trial noise-500 --out capture          a trial of the benchmark
 w2m rooms scan --seed 7 --out capture --depth-scale-sigma 0.03 --coverage 0.6
-w2m rooms scan --seed 7 --sensor photos --out photos    JPEGs without depth or poses
 """
 
 
@@ -30,12 +29,9 @@ def run(
     trial: Annotated[
         str | None, typer.Option("--trial", help="A trial, such as noise-500 or noise-500-clean.")
     ] = None,
-    sensor: Annotated[
-        str | None,
-        typer.Option("--sensor", help="rgbd (default), clean; photo, photos, video: a phone's."),
-    ] = None,
+    sensor: Annotated[str | None, typer.Option("--sensor", help="rgbd (default), clean.")] = None,
     frames: Annotated[
-        int | None, typer.Option("--frames", help="Pictures of the whole walk; 40, or 100 photos.")
+        int | None, typer.Option("--frames", help="Pictures of the whole walk; 40 by default.")
     ] = None,
     depth_scale_sigma: Annotated[
         float | None,
@@ -49,7 +45,7 @@ def run(
         float | None, typer.Option("--label-error", help="The share of them that is wrong.")
     ] = None,
 ) -> None:
-    """Scan a generated room or house with a virtual depth camera or phone.
+    """Scan a generated room or house with a virtual depth camera.
 
     A person's walk through all rooms is planned, and pictures are taken along it. The result is
     a capture for w2m reconstruct; its truth lies beside it, for w2m evaluate. A trial brings
@@ -115,7 +111,7 @@ def _check_empty(out: Path) -> None:
     from world2minecraft.run_folder import check_writable
 
     check_writable(out)
-    if any((out / name).exists() for name in ("capture.json", "capture.mp4", "truth.npz")):
+    if (out / "capture.json").exists():
         raise UsageError(f"{out} holds a capture already; give another --out, or remove it")
     if (out / "layout.json").exists():
         raise UsageError(f"{out} holds a generated room; give another --out")

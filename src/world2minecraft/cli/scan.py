@@ -171,7 +171,10 @@ def plan_lines(capture: Path, plan: "CapturedPlan") -> list[str]:
     rooms = plan.rooms
     kinds = ("walls", "openings", "objects")
     counts = [(kind, sum(len(getattr(room, kind)) for room in rooms)) for kind in kinds]
-    held = ", ".join(f"{count} {kind}" for kind, count in [("rooms", len(rooms)), *counts])
+    held = ", ".join(
+        f"{count} {kind if count != 1 else kind[:-1]}"
+        for kind, count in [("rooms", len(rooms)), *counts]
+    )
     return [
         f"{capture}: a RoomPlan capture, {held}",
         "  route     walls and furniture are built as they were measured: about 10 s",

@@ -104,7 +104,8 @@ class CapturedPlan:
 def find_roomplan(path: Path) -> AnyPath | None:
     """Return the JSON of a RoomPlan capture: the path itself, or in a folder or a zip.
 
-    Returns None where there is none. Of several the one nearest to the top is taken, by name.
+    Returns None where there is none. Of several one that has room in its name is taken, nearest to
+    the top, by name.
     """
     if path.is_file():
         if is_zip(path):
@@ -145,8 +146,8 @@ def read_roomplan(path: AnyPath) -> CapturedPlan:
 
 def _first_plan(folder: AnyPath) -> AnyPath | None:
     files = sorted(
-        (place for place in folder.rglob("*.json")),
-        key=lambda place: (str(place).count("/"), str(place)),
+        folder.rglob("*.json"),
+        key=lambda place: ("room" not in place.name.lower(), str(place).count("/"), str(place)),
     )
     return next((place for place in files[:MOST_FILES] if is_roomplan(place)), None)
 

@@ -61,7 +61,7 @@ BY_DEPTH_KIND: dict[str, dict[str, Any]] = {
     "stereo": {
         "free_log_odds": -0.25,
         "min_share": 0.08,
-        "clear_m": 0.10,
+        "clear_m": 0.12,
         "clear_growth": 0.03,
         "sigma_m": 0.004,
         "sigma_growth": 0.004,

@@ -6,6 +6,7 @@ and windows that were not seen. ``find_roomplan`` tells whether a path holds a p
 """
 
 from world2minecraft.exchange.roomplan import find_roomplan, read_roomplan
+from world2minecraft.plans.beside import add_plan_openings, voted_by_plan
 from world2minecraft.plans.matching import LaidPlan, PlanMismatchError, laid_plan
 from world2minecraft.plans.outlines import layouts_of, straightened
 from world2minecraft.plans.votes import plan_votes, with_plan_openings
@@ -15,6 +16,7 @@ __all__ = [
     "LaidPlan",
     "PlanMismatchError",
     "PlanWorld",
+    "add_plan_openings",
     "build_plan",
     "find_roomplan",
     "laid_plan",
@@ -22,5 +24,6 @@ __all__ = [
     "plan_votes",
     "read_roomplan",
     "straightened",
+    "voted_by_plan",
     "with_plan_openings",
 ]

@@ -69,6 +69,7 @@ class PlainSource:
             scale=_one_of(path, stated, "scale", SCALES),
             scale_sigma=_sigma(path, stated),
             skipped=_skipped(path, stated),
+            world_up=_world_up(path, stated),
         )
 
 
@@ -138,6 +139,19 @@ def _made_from(path: AnyPath, stated: dict[str, Any]) -> str:
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise CaptureError(path, f'"made_from" must be the name of a kind, not {name!r}')
     return name
+
+
+def _world_up(path: AnyPath, stated: dict[str, Any]) -> np.ndarray | None:
+    if stated.get("world_up") is None:
+        return None
+    try:
+        up = np.array(stated["world_up"], np.float64).reshape(3)
+    except (TypeError, ValueError):
+        up = np.zeros(3)
+    length = float(np.linalg.norm(up))
+    if not 0.5 < length < 2:
+        raise CaptureError(path, '"world_up" must be three numbers such as [0, 1, 0]')
+    return up / length
 
 
 def _one_of(path: AnyPath, stated: dict[str, Any], key: str, known: tuple[str, ...]) -> Any:

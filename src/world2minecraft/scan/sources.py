@@ -118,11 +118,13 @@ def _held(place: Path) -> str:
 
 
 def _called(layout: str) -> str:
-    """Return the name of a layout: what stands in brackets at its end, or all of it.
+    """Return the name of a layout: in brackets at its end, or all of it.
 
     Example:
         >>> _called("rgb.txt, depth.txt and groundtruth.txt (TUM RGB-D)")
         'TUM RGB-D'
     """
-    name = layout.rpartition("(")[2].rstrip(")") if layout.endswith(")") else layout
-    return layout if name.startswith(".") else name
+    front, _, name = layout.partition(" (")
+    if name.startswith("."):
+        return front  # What stands in brackets are suffixes.
+    return name.removesuffix(")") if layout.endswith(")") else layout

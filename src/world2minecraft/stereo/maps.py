@@ -10,6 +10,7 @@ from world2minecraft.geometry.lifting import pixel_rays
 from world2minecraft.progress import Progress, silent
 from world2minecraft.render.threads import side_by_side
 from world2minecraft.stereo.agree import confirm
+from world2minecraft.stereo.flats import flattened
 from world2minecraft.stereo.guide import DepthModel, filled
 from world2minecraft.stereo.islands import without_islands
 from world2minecraft.stereo.neighbours import DEPTH_PERCENTILES, chosen_neighbours
@@ -19,7 +20,9 @@ from world2minecraft.stereo.sweep import depth_range, sweep
 from world2minecraft.types import DepthMap, PhotoStream, SparseScene
 
 AT_ONCE = 2  # Photos swept side by side; each needs about 60 MB.
-TRUST = np.array([48, 48, 96, 160, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
+TRUST = np.array([30, 60, 130, 180, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
+DECIDING = 160  # Trust of depth that may decide where a flat patch lies.
+GUESSED = np.uint8(96)
 LEAST_GUIDES = 20
 STAGE = "stereo"
 
@@ -46,10 +49,32 @@ def depth_maps(
     values = parameters or StereoParameters()
     small = small_photos(photos, scene, values.width_px, silent)
     swept, neighbours = swept_depths(small, values, progress)
+    found = [confirmed(n, small, swept, neighbours, values) for n in range(len(small))]
+    every_m = np.concatenate([photo.guide_m for photo in small])
+    guesses = [_flattened(one, p, every_m) for one, p in zip(found, small, strict=True)]
+    guesses_m = [guess_m for guess_m, _ in guesses]
     for number, photo in enumerate(small):
-        found = confirmed(number, small, swept, neighbours, values)
-        yield found if guide is None else _guided(found, photo, guide)
+        votes, _ = votes_of(number, small, guesses_m, neighbours[number], values.agreement)
+        result = _with_guess(found[number], *guesses[number], votes >= values.agreeing)
+        yield result if guide is None else _guided(result, photo, guide)
         progress(STAGE, len(small) + number + 1, 2 * len(small), photo.name)
+
+
+def _flattened(
+    found: DepthMap, photo: SmallPhoto, every_m: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return a guess at flat patches; see flats.py."""
+    sure = found.trust >= DECIDING
+    return flattened(photo.colour, found.depth_m, sure, depth_range(photo, every_m))
+
+
+def _with_guess(
+    found: DepthMap, guess_m: np.ndarray, guessed: np.ndarray, agreed: np.ndarray
+) -> DepthMap:
+    """Take the guess where others agree; where they do not, what it contradicts goes too."""
+    depth_m = np.where(guessed, np.where(agreed, guess_m, np.float32(0)), found.depth_m)
+    trust = np.where(guessed, np.where(agreed, GUESSED, np.uint8(0)), found.trust)
+    return DepthMap(found.name, found.camera, depth_m, trust)
 
 
 def _guided(found: DepthMap, photo: SmallPhoto, guide: DepthModel) -> DepthMap:

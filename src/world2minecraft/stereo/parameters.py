@@ -34,9 +34,9 @@ class StereoParameters:
     small_step: float = 20.0
     large_step: float = 240.0
     guide_cost: float = 120.0
-    agreeing: int = 2
+    agreeing: int = 1
     agreement: float = 0.03
-    island_share: float = 0.0013
+    island_share: float = 0.003
     island_step: float = 0.01
 
     def __post_init__(self):

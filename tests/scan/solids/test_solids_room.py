@@ -84,7 +84,7 @@ def near_share(one, other):
     return near[tuple(cells[seen].T)].mean(), seen.mean()
 
 
-@pytest.mark.parametrize("one, other", permutations(("frames", "mesh", "cloud"), 2))
+@pytest.mark.parametrize("one, other", list(permutations(("frames", "mesh", "cloud"), 2)))
 def test_all_three_agree_within_a_cell(worlds, one, other):
     share, seen = near_share(worlds[one], worlds[other])
     assert share > 0.97 and seen > 0.85

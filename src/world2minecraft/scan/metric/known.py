@@ -22,6 +22,7 @@ LENGTHS_M: dict[str, tuple[float, float]] = {
     "camera height": (0.05, 12.0),
     "distance": (0.02, 40.0),
 }
+BY_POINTS = ("door height", "door width", "window width", "window height")  # No level face.
 # How exactly each is measured in the scan, relative: a hand that holds a camera rises and sinks.
 SIGMA = {"camera height": 0.03, "ceiling height": 0.01, "room height": 0.01, "distance": 0.01}
 USUAL_SIGMA = 0.015
@@ -87,6 +88,11 @@ def parse_known(name: str, length_m: float) -> Known:
     plain = " ".join(name.lower().replace("_", " ").replace("-", " ").split())
     if plain == "distance":
         raise UsageError(f"a distance needs two points of the photos; or give a name, {EXAMPLE}")
+    if plain in BY_POINTS:
+        raise UsageError(
+            f"{plain} is not measured by itself: give two points of the photos at its ends, "
+            f"or another length, {EXAMPLE}"
+        )
     if plain not in LENGTHS_M:
         raise UnknownNameError("known length", name, sorted(set(LENGTHS_M) - {"distance"}))
     return Known(plain, float(length_m))

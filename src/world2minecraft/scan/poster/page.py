@@ -56,7 +56,7 @@ def poster(summary: "CaptureSummary") -> np.ndarray:
     if survey.plan is not None and survey.directions is not None:
         draw_plan(
             sheet, survey.plan, survey.directions, left, (LEFT_PX, tall), frozenset(marks),
-            survey.judged.capture.scale != "unknown",
+            survey.judged.capture.scale != "unknown", summary.route.kind != "solid",
         )  # fmt: skip
         top = TOP_PX
         if survey.pictures:

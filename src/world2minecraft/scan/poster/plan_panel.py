@@ -28,7 +28,7 @@ LENGTHS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 
 def draw_plan(
     sheet: Sheet, plan: Plan, directions: Directions | None, corner: Point, size: Point,
-    doubtful: frozenset[int], has_unit: bool,
+    doubtful: frozenset[int], has_unit: bool, walked: bool = True,
 ) -> None:  # fmt: skip
     """Draw the panel into a box of the sheet.
 
@@ -40,6 +40,7 @@ def draw_plan(
         size: of the box.
         doubtful: indices of cameras whose pictures are blurred or dark.
         has_unit: whether the poses are in metres.
+        walked: whether somebody walked from camera to camera.
     """
     sheet.box(corner, size, PANEL, radius=10)
     place = Placed(plan, corner, size)
@@ -47,7 +48,7 @@ def draw_plan(
         sheet.picture(shaded(plan), place.corner, place.size)
     if plan.room_size_m is not None:
         _room(sheet, plan, place)
-    _cameras(sheet, plan, place, doubtful)
+    _cameras(sheet, plan, place, doubtful, walked)
     _scale_bar(sheet, place, corner, size, has_unit)
     if directions is not None:
         _rose(sheet, directions, (corner[0] + size[0] - 66, corner[1] + size[1] - 66))
@@ -138,11 +139,13 @@ def _dashed(sheet: Sheet, start: Point, end: Point) -> None:
         sheet.line(ends, FAINT, 1)
 
 
-def _cameras(sheet: Sheet, plan: Plan, place: Placed, doubtful: frozenset[int]) -> None:
+def _cameras(
+    sheet: Sheet, plan: Plan, place: Placed, doubtful: frozenset[int], walked: bool
+) -> None:
     """Draw the way of the camera and what it looked at, from teal to orange in time."""
     poses, count = plan.cameras, len(plan.cameras)
     points = [place.at(float(pose[0, 3]), float(pose[1, 3])) for pose in poses]
-    for index in range(count - 1):
+    for index in range(count - 1) if walked else ():
         colour = blend(FIRST, LAST, index / max(1, count - 1))
         sheet.line([points[index], points[index + 1]], PAPER, 4)
         sheet.line([points[index], points[index + 1]], colour, 2)
@@ -155,6 +158,8 @@ def _cameras(sheet: Sheet, plan: Plan, place: Placed, doubtful: frozenset[int]) 
         if flat > 0.15:
             _cone(sheet, points[index], float(np.arctan2(look[1], look[0])), long * flat, colour)
         sheet.dot(points[index], 4, colour, PAPER)
+    if not walked:
+        return
     if count:
         _flag(sheet, points[0], "start", FIRST)
     if count > 1:

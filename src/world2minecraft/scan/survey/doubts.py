@@ -77,9 +77,11 @@ def _count(survey: Survey, route: Route) -> Iterator[Doubt]:
     if not survey.judged.posed and count < LEAST_PHOTOS:
         text = f"only {count} {_plural('picture', count)}; places are found from 3 or more"
         yield Doubt("stop", "few", text, "take 40 to 100 from all over the room, each overlapping")
-    elif route.from_pictures and count < FEW_PHOTOS:
+    elif (route.from_pictures or not survey.judged.posed) and count < FEW_PHOTOS:
         text = f"only {count} pictures; 40 to 100 from all sides show a room"
-        yield Doubt("warn", "few", text, "take more, each sharing two thirds with the one before")
+        more = "take more, each sharing two thirds with the one before"
+        advice = "film longer, around the room along its walls" if route.kind == "video" else more
+        yield Doubt("warn", "few", text, advice)
     elif count < FEW_FRAMES:
         text = f"only {count} {_plural('frame', count)}; 30 or more from all sides show a room"
         yield Doubt("warn", "few", text, "record longer, and turn to every wall")
@@ -191,7 +193,10 @@ def _overlap(survey: Survey, route: Route) -> Iterator[Doubt]:
         text = f"neighbours share about {middle:.0%}; {jumps} of {len(known)} share next to nothing"
         if middle < ALONE_SHARE:
             text = f"{jumps} of {len(known)} neighbours share next to nothing"
-        yield Doubt("warn", "overlap", text, "each picture should share two thirds with the last")
+        advice = "each picture should share two thirds with the last"
+        if route.kind == "video":
+            advice = "film slowly, a step a second"
+        yield Doubt("warn", "overlap", text, advice)
     else:
         yield Doubt("ok", "overlap", f"neighbours share about {middle:.0%}")
 
@@ -242,6 +247,8 @@ def _scale(survey: Survey, route: Route) -> Iterator[Doubt]:
     if route.kind in ("photos", "video"):
         text = "nothing says how large the room is; it is judged from heights that are usual"
         yield Doubt("warn", "scale", text, SCALE_ADVICE)
+    elif route.kind == "unposed rgbd":
+        return  # Depth in metres gives it.
     elif survey.judged.capture.scale == "unknown":
         text = "its poses have no unit; the size is judged from heights that are usual"
         yield Doubt("warn", "scale", text, SCALE_ADVICE)

@@ -1,0 +1,104 @@
+"""Photos, their places and their depth, put together as views."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.errors import CaptureError, InputError
+from world2minecraft.geometry.undistort import pinhole_of, undistorted
+from world2minecraft.scan.frames import FrameFiles
+from world2minecraft.scan.images import ImagePlace, read_header
+from world2minecraft.scan.judged import JudgedCapture
+from world2minecraft.scan.photos import CapturePhotos
+from world2minecraft.scan.stream import read_view
+from world2minecraft.types import Camera, DepthMap, Photo, PhotoStream, SparseScene, View
+
+
+def stereo_views(
+    photos: PhotoStream, scene: SparseScene, maps: Iterable[DepthMap]
+) -> Iterator[View]:
+    """Yield a view for each depth map, with its photo without distortion; all in one order."""
+    found = _photos_of(photos, scene)
+    for made in maps:
+        photo, index = next((pair for pair in found if pair[0].name == made.name), (None, 0))
+        if photo is None:
+            raise ValueError(f"depth map {made.name} is out of the photos' order")
+        yield replace(
+            _coloured(photo, scene, index),
+            depth_m=made.depth_m,
+            depth_camera=made.camera,
+            trust=made.trust,
+        )
+
+
+def depth_views(judged: JudgedCapture, photos: CapturePhotos, scene: SparseScene) -> Iterator[View]:
+    """Yield a view for each placed photo that has a sensor's depth."""
+    frames = {frame.name: frame for frame in judged.frames}
+    for photo, index in _photos_of(photos, scene):
+        frame = frames[photo.name]
+        if frame.depth_path is None:
+            continue
+        try:
+            own = read_view(
+                posed_frame(frame, scene, index), judged.encoding, judged.capture.full_trust
+            )
+        except InputError as error:
+            photos.damaged[photo.name] = str(error)
+            continue
+        yield replace(
+            _coloured(photo, scene, index),
+            depth_m=own.depth_m,
+            depth_camera=own.depth_camera,
+            depth_to_colour=own.depth_to_colour,
+            trust=own.trust,
+        )
+
+
+def posed_frame(frame: FrameFiles, scene: SparseScene, index: int) -> FrameFiles:
+    """Return a frame with the pose that was found, to read its depth; colour is left out.
+
+    A depth camera that is not stated is the colour camera at the depth image's size.
+
+    Raises:
+        CaptureError: the depth image has other proportions than the colour image.
+    """
+    camera = frame.depth_camera
+    if camera is None and frame.depth_path is not None:
+        camera = _resized(frame.depth_path, scene.cameras[index])
+    return replace(
+        frame,
+        camera_to_world=scene.camera_to_scan[index],
+        colour_path=None,
+        colour_camera=None,
+        labels_path=None,
+        depth_camera=camera,
+    )
+
+
+def _resized(depth_path: ImagePlace, camera: Camera) -> Camera:
+    size = read_header(depth_path).size
+    try:
+        return camera.resized(*size)
+    except ValueError as error:
+        raise CaptureError(
+            depth_path,
+            f"has other proportions than its colour image: {error}; state its intrinsics in a "
+            "capture.json (docs/captures.md)",
+        ) from error
+
+
+def _photos_of(photos: PhotoStream, scene: SparseScene) -> Iterator[tuple[Photo, int]]:
+    """Yield the placed photos with their indices in the scene."""
+    places = {name: index for index, name in enumerate(scene.names)}
+    for photo in photos:
+        if photo.name in places:
+            yield photo, places[photo.name]
+
+
+def _coloured(photo: Photo, scene: SparseScene, index: int) -> View:
+    camera = scene.cameras[index]
+    flat = pinhole_of(camera, camera.width_px)
+    colour = undistorted(photo.colour, camera, flat) if any(camera.distortion) else photo.colour
+    pose = np.round(scene.camera_to_scan[index], 12)
+    return View(photo.name, pose, np.ascontiguousarray(colour), flat)
