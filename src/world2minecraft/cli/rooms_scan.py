@@ -14,6 +14,7 @@ w2m rooms scan my_room --out capture                    what w2m rooms generate 
 w2m rooms scan --seed 7 --kind kitchen --out capture    a room of its own
 w2m rooms scan --trial noise-500 --out capture          a trial of the benchmark
 w2m rooms scan --seed 7 --out capture --depth-scale-sigma 0.03 --coverage 0.6
+w2m rooms scan --seed 7 --sensor photos --out photos    JPEGs without depth or poses
 """
 
 
@@ -29,9 +30,12 @@ def run(
     trial: Annotated[
         str | None, typer.Option("--trial", help="A trial, such as noise-500 or noise-500-clean.")
     ] = None,
-    sensor: Annotated[str | None, typer.Option("--sensor", help="rgbd (default), clean.")] = None,
+    sensor: Annotated[
+        str | None,
+        typer.Option("--sensor", help="rgbd (default), clean; photo, photos, video: a phone's."),
+    ] = None,
     frames: Annotated[
-        int | None, typer.Option("--frames", help="Pictures of the whole walk; 40 by default.")
+        int | None, typer.Option("--frames", help="Pictures of the whole walk; 40, or 100 photos.")
     ] = None,
     depth_scale_sigma: Annotated[
         float | None,
@@ -45,7 +49,7 @@ def run(
         float | None, typer.Option("--label-error", help="The share of them that is wrong.")
     ] = None,
 ) -> None:
-    """Scan a generated room or house with a virtual depth camera.
+    """Scan a generated room or house with a virtual depth camera or phone.
 
     A person's walk through all rooms is planned, and pictures are taken along it. The result is
     a capture for w2m reconstruct; its truth lies beside it, for w2m evaluate. A trial brings
@@ -111,7 +115,7 @@ def _check_empty(out: Path) -> None:
     from world2minecraft.run_folder import check_writable
 
     check_writable(out)
-    if (out / "capture.json").exists():
+    if any((out / name).exists() for name in ("capture.json", "capture.mp4", "truth.npz")):
         raise UsageError(f"{out} holds a capture already; give another --out, or remove it")
     if (out / "layout.json").exists():
         raise UsageError(f"{out} holds a generated room; give another --out")

@@ -13,6 +13,7 @@ import numpy as np
 from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.files import write_json, write_npz
 from world2minecraft.progress import Progress, silent
+from world2minecraft.rooms.phone import phone_shots, write_photos, write_video
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.shots import FrameTruth, Shooting, Shot, room_shots, room_to_scan
 from world2minecraft.scan.plain import write_plain
@@ -24,7 +25,7 @@ def scan_room(
     folder: str | Path,
     *,
     sensor: str = "rgbd",
-    frames: int = 40,
+    frames: int | None = None,
     seed: int = 0,
     with_labels: bool = False,
     label_error: float = 0.0,
@@ -39,8 +40,9 @@ def scan_room(
     Args:
         room: the room or the house.
         folder: where the capture goes; made if missing.
-        sensor: ``rgbd`` or ``clean``.
-        frames: how many pictures the whole tour has.
+        sensor: ``rgbd`` or ``clean``; or a phone's without depth: ``photo`` (photos with their
+            poses), ``photos`` (JPEGs and nothing else), ``video`` (``capture.mp4``).
+        frames: how many pictures the whole tour has; else 40, 100 photos, or 240 of a video.
         seed: of the tour, the world frame and the noise; the same seed gives the same bytes.
         with_labels: whether to write label images.
         label_error: the share of the label images, in patches, that says another class.
@@ -54,13 +56,20 @@ def scan_room(
 
     Raises:
         UnknownNameError: no sensor has this name. ValueError: a figure is out of its range.
-        OutputError: the folder cannot be written.
+        OutputError: the folder cannot be written. MissingExtraError: ``av`` is not installed, which
+            writes videos.
     """
     how = Shooting(
         sensor, frames, seed, with_labels, label_error, depth_scale_sigma, coverage, width, height
     )
     truths: list[FrameTruth] = []
-    write_plain(folder, _views(room_shots(room, how), truths, how.taken, progress))
+    views = _views(_shots(room, how), truths, how.taken, progress)
+    if how.sensor == "photos":
+        write_photos(folder, views)
+    elif how.sensor == "video":
+        write_video(Path(folder) / "capture.mp4", views)
+    else:
+        write_plain(folder, views, jpeg=how.phone)
     write_truth(room, folder, room_to_scan(seed), truths)
 
 
@@ -68,7 +77,7 @@ def room_views(
     room: Room,
     *,
     sensor: str = "rgbd",
-    frames: int = 40,
+    frames: int | None = None,
     seed: int = 0,
     with_labels: bool = False,
     label_error: float = 0.0,
@@ -81,7 +90,11 @@ def room_views(
     how = Shooting(
         sensor, frames, seed, with_labels, label_error, depth_scale_sigma, coverage, width, height
     )
-    return (shot.view for shot in room_shots(room, how))
+    return (shot.view for shot in _shots(room, how))
+
+
+def _shots(room: Room, how: Shooting) -> Iterator[Shot]:
+    return phone_shots(room, how) if how.phone else room_shots(room, how)
 
 
 def _views(

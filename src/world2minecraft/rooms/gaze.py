@@ -36,13 +36,21 @@ CLASS_WORTH[5:] = 2.0  # Furniture and things.
 class Gaze:
     """The memory of what was seen. One object follows one walk."""
 
-    def __init__(self, scene: VoxelScene, camera: Camera, pace_m: float):
+    def __init__(
+        self,
+        scene: VoxelScene,
+        camera: Camera,
+        pace_m: float,
+        most: tuple[float, float] | None = None,
+    ):
         """Begin with nothing seen.
 
         Args:
             scene: ``prepare_voxels`` of the room.
             camera: whose field of view counts.
             pace_m: the way from one picture to the next.
+            most: how far yaw and pitch turn at most from one to the next, in radians; None leaves
+                them free, as a depth sensor's may jump.
         """
         self._scene = scene
         self._patch = max(1, round(PATCH_M * scene.cells_per_metre))
@@ -54,7 +62,9 @@ class Gaze:
         down = np.arctan(camera.height_px / 2 / camera.fy_px)
         self._half = (round(across / np.radians(RAY_DEG)), round(down / np.radians(RAY_DEG)))
         self._limit = float(np.clip(TURN_PER_M * pace_m, *TURN_LIMITS))
+        self._most = most
         self._yaw: float | None = None
+        self._pitch = 0.0
 
     def turn(self, eye_m: np.ndarray) -> tuple[float, float]:
         """Return the yaw and the pitch, in radians, of the next picture, and remember it."""
@@ -64,10 +74,15 @@ class Gaze:
         if self._yaw is not None:
             off = np.abs((self._yaws - self._yaw + np.pi) % (2 * np.pi) - np.pi)
             gain = gain / (1 + (off / self._limit) ** 2)
+            if self._most is not None:
+                steep = np.abs(np.radians(PITCHES_DEG) - self._pitch)
+                near = (off <= self._most[0] + 1e-9) & (steep[:, None] <= self._most[1] + 1e-9)
+                gain = np.where(near, gain, -1.0)
         row, column = np.unravel_index(int(gain.argmax()), gain.shape)
         self._remember(patch, worth, side, int(row), int(column))
         self._yaw = float(self._yaws[column])
-        return self._yaw, float(np.radians(PITCHES_DEG[row]))
+        self._pitch = float(np.radians(PITCHES_DEG[row]))
+        return self._yaw, self._pitch
 
     def _look_around(self, eye_m: np.ndarray):
         """Return the patch, the worth of seeing it, and its side, [P, Y] by pitch and yaw."""

@@ -105,14 +105,16 @@ def _expose(
                     along = dx if face < 2 else (dy if face < 4 else dz)
                     cosine[v, u] = abs(along) / (scale * np.sqrt(x * x + y * y + 1))
                     px, py, pz = pose[0, 3] + t * dx, pose[1, 3] + t * dy, pose[2, 3] + t * dz
-                    light = _light(solid, lamps, lamp_of, px, py, pz, face) * _grain(px, py, pz)
+                    light = surface_light(solid, lamps, lamp_of, px, py, pz, face) * _grain(
+                        px, py, pz
+                    )
                     light *= 1.0 - 0.10 * ((u / width - 0.5) ** 2 + (v / height - 0.5) ** 2)
                     for n in range(3):
                         image[v, u, n] = np.uint8(min(255.0, colours[i, j, k, n] * light))
 
 
 @njit
-def _light(solid, lamps, lamp_of, px, py, pz, face):
+def surface_light(solid, lamps, lamp_of, px, py, pz, face):
     """Return the light on a face at a point, about 1 in the open."""
     sign = 1.0 if face % 2 == 1 else -1.0
     axis = face // 2

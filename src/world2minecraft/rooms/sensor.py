@@ -2,7 +2,8 @@
 
 ``rgbd`` follows structured-light sensors: axial noise that grows with the square of distance,
 depth in steps of disparity, lost pixels at edges, on dark and on grazing surfaces, and holes.
-``clean`` gives exact depth and exact poses.
+``clean`` gives exact depth and exact poses. ``photo``, ``photos`` and ``video`` are phones, which
+see no depth at all (``phone``).
 """
 
 from dataclasses import dataclass
@@ -38,7 +39,8 @@ class Sensor:
 
 
 CLEAN = Sensor(0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, (0.0, np.inf), 0.0, 0.0, 0.0)
-SENSORS = {"rgbd": Sensor(), "clean": CLEAN}
+PHONES = ("photo", "photos", "video")  # Without depth; ``photo`` alone states its poses.
+SENSORS = {"rgbd": Sensor(), "clean": CLEAN} | dict.fromkeys(PHONES, CLEAN)
 
 
 def sensor(name: str) -> Sensor:

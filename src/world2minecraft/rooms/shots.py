@@ -14,6 +14,7 @@ from world2minecraft.classes import CLASS_COUNT
 from world2minecraft.rooms.photo import Photo, PhotoScene, prepare_photos, take_photo
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.sensor import (
+    PHONES,
     Sensor,
     jittered_pose,
     rotation_of_vector,
@@ -27,6 +28,8 @@ from world2minecraft.types import Camera, View
 FOCAL_SHARE = 0.82  # Of the width: 525 px at 640, a field of view of 63 degrees.
 MAX_TILT_DEG = 27.0  # What the shared kitchen's world frame is tilted by.
 LUMINANCE = np.array([0.299, 0.587, 0.114], np.float32)
+DEFAULT_FRAMES = {"photo": 100, "photos": 100, "video": 240}
+USUAL_FRAMES = 40  # Of the sensors with depth.
 PATCH_PX = 8  # Label errors come in patches: a segmenter errs by regions.
 
 
@@ -39,7 +42,7 @@ class Shooting:
     """
 
     sensor: str = "rgbd"
-    frames: int = 40
+    frames: int | None = None
     seed: int = 0
     with_labels: bool = False
     label_error: float = 0.0
@@ -50,7 +53,7 @@ class Shooting:
 
     def __post_init__(self):
         sensor(self.sensor)
-        if self.frames < 1:
+        if self.frames is not None and self.frames < 1:
             raise ValueError(f"frames must be 1 or more, not {self.frames}")
         if not 0 <= self.label_error <= 1:
             raise ValueError(f"label_error must be a share from 0 to 1, not {self.label_error}")
@@ -58,11 +61,27 @@ class Shooting:
             raise ValueError(f"depth_scale_sigma must be 0 to 0.2, not {self.depth_scale_sigma}")
         if not 0 < self.coverage <= 1:
             raise ValueError(f"coverage must be above 0 and at most 1, not {self.coverage}")
+        if self.phone and (self.with_labels or self.label_error):
+            raise ValueError(f"labels come with sensor rgbd or clean, not with {self.sensor}")
+        if self.phone and self.depth_scale_sigma:
+            raise ValueError(f"depth_scale_sigma must be left out: {self.sensor} has no depth")
+
+    @property
+    def phone(self) -> bool:
+        """Whether it is a phone's camera, which sees no depth."""
+        return self.sensor in PHONES
+
+    @property
+    def planned(self) -> int:
+        """How many pictures the whole tour has."""
+        if self.frames is not None:
+            return self.frames
+        return DEFAULT_FRAMES.get(self.sensor, USUAL_FRAMES)
 
     @property
     def taken(self) -> int:
         """How many pictures are taken: the share of the tour that is walked, one at least."""
-        return max(1, round(self.coverage * self.frames))
+        return max(1, round(self.coverage * self.planned))
 
     @property
     def camera(self) -> Camera:
@@ -87,10 +106,10 @@ class Shot(NamedTuple):
 
 
 def room_shots(room: Room, how: Shooting) -> Iterator[Shot]:
-    """Yield the shots of a virtual scan, one at a time, in the order of the walk."""
+    """Yield the shots of a depth sensor's scan, one at a time, in the order of the walk."""
     scene = prepare_photos(room)
     rng = np.random.default_rng([how.seed, 1])
-    poses = plan_tour(room, scene.scene, how.camera, how.frames, rng)[: how.taken]
+    poses = plan_tour(room, scene.scene, how.camera, how.planned, rng)[: how.taken]
     to_scan = room_to_scan(how.seed)
     return (_shot(room, scene, how, pose, to_scan, n) for n, pose in enumerate(poses))
 

@@ -33,7 +33,7 @@ def plan_tour(
     walk = plan_walk(room, frames, rng)
     gaze = Gaze(scene, camera, walk.pace_m)
     poses = np.empty((frames, 4, 4))
-    for n, eye_m in enumerate(_eyes_m(walk.feet_m, rng)):
+    for n, eye_m in enumerate(eyes_m(walk.feet_m, rng)):
         yaw, pitch = gaze.turn(eye_m)
         yaw += rng.uniform(-YAW_SPREAD, YAW_SPREAD)
         pitch += rng.uniform(-PITCH_SPREAD, PITCH_SPREAD)
@@ -42,7 +42,7 @@ def plan_tour(
     return poses
 
 
-def _eyes_m(feet_m: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def eyes_m(feet_m: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Return the places of the camera over the feet, float64 [F, 3]."""
     waves = rng.uniform(0, 2 * np.pi) + np.linspace(0, 4 * np.pi, len(feet_m))
     height = np.clip(rng.uniform(*EYE_M) + SWAY_M * np.sin(waves), *EYE_M)
