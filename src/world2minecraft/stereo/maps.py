@@ -23,6 +23,7 @@ AT_ONCE = 2  # Photos swept side by side; each needs about 60 MB.
 TRUST = np.array([30, 60, 130, 180, 255], np.uint8)  # By how many confirm it, 4 or more wholly.
 DECIDING = 160  # Trust of depth that may decide where a flat patch lies.
 GUESSED = np.uint8(96)
+GUESSES_AGREEING = 2  # Two photos may guess alike by chance; three hardly.
 LEAST_GUIDES = 20
 STAGE = "stereo"
 
@@ -55,7 +56,8 @@ def depth_maps(
     guesses_m = [guess_m for guess_m, _ in guesses]
     for number, photo in enumerate(small):
         votes, _ = votes_of(number, small, guesses_m, neighbours[number], values.agreement)
-        result = _with_guess(found[number], *guesses[number], votes >= values.agreeing)
+        agreed = votes >= max(values.agreeing, GUESSES_AGREEING)
+        result = _with_guess(found[number], *guesses[number], agreed)
         yield result if guide is None else _guided(result, photo, guide)
         progress(STAGE, len(small) + number + 1, 2 * len(small), photo.name)
 
