@@ -13,7 +13,7 @@ class StereoParameters:
     neighbours: other photos compared with each; best_of: of which so many, those that fit best at
         a pixel, decide there, as the others may not see it. With 8 and 4, 1 % more of what is
         occupied was called free.
-    angle_deg: the angle wanted between the rays of two photos; 9 erred by a half more.
+    angle_deg: the angle wanted between the rays of two photos; 9 erred by a third more.
     window_px: width of the square that is compared: odd, 3 to 15.
     noise: grey levels that are no texture: what is flatter follows its surroundings.
     small_step, large_step: what a change of depth by one plane, by more costs between pixels, on
@@ -22,7 +22,7 @@ class StereoParameters:
     agreeing: so many other photos must find the same depth; agreement: within this share of it.
         Four or more confirm it wholly, fewer leave it with less trust.
     island_share: the part of a picture that depth must fill in one piece, of neighbours that
-        differ by less than island_step: a third of what was wrong hung on nothing.
+        differ by less than island_step: nearly half of what was wrong hung on nothing.
     """
 
     width_px: int = 320
