@@ -5,7 +5,8 @@
 The room becomes a mesh, a point cloud, an RGB-D folder and a video without poses; each is given
 to ``w2m reconstruct``. Printed is, for each two of the results, the share of the surface of the
 one that lies within one voxel of the other's, over the cells that all four have observed. The
-video's scale comes from the room's height, as a user would measure it.
+video, whose scale is judged from habits, is laid on the room by its cameras with its scale: what is
+asked is its shape. What lies in the work folder already is not made again.
 """
 
 import argparse
@@ -16,11 +17,21 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from benchmarks.photo_solids import write_cloud, write_mesh
-from benchmarks.photo_table import REACH_VOXELS, Cells, looked_up, moved, read_cells
+from benchmarks.photo_table import (
+    REACH_VOXELS,
+    Cells,
+    best_similarity,
+    looked_up,
+    moved,
+    poses_of,
+    read_cells,
+)
 from world2minecraft.cli import run
-from world2minecraft.evaluate.frames import truth_of_run
 from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.rooms import Room, generate_room, scan_room
+from world2minecraft.scan.options import ScanOptions
+from world2minecraft.scan.solids.formats import load_solid
+from world2minecraft.scan.solids.source import world_of
 
 WAYS = ("mesh", "cloud", "rgbd", "video")
 ASKED = 0.95
@@ -37,9 +48,10 @@ def main() -> int:
     room = generate_room(chosen.seed, kind=chosen.kind)
     capture(room, chosen.work, chosen.seed, chosen.frames)
     found = {}
-    for way, (place, words) in inputs(room, chosen.work).items():
+    for way, (place, words) in inputs(chosen.work).items():
         out = chosen.work / f"out-{way}"
-        if run(["reconstruct", str(place), "--out", str(out), *words]):
+        made = (out / "report.json").is_file()
+        if not made and run(["reconstruct", str(place), "--out", str(out), *words]):
             print(f"{way}: failed")
             return 1
         found[way] = in_truth(out, place, way)
@@ -58,23 +70,34 @@ def capture(room: Room, work: Path, seed: int, frames: int) -> None:
         scan_room(room, work / "video", sensor="video", frames=frames, seed=seed)
 
 
-def inputs(room: Room, work: Path) -> dict[str, tuple[Path, list[str]]]:
+def inputs(work: Path) -> dict[str, tuple[Path, list[str]]]:
     """Return what ``w2m reconstruct`` is given for each way."""
-    height = ["--known", "room height", f"{room.size_m[2]:.3f}"]
     return {
         "mesh": (work / "mesh.glb", ["--set", "capture.unit=m", "--set", "capture.up=z"]),
         "cloud": (work / "cloud.ply", ["--set", "capture.unit=m", "--set", "capture.up=z"]),
         "rgbd": (work / "rgbd", []),
-        "video": (work / "video", height),
+        "video": (work / "video", []),
     }
 
 
 def in_truth(out: Path, place: Path, way: str) -> tuple[Cells, np.ndarray]:
     """Return a run's cells, and the 4x4 from its capture's frame to the room's own."""
     if way in ("mesh", "cloud"):
-        return read_cells(out / "room.npz"), np.eye(4)
-    truth = truth_of_run(out, place) if way == "video" else read_truth(place)
+        return read_cells(out / "room.npz"), np.linalg.inv(placed_solid(place))
+    truth = read_truth(place)
+    if way == "video":
+        found = poses_of(out / "capture" / "capture.json")
+        return read_cells(out / "room.npz"), best_similarity(found, truth.camera_to_truth or {})
     return read_cells(out / "room.npz"), np.linalg.inv(truth.truth_to_scan)
+
+
+def placed_solid(place: Path) -> np.ndarray:
+    """Return the 4x4 from a solid's own coordinates to the world in which it is looked at."""
+    loaded = load_solid(place)
+    file_to_world, _ = world_of(place, loaded, ScanOptions(unit="m", up="z"))
+    near_origin = np.eye(4)
+    near_origin[:3, 3] = -loaded.offset
+    return file_to_world @ near_origin
 
 
 def print_table(found: dict[str, tuple[Cells, np.ndarray]]) -> None:
