@@ -115,10 +115,10 @@ def _check_empty(out: Path) -> None:
     from world2minecraft.run_folder import check_writable
 
     check_writable(out)
-    if any((out / name).exists() for name in ("capture.json", "capture.mp4", "truth.npz")):
-        raise UsageError(f"{out} holds a capture already; give another --out, or remove it")
     if (out / "layout.json").exists():
         raise UsageError(f"{out} holds a generated room; give another --out")
+    if any((out / name).exists() for name in ("capture.json", "capture.mp4", "truth.npz")):
+        raise UsageError(f"{out} holds a capture already; give another --out, or remove it")
 
 
 def _scan_trial(name: str, out: Path, progress: "Progress") -> None:
