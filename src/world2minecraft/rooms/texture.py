@@ -198,7 +198,7 @@ def poster(u, v, plane, foot, found):
     if not (0 <= a < wide and 0 <= b < high):
         return False
     rim = min(a, wide - a, b, high - b)
-    seed = cell * 31 + plane
+    seed = int(1048575 * mixed(cell, plane, 14, 0))
     if rim < 0.012:
         _paint(found, 0.18 + 0.7 * (mixed(seed, 14, 0, 0) > 0.6), seed, 0.05)
     elif rim < 0.04:
