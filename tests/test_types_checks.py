@@ -16,6 +16,16 @@ def zeros(*shape, dtype=np.uint8):
     return np.zeros(shape, dtype)
 
 
+GRID_CELLS = types.GridCells(
+    np.array([0, 255], np.uint8),
+    zeros(2, dtype=np.float16),
+    zeros(2, 3),
+    np.array([1, 0], np.uint8),
+    zeros(2, dtype=np.uint16),
+)
+PLACEMENT = types.Placement(1, 5, "chair", [1, 1, 0.4], [0.5, 0.5, 0.8], 1, 0.7)
+SCENE_OBJECT = types.SceneObject(1, 5, [1, 1, 0.4], [0.5, 0.5, 0.8], 90.0, 0.5, (PLACEMENT,))
+
 GOOD = {
     types.Camera: dict(width_px=4, height_px=3, fx_px=2.0, fy_px=2.0, cx_px=2.0, cy_px=1.5),
     types.View: dict(
@@ -91,11 +101,21 @@ GOOD = {
         corner=(0, 63, 0),
         block_to_room=EYE,
     ),
+    types.GridCells: dict(
+        labels=np.array([0, 255], np.uint8),
+        confidence=zeros(2, dtype=np.float16),
+        colour=zeros(2, 3),
+        source=np.array([1, 0], np.uint8),
+        instance=zeros(2, dtype=np.uint16),
+    ),
+    types.SceneObject: dict(
+        id=1, class_id=5, center_m=[1, 1, 0.4], size_m=[0.5, 0.5, 0.8], yaw_deg=90.0, confidence=0.5
+    ),
     types.Operation: dict(
         kind="fill",
-        cells=zeros(2, 3, dtype=np.int32),
-        before=np.array([0, 255], np.uint8),
-        after=np.array([3, 3], np.uint8),
+        cells=np.array([[0, 0, 0], [1, 0, 0]], np.int32),
+        before=GRID_CELLS,
+        after=GRID_CELLS,
     ),
     types.Blocks: dict(
         states=np.array([0, 1], np.uint16),
@@ -304,7 +324,43 @@ BAD = [
         "semantic must hold class ids 0 to 11 or 255, not 99",
     ),
     (types.BlockVolume, dict(corner=(0, 63)), "corner must be three whole numbers, not (0, 63)"),
-    (types.Operation, dict(after=zeros(3)), "after must have shape 2, not (3,)"),
+    (
+        types.GridCells,
+        dict(source=zeros(2)),
+        "labels must be 255 exactly where source is 0 (unseen)",
+    ),
+    (types.GridCells, dict(colour=zeros(3, 3)), "colour must have shape 2x3, not (3, 3)"),
+    (
+        types.GridCells,
+        dict(confidence=np.full(2, 2, np.float16)),
+        "confidence must lie between 0 and 1",
+    ),
+    (types.SceneObject, dict(class_id=3), "class_id must be an object class, 5 to 11, not 3"),
+    (
+        types.SceneObject,
+        dict(id=2, placements=(PLACEMENT,)),
+        "placements of object 2 must be its own, not of object 1 of class 5",
+    ),
+    (
+        types.Operation,
+        dict(cells=zeros(2, 3, dtype=np.int32)),
+        "cells must be named once each",
+    ),
+    (
+        types.Operation,
+        dict(cells=np.array([[0, 0, 0]], np.int32)),
+        "before must hold 1 cells, not 2",
+    ),
+    (
+        types.Operation,
+        dict(counts_as="paint"),
+        "counts_as must be one of add, delete, orient, move, relabel, other, not 'paint'",
+    ),
+    (
+        types.Operation,
+        dict(objects_after=(SCENE_OBJECT, SCENE_OBJECT)),
+        "objects_after must name each object once, not [1, 1]",
+    ),
     (
         types.Operation,
         dict(kind=""),

@@ -6,7 +6,7 @@ Arrays are held as read-only views; a stage that changes something makes a new v
 
 from world2minecraft.types.capture import Camera, Scan, View, ViewStream
 from world2minecraft.types.corrections import Corrections
-from world2minecraft.types.edit import BlockEdit, Blocks, Operation
+from world2minecraft.types.edit import BlockEdit, Blocks, GridCells, Operation, SceneObject
 from world2minecraft.types.evidence import FusedEvidence, GridEvidence, PointEvidence
 from world2minecraft.types.grid import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.types.layout import Layout, LayoutObject, Opening
@@ -29,6 +29,7 @@ __all__ = [
     "DepthMap",
     "Entity",
     "FusedEvidence",
+    "GridCells",
     "GridEvidence",
     "Layout",
     "LayoutObject",
@@ -41,6 +42,7 @@ __all__ = [
     "Placement",
     "PointEvidence",
     "Scan",
+    "SceneObject",
     "SparseScene",
     "View",
     "ViewStream",

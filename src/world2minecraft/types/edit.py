@@ -1,34 +1,132 @@
-"""One edit, of a grid or of blocks: what clean-up, SceneForge and ``w2m undo`` share."""
+"""One edit, of a scene or of blocks: what clean-up, SceneForge and ``w2m undo`` share."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from world2minecraft.types import checks
+from world2minecraft.types.grid import UNSEEN
+from world2minecraft.types.objects import ObjectInstance, Placement
 from world2minecraft.types.volume import BlockEntity, Entity
+
+COUNTED = ("add", "delete", "orient", "move", "relabel", "other")
+
+
+@dataclass(frozen=True, eq=False)
+class GridCells:
+    """What N cells of an ``OccupancyGrid`` hold."""
+
+    labels: np.ndarray  # uint8 [N], 0 to 11 or 255
+    confidence: np.ndarray  # float16 [N]
+    colour: np.ndarray  # uint8 [N, 3]
+    source: np.ndarray  # uint8 [N]
+    instance: np.ndarray  # uint16 [N]
+
+    def __post_init__(self):
+        put = object.__setattr__
+        labels = checks.labels("labels", self.labels, (None,))
+        put(self, "labels", labels)
+        put(
+            self,
+            "confidence",
+            checks.array("confidence", self.confidence, np.float16, labels.shape),
+        )
+        put(self, "colour", checks.array("colour", self.colour, np.uint8, (*labels.shape, 3)))
+        put(self, "source", checks.array("source", self.source, np.uint8, labels.shape))
+        put(self, "instance", checks.array("instance", self.instance, np.uint16, labels.shape))
+        if not np.array_equal(labels == 255, self.source == UNSEEN):
+            raise ValueError("labels must be 255 exactly where source is 0 (unseen)")
+        if not ((self.confidence >= 0) & (self.confidence <= 1)).all():
+            raise ValueError("confidence must lie between 0 and 1")
+
+
+@dataclass(frozen=True, eq=False)
+class SceneObject:
+    """One object of a scene with the furniture that stands for it.
+
+    Fields are those of ``ObjectInstance``; its cells are those of the grid whose ``instance`` is
+    its id. ``placements`` all have its id and its class.
+    """
+
+    id: int
+    class_id: int
+    center_m: np.ndarray  # float64 [3]
+    size_m: np.ndarray  # float64 [3]
+    yaw_deg: float
+    confidence: float
+    placements: tuple[Placement, ...] = ()
+
+    def __post_init__(self):
+        put = object.__setattr__
+        no_cells = np.zeros((0, 3), np.int32)
+        fields = (self.center_m, self.size_m, self.yaw_deg, no_cells, self.confidence)
+        checked = ObjectInstance(self.id, self.class_id, *fields)
+        for name in ("center_m", "size_m", "confidence"):
+            put(self, name, getattr(checked, name))
+        put(self, "placements", tuple(self.placements))
+        for placed in self.placements:
+            if (placed.object_id, placed.class_id) != (self.id, self.class_id):
+                other = f"object {placed.object_id} of class {placed.class_id}"
+                raise ValueError(f"placements of object {self.id} must be its own, not of {other}")
 
 
 @dataclass(frozen=True, eq=False)
 class Operation:
-    """Cells with their labels before and after. ``kind`` is a verb, such as ``fill``."""
+    """One edit of a scene: cells and objects, before and after.
+
+    ``kind`` is a verb, such as ``fill``. ``counts_as`` is what the effort tables count it as.
+    ``cells`` are indices into the grid, each once. An object that is only in
+    ``objects_before`` goes, one that is only in ``objects_after`` is new, one in both changes.
+    ``actor`` is who did it, ``time_s`` when, in seconds since 1970; both are only told.
+    """
 
     kind: str
     cells: np.ndarray  # int32 [N, 3]
-    before: np.ndarray  # uint8 [N]
-    after: np.ndarray  # uint8 [N]
+    before: GridCells
+    after: GridCells
+    objects_before: tuple[SceneObject, ...] = ()
+    objects_after: tuple[SceneObject, ...] = ()
+    counts_as: str = "other"
     class_id: int | None = None
+    actor: str = ""
+    time_s: float = 0.0
 
     def __post_init__(self):
         put = object.__setattr__
         checks.identifier("kind", self.kind)
+        if self.counts_as not in COUNTED:
+            raise ValueError(
+                f"counts_as must be one of {', '.join(COUNTED)}, not {self.counts_as!r}"
+            )
         put(self, "cells", checks.array("cells", self.cells, np.int32, (None, 3)))
+        if not each_once(self.cells):
+            raise ValueError("cells must be named once each")
         for name in ("before", "after"):
-            put(self, name, checks.labels(name, getattr(self, name), (len(self.cells),)))
+            count = len(getattr(self, name).labels)
+            if count != len(self.cells):
+                raise ValueError(f"{name} must hold {len(self.cells)} cells, not {count}")
+        for name in ("objects_before", "objects_after"):
+            put(self, name, tuple(getattr(self, name)))
+            ids = [one.id for one in getattr(self, name)]
+            if len(set(ids)) != len(ids):
+                raise ValueError(f"{name} must name each object once, not {ids}")
 
     def inverse(self) -> "Operation":
         """The operation that takes this one back."""
-        return Operation(self.kind, self.cells, self.after, self.before, self.class_id)
+        swapped = {
+            "before": self.after,
+            "after": self.before,
+            "objects_before": self.objects_after,
+            "objects_after": self.objects_before,
+        }
+        return replace(self, **swapped)
+
+
+def each_once(cells: np.ndarray) -> bool:
+    """Whether no cell of [N, 3] is named twice."""
+    ordered = cells[np.lexsort(cells.T)]
+    return not (ordered[1:] == ordered[:-1]).all(axis=1).any()
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,8 +174,7 @@ class BlockEdit:
         put = object.__setattr__
         checks.identifier("kind", self.kind)
         cells = checks.array("cells", self.cells, np.int32, (None, 3))
-        ordered = cells[np.lexsort(cells.T)]
-        if (ordered[1:] == ordered[:-1]).all(axis=1).any():
+        if not each_once(cells):
             raise ValueError("cells must be named once each")
         put(self, "cells", cells)
         put(self, "palette", tuple(self.palette))

@@ -1,0 +1,30 @@
+"""All commands by name, and how one is read from JSON."""
+
+from typing import Any
+
+from pydantic import ValidationError
+
+from world2minecraft.edit.scene.command import Command
+from world2minecraft.edit.scene.voxels import SetCells
+from world2minecraft.errors import UnknownNameError, UsageError
+
+COMMANDS: dict[str, type[Command]] = {kind.model_fields["op"].default: kind for kind in (SetCells,)}
+
+
+def parse_command(value: Any) -> Command:
+    """Return the command that a JSON object says.
+
+    Raises:
+        UsageError: it is none; the message names the field, what was expected and what was given.
+    """
+    if not isinstance(value, dict) or not isinstance(value.get("op"), str):
+        raise UsageError('a command is an object with "op", such as {"op": "set_cells", ...}')
+    if value["op"] not in COMMANDS:
+        raise UnknownNameError("command", value["op"], COMMANDS)
+    try:
+        return COMMANDS[value["op"]].model_validate(value)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False)[0]
+        where = ".".join(str(part) for part in first["loc"]) or value["op"]
+        given = str(first.get("input"))[:80]
+        raise UsageError(f"{value['op']}: {where}: {first['msg']}, not {given}") from error

@@ -1,0 +1,67 @@
+"""Objects of a scene from what the stages give, and back."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from world2minecraft.types import ObjectInstance, Placement, SceneObject
+
+
+def objects_of(
+    instances: Sequence[ObjectInstance], placements: Sequence[Placement] = ()
+) -> tuple[SceneObject, ...]:
+    """Return each object with the placements that stand for it."""
+    placed: dict[int, list[Placement]] = {}
+    for one in placements:
+        placed.setdefault(one.object_id, []).append(one)
+    return tuple(object_of(one, placed.get(one.id, ())) for one in instances)
+
+
+def object_of(instance: ObjectInstance, placements: Iterable[Placement] = ()) -> SceneObject:
+    """Return one object with its placements."""
+    fields = (instance.center_m, instance.size_m, instance.yaw_deg, instance.confidence)
+    return SceneObject(instance.id, instance.class_id, *fields, tuple(placements))
+
+
+def instance_of(one: SceneObject, cells: np.ndarray) -> ObjectInstance:
+    """Return an object as the stages know it, with its cells int32 [N, 3]."""
+    box = (one.center_m, one.size_m, one.yaw_deg)
+    return ObjectInstance(one.id, one.class_id, *box, cells, one.confidence)
+
+
+def instances_of(
+    objects: Iterable[SceneObject], instance: np.ndarray
+) -> tuple[ObjectInstance, ...]:
+    """Return objects as the stages know them, by id; ``instance`` is uint16 [X, Y, Z]."""
+    at = np.argwhere(instance > 0).astype(np.int32)
+    owners = instance[tuple(at.T)]
+    ordered = sorted(objects, key=lambda one: one.id)
+    return tuple(instance_of(one, at[owners == one.id]) for one in ordered)
+
+
+def placements_of(objects: Iterable[SceneObject]) -> tuple[Placement, ...]:
+    """Return the placements of all objects, by id."""
+    return tuple(p for one in sorted(objects, key=lambda one: one.id) for p in one.placements)
+
+
+def same_object(one: SceneObject, other: SceneObject) -> bool:
+    """Whether two objects have the same class, box, turn, confidence and placements."""
+    return facts(one) == facts(other)
+
+
+def facts(one: SceneObject) -> tuple:
+    """Return everything that an object holds, in values that compare and hash."""
+    box = (*map(float, one.center_m), *map(float, one.size_m), float(one.yaw_deg))
+    placed = tuple(
+        (
+            p.template,
+            *map(float, p.center_m),
+            *map(float, p.size_m),
+            p.quarter_turns,
+            p.iou,
+            tuple(p.parameters.items()),
+            tuple((a.template, a.quarter_turns, a.iou) for a in p.alternatives),
+        )
+        for p in one.placements
+    )
+    return (one.id, one.class_id, box, one.confidence, placed)

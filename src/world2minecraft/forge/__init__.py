@@ -1,0 +1,1 @@
+"""SceneForge: the web editor of a scene, its server and the Python that drives it."""
