@@ -3,13 +3,17 @@
 from world2minecraft.edit.scene.command import Command, Tools
 from world2minecraft.edit.scene.commands import COMMANDS, parse_command
 from world2minecraft.edit.scene.draft import SceneDraft
+from world2minecraft.edit.scene.history import Line, MemoryLog, SceneHistory
 from world2minecraft.edit.scene.objects_of import instances_of, objects_of, placements_of
 from world2minecraft.edit.scene.runs import cells_of_runs, runs_of_cells
 
 __all__ = [
     "COMMANDS",
     "Command",
+    "Line",
+    "MemoryLog",
     "SceneDraft",
+    "SceneHistory",
     "Tools",
     "cells_of_runs",
     "instances_of",

@@ -65,13 +65,8 @@ class SceneDraft:
         return Operation(kind, cells, self.held(cells), after, before, new, **told)
 
     def apply(self, operation: Operation) -> None:
-        """Do an operation.
-
-        Raises:
-            ConflictError: the scene does not hold what it says was there; nothing is changed.
-        """
-        if reason := self._against(operation):
-            raise ConflictError(f"operation {operation.kind}", reason)
+        """Do an operation. Raises what ``check`` raises; then nothing is changed."""
+        self.check(operation)
         at = tuple(operation.cells.T)
         for name in ARRAYS:
             getattr(self, name)[at] = getattr(operation.after, name)
@@ -81,6 +76,15 @@ class SceneDraft:
             del self.objects[one.id]
         for one in operation.objects_after:
             self.objects[one.id] = one
+
+    def check(self, operation: Operation) -> None:
+        """Look whether an operation can be done.
+
+        Raises:
+            ConflictError: the scene does not hold what it says was there.
+        """
+        if reason := self._against(operation):
+            raise ConflictError(f"operation {operation.kind}", reason)
 
     def grid(self) -> OccupancyGrid:
         """Return the occupancy as it is now, a copy."""

@@ -1,0 +1,56 @@
+"""Questions about a scene, by name: what ``Editor.ask`` and ``POST /api/ask`` answer.
+
+Like a command, a query is a small checked value; it changes nothing. A new one is a class and
+its line in ``QUERIES``.
+"""
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from world2minecraft.edit.scene.commands import first_fault
+from world2minecraft.errors import UnknownNameError, UsageError
+
+if TYPE_CHECKING:
+    from world2minecraft.forge.editor import Editor
+
+
+class Query(BaseModel):
+    """What all queries share."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    @abstractmethod
+    def answer(self, editor: "Editor") -> Any:
+        """Return the answer as JSON values.
+
+        Raises:
+            UsageError: it cannot be answered for this scene; the message says why.
+        """
+
+
+class Counts(Query):
+    """How many cells each class has, and how many objects there are."""
+
+    def answer(self, editor: "Editor") -> Any:
+        """Return ``{"cells": by class id, "objects": number}``."""
+        counts = editor.draft.counts[:12].tolist()
+        return {"cells": counts, "objects": len(editor.draft.objects)}
+
+
+QUERIES: dict[str, type[Query]] = {"counts": Counts}
+
+
+def parse_query(name: str, fields: dict[str, Any]) -> Query:
+    """Return the query of a name.
+
+    Raises:
+        UnknownNameError: there is none. UsageError: a field is wrong; the message names it.
+    """
+    if name not in QUERIES:
+        raise UnknownNameError("query", name, QUERIES)
+    try:
+        return QUERIES[name].model_validate(fields)
+    except ValidationError as error:
+        raise UsageError(first_fault(name, error)) from error

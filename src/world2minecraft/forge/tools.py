@@ -1,0 +1,37 @@
+"""The stages that commands may ask for, wired to a scene."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.edit.scene import Tools
+from world2minecraft.errors import UnknownNameError
+from world2minecraft.find import FindParameters, find_objects
+from world2minecraft.furnish import FurnishParameters, furnish
+from world2minecraft.types import Layout, ObjectInstance, OccupancyGrid, Placement
+
+
+def tools_of(rooms: Sequence[Layout] = ()) -> Tools:
+    """Return the tools for a scene whose furniture stays within ``rooms``, where any are given."""
+
+    def match(grid: OccupancyGrid, one: ObjectInstance) -> tuple[Placement, ...]:
+        return furnish(grid, (one,), FurnishParameters(), rooms)
+
+    return Tools(match, found)
+
+
+def found(
+    grid: OccupancyGrid, parameters: dict[str, Any]
+) -> tuple[np.ndarray, tuple[ObjectInstance, ...]]:
+    """Return the instance ids uint16 [X, Y, Z] and the objects that ``find`` finds.
+
+    Raises:
+        UnknownNameError: ``find`` has no such parameter. UsageError: one is out of its range.
+    """
+    known = FindParameters.__dataclass_fields__
+    for name in parameters:
+        if name not in known:
+            raise UnknownNameError("parameter of find", name, known)
+    result = find_objects(grid, FindParameters(**parameters))
+    return result.grid.instance, result.instances
