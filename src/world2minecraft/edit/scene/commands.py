@@ -5,10 +5,21 @@ from typing import Any
 from pydantic import ValidationError
 
 from world2minecraft.edit.scene.command import Command
-from world2minecraft.edit.scene.voxels import SetCells
+from world2minecraft.edit.scene.voxels import DeleteComponent, FillBox, Paste, SetCells
+from world2minecraft.edit.scene.whole_class import DeleteClass, RelabelClass
 from world2minecraft.errors import UnknownNameError, UsageError
 
-COMMANDS: dict[str, type[Command]] = {kind.model_fields["op"].default: kind for kind in (SetCells,)}
+COMMANDS: dict[str, type[Command]] = {
+    kind.model_fields["op"].default: kind
+    for kind in (
+        SetCells,
+        FillBox,
+        DeleteComponent,
+        Paste,
+        RelabelClass,
+        DeleteClass,
+    )
+}
 
 
 def parse_command(value: Any) -> Command:

@@ -40,3 +40,17 @@ def cells_of_runs(runs: Sequence[Sequence[int]], shape: tuple[int, int, int]) ->
     firsts = np.repeat(starts - np.concatenate([[0], np.cumsum(lengths)[:-1]]), lengths)
     flat = np.arange(int(lengths.sum())) + firsts
     return np.column_stack(np.unravel_index(flat, shape)).astype(np.int32)
+
+
+def box_cells(low: Sequence[int], high: Sequence[int], shape: tuple[int, int, int]) -> np.ndarray:
+    """Return the cells, int32 [N, 3] in C order, of a box; both corners are in it.
+
+    Raises:
+        UsageError: the box has no cell in the grid.
+    """
+    first = np.maximum(np.minimum(low, high), 0)
+    last = np.minimum(np.maximum(low, high), np.array(shape) - 1)
+    if (first > last).any():
+        raise UsageError(f"the box from {list(low)} to {list(high)} lies outside the grid {shape}")
+    sides = [np.arange(a, b + 1) for a, b in zip(first, last, strict=True)]
+    return np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 3).astype(np.int32)
