@@ -53,6 +53,7 @@ ROWS: tuple[tuple[str, ...], ...] = (
     ("rooms",),
     ("evaluate",),
     ("report",),
+    ("making",),
     ("dataset",),
     ("learn",),
     ("vln",),

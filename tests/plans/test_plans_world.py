@@ -9,12 +9,13 @@ from roomplans import captured_room, session_of
 from test_plans_roomplan import layout
 
 from world2minecraft.classes import SemanticClass
-from world2minecraft.cli.from_plan import make_from_plan, plan_in, say_plan
+from world2minecraft.cli.from_plan import say_plan
 from world2minecraft.coordinates import rotation_about_z
 from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.exchange.objects import read_objects, read_placements
 from world2minecraft.exchange.room import read_room
 from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.making import make_from_plan, plan_in
 from world2minecraft.parameters import Parameters
 from world2minecraft.plans import (
     PlanMismatchError,

@@ -53,7 +53,7 @@ def run(
     from world2minecraft.build import BuildParameters
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
-    from world2minecraft.cli.reconstruct import make
+    from world2minecraft.making import make_run
     from world2minecraft.parameters import Parameters
     from world2minecraft.rooms import generate_room, scan_room
     from world2minecraft.run_folder import check_writable
@@ -69,5 +69,5 @@ def run(
         room = generate_room(seed, kind=kind)
         progress("room", 1, 1, f"a {kind} room, seed {seed}")
         scan_room(room, out / "capture", frames=frames, seed=seed, progress=progress)
-        facts = make(out / "capture", out, chosen, None, None, progress)
+        facts = make_run(out / "capture", out, chosen, progress=progress)
     say_where(out, facts)

@@ -1,52 +1,10 @@
-"""A plan alone in ``w2m reconstruct``: Apple's RoomPlan becomes a world, without a photo."""
+"""A plan alone in ``w2m reconstruct``: what came of it, told."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from world2minecraft.archive import AnyPath
-    from world2minecraft.parameters import Parameters
     from world2minecraft.plans import PlanWorld
-    from world2minecraft.progress import Progress
-
-
-def plan_in(capture: Path) -> "AnyPath | None":
-    """Return the RoomPlan JSON of a capture that is nothing else, None where there is none.
-
-    A capture with frames and a plan is a capture; its plan is given by ``--plan``.
-    """
-    from world2minecraft.archive import is_zip
-    from world2minecraft.errors import InputError
-    from world2minecraft.plans import find_roomplan
-    from world2minecraft.scan.sources import find_capture
-
-    if capture.suffix.lower() == ".json":
-        return find_roomplan(capture)
-    if capture.is_file() and not is_zip(capture):  # A video is not looked through for this.
-        return None
-    try:
-        find_capture(capture)
-    except InputError:
-        return find_roomplan(capture)
-    return None
-
-
-def make_from_plan(
-    place: "AnyPath", out: Path, chosen: "Parameters", progress: "Progress", name: str = ""
-) -> "PlanWorld":
-    """Build a plan's world, with a brief report.
-
-    Raises:
-        InputError: the plan cannot be read. OutputError: ``out`` cannot be written.
-    """
-    from world2minecraft.plans import build_plan
-    from world2minecraft.report import write_brief_report
-
-    built = build_plan(place, out, chosen, progress, name)
-    progress("report", 0, 1)
-    write_brief_report(out, built.scan)
-    progress("report", 1, 1)
-    return built
 
 
 def say_plan(out: Path, built: "PlanWorld") -> None:

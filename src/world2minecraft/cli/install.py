@@ -58,12 +58,12 @@ def run(
         return
     if source is None:
         raise UsageError("say what to install: w2m install OUT")
+    from world2minecraft.minecraft.worlds.installing import age_note, install_world, world_of
+
     world = world_of(source)
     chosen = Game("the game", saves) if saves else choose(games, game)
     if not chosen.saves.parent.is_dir():
         raise InputError(chosen.saves, "is no saves folder, nor is there one to make it in")
-    from world2minecraft.minecraft.worlds.installing import install_world
-
     target = install_world(world, chosen.saves, name or None)
     print(f"Copied to {target}")
     if note := age_note(world, chosen):
@@ -73,18 +73,6 @@ def run(
     print(f"  3. {target.name}, then Play Selected World")
     if (target / "datapacks" / "player_size.zip").is_file():
         print("\nFrom 1.20.5 on, /function w2m:human_size makes you as large as a person there.")
-
-
-def world_of(source: Path) -> Path:
-    """Return the world folder of a run, of its ``build`` folder, or the folder itself.
-
-    Raises:
-        InputError: there is none.
-    """
-    for folder in (source, source / "build" / "world", source / "world"):
-        if (folder / "level.dat").is_file():
-            return folder
-    raise InputError(source, "holds no world (build/world/level.dat); build one with w2m build")
 
 
 def choose(games: "list[Game]", wanted: str) -> "Game":
@@ -114,20 +102,4 @@ def listed(games: "list[Game]") -> str:
     return "\n".join(
         f"{number:2}  {game.name}{f' ({game.version})' if game.version else ''}  {game.saves}"
         for number, game in enumerate(games, 1)
-    )
-
-
-def age_note(world: Path, game: "Game") -> str:
-    """Say so where the game is older than the world; empty where it is not, or not known."""
-    from world2minecraft.minecraft.versions import game_versions
-    from world2minecraft.minecraft.worlds.reading import read_level
-
-    known = {version.name: version.data_version for version in game_versions()}
-    version = read_level(world).get("DataVersion")
-    age = known.get(game.version or "")
-    if age is None or not isinstance(version, int) or age >= version:
-        return ""
-    return (
-        f"this game is {game.version}, older than the world, and will not open it; build again "
-        f"with --mc-version {game.version}"
     )

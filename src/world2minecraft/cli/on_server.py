@@ -1,19 +1,15 @@
 """What ``w2m build --rcon`` does: build on a running server, and say what came of it."""
 
-import hashlib
 import os
-import re
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from world2minecraft.errors import UsageError
+from world2minecraft.minecraft.server.address import note_of, parse_address
 
 if TYPE_CHECKING:
     from world2minecraft.types import BlockVolume
 
 PASSWORD = "W2M_RCON_PASSWORD"
-PORT = 25575
-_ADDRESS = re.compile(r"(?P<host>\[[0-9A-Fa-f:.%]+\]|[A-Za-z0-9.-]+)(?::(?P<port>[0-9]{1,5}))?")
 
 
 def on_server(
@@ -86,19 +82,6 @@ def check_server(address: str, air: str) -> None:
     check_air(air)
 
 
-def parse_address(text: str) -> tuple[str, int]:
-    """Return host and port of ``HOST:PORT``; the port is 25575 where it is left out.
-
-    Raises:
-        UsageError: it is no address.
-    """
-    found = _ADDRESS.fullmatch(text)
-    port = int(found["port"] or PORT) if found else 0
-    if not found or not 1 <= port <= 65535:
-        raise UsageError(f"--rcon must be HOST:PORT, such as localhost:{PORT}, not {text!r}")
-    return found["host"].strip("[]"), port
-
-
 def password_of_environment() -> str:
     """Return the console's password.
 
@@ -111,11 +94,3 @@ def password_of_environment() -> str:
             "(rcon.password in server.properties)"
         )
     return os.environ[PASSWORD]
-
-
-def note_of(server: str, digest: str) -> Path:
-    """Return the file that remembers how far a build on a server is."""
-    from world2minecraft.jit import user_cache_dir
-
-    name = hashlib.sha256(f"{server} {digest}".encode()).hexdigest()[:24]
-    return user_cache_dir() / "rcon" / f"{name}.json"

@@ -1,7 +1,7 @@
 """``w2m reconstruct``: a capture becomes a Minecraft world, with a report."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -101,10 +101,10 @@ def run(
     its last finished stage when the same command is given again. Photos and videos are given
     poses and depth first, which takes a minute or two.
     """
-    from world2minecraft.cli.from_plan import plan_in
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
     from world2minecraft.errors import UsageError
+    from world2minecraft.making import make_run, plan_in
     from world2minecraft.parameters import Parameters, with_method, with_settings
 
     chosen = Parameters(
@@ -129,14 +129,15 @@ def run(
     with shown() as progress:
         if follow:
             watch(capture, out, chosen, labels, follow_idle_s, progress)
-        facts = make(capture, out, chosen, start, labels, progress)
+        facts = make_run(capture, out, chosen, start, labels, progress)
     say_where(out, facts)
 
 
 def from_plan(drawn: "AnyPath", capture: Path, out: Path, chosen: "Parameters") -> None:
     """Build what a RoomPlan alone says."""
-    from world2minecraft.cli.from_plan import make_from_plan, say_plan
+    from world2minecraft.cli.from_plan import say_plan
     from world2minecraft.cli.progress import shown
+    from world2minecraft.making import make_from_plan
     from world2minecraft.prepare import scene_name
 
     with shown() as progress:
@@ -156,24 +157,3 @@ def watch(
     from world2minecraft.live import follow
 
     follow(capture, out, chosen, labels=labels, idle_s=idle_s, progress=progress)
-
-
-def make(
-    capture: Path,
-    out: Path,
-    chosen: "Parameters",
-    start: str | None,
-    labels: Path | None,
-    progress: "Progress",
-) -> dict[str, Any]:
-    """Run the pipeline and write its report; return what ``report.json`` holds."""
-    from world2minecraft.pipeline import reconstruct, registered_before
-    from world2minecraft.prepare import open_prepared
-    from world2minecraft.report import write_report
-
-    if start == "report":
-        scan = registered_before(open_prepared(capture, out, chosen, labels, progress), out)
-    else:
-        scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
-    truth = capture if (capture / "truth.npz").is_file() else None
-    return write_report(out, scan, truth=truth, progress=progress)

@@ -9,6 +9,8 @@ from pathlib import Path
 from world2minecraft.errors import InputError, OutputError, UsageError
 from world2minecraft.files import read_bytes, write_bytes
 from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, unpack, write_nbt
+from world2minecraft.minecraft.versions import game_versions
+from world2minecraft.minecraft.worlds.launchers import Game
 from world2minecraft.minecraft.worlds.reading import LEVEL_LIMITS, read_level
 from world2minecraft.minecraft.worlds.session_lock import LOCK_FILE
 
@@ -129,3 +131,28 @@ def _check_space(files: list[Path], saves: Path) -> None:
     free = shutil.disk_usage(saves).free
     if free < needed:
         raise OutputError(saves, f"its disk has {free >> 20} MB free; {needed >> 20} are needed")
+
+
+def world_of(source: Path) -> Path:
+    """Return the world folder of a run, of its ``build`` folder, or the folder itself.
+
+    Raises:
+        InputError: there is none.
+    """
+    for folder in (source, source / "build" / "world", source / "world"):
+        if (folder / "level.dat").is_file():
+            return folder
+    raise InputError(source, "holds no world (build/world/level.dat); build one with w2m build")
+
+
+def age_note(world: Path, game: Game) -> str:
+    """Say so where the game is older than the world; empty where it is not, or not known."""
+    known = {version.name: version.data_version for version in game_versions()}
+    version = read_level(world).get("DataVersion")
+    age = known.get(game.version or "")
+    if age is None or not isinstance(version, int) or age >= version:
+        return ""
+    return (
+        f"this game is {game.version}, older than the world, and will not open it; build again "
+        f"with --mc-version {game.version}"
+    )

@@ -1,0 +1,136 @@
+"""What a worker does on the way from a capture to a room: look, reconstruct, make a demo room.
+
+Each takes JSON values and gives JSON values, so that it can run in a process of its own.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.build import BuildParameters
+from world2minecraft.files import write_bytes, write_json
+from world2minecraft.making import make_from_plan, make_run, plan_in
+from world2minecraft.parameters import Parameters, with_settings
+from world2minecraft.plans import read_roomplan
+from world2minecraft.prepare import scene_name
+from world2minecraft.progress import Progress
+from world2minecraft.rooms import generate_room, scan_room
+from world2minecraft.scan import describe_capture
+from world2minecraft.scan.poster import poster_png
+from world2minecraft.scan.telling import as_data, plan_lines, summary_lines
+
+SURVEY, PICTURE = "survey.json", "survey.png"
+DEMO_SEED, DEMO_FRAMES = 5, 40  # Those of ``w2m demo``.
+
+
+def survey(capture: str, folder: str, progress: Progress) -> dict[str, Any]:
+    """Look at a capture; write ``survey.json`` and, where frames are there, ``survey.png``.
+
+    Returns:
+        What ``survey.json`` holds: ``kind`` (``frames`` or ``plan``), ``called``, ``lines``
+        [[name, text]], ``doubts`` [{level, text, advice}], ``can_start``, ``about_s``,
+        ``frames``, ``has_scale`` and ``data``, all that ``w2m scan --json`` prints.
+
+    Raises:
+        CaptureError: it is no capture; the message says what is.
+    """
+    source, target = Path(capture), Path(folder)
+    progress("look", 0, 3)
+    plan = plan_in(source)
+    if plan is not None:
+        told = _plan_told(source, plan_lines(source, read_roomplan(plan)))
+    else:
+        summary = describe_capture(source)
+        progress("look", 1, 3)
+        write_bytes(target / PICTURE, poster_png(summary))
+        progress("look", 2, 3)
+        stops = any(doubt.level == "stop" for doubt in summary.doubts)
+        told = {
+            "kind": "frames",
+            "route": summary.route.kind,
+            "called": summary.route.called,
+            "lines": _rows(summary_lines(summary)),
+            "doubts": [
+                {"level": doubt.level, "text": doubt.text, "advice": doubt.advice}
+                for doubt in summary.doubts
+            ],
+            "can_start": summary.usable > 0 and not stops,
+            "about_s": summary.route.about_s,
+            "frames": summary.usable,
+            "has_scale": summary.survey.judged.capture.scale == "metric"
+            and not summary.route.from_pictures,
+            "data": as_data(summary),
+        }
+    write_json(target / SURVEY, told)
+    progress("look", 3, 3)
+    return told
+
+
+def _plan_told(source: Path, lines: list[str]) -> dict[str, Any]:
+    return {
+        "kind": "plan",
+        "route": "plan",
+        "called": lines[0].partition(": ")[2] or source.name,
+        "lines": _rows(lines),
+        "doubts": [],
+        "can_start": True,
+        "about_s": 10.0,
+        "frames": 0,
+        "has_scale": True,
+        "data": {},
+    }
+
+
+def _rows(lines: list[str]) -> list[list[str]]:
+    """Return the named lines of a summary: those between its head and its next command."""
+    rows = [line.strip().partition(" ") for line in lines[1:-1]]
+    doubts = ("ok", "warning", "stop", "hint")
+    return [[name, text.strip()] for name, _, text in rows if name not in doubts]
+
+
+def parameters_of(choice: dict[str, Any]) -> Parameters:
+    """Return the parameters of what a person chose.
+
+    Args:
+        choice: any of ``blocks_per_metre``, ``style``, ``known`` [name, metres], ``mc_version``,
+            ``voxel_m``.
+
+    Raises:
+        UsageError: a value cannot be used; the message says what can.
+    """
+    plain = {"blocks_per_metre": float, "voxel_m": float, "mc_version": str}
+    given = {key: kind(choice[key]) for key, kind in plain.items() if choice.get(key) is not None}
+    chosen = Parameters(**given)
+    if choice.get("known"):
+        name, metres = choice["known"]
+        chosen = replace(chosen, known=(str(name), float(metres)))
+    style = choice.get("style")
+    return with_settings(chosen, [f"build.style={style}"] if style else [])
+
+
+def reconstruct(
+    capture: str, out: str, choice: dict[str, Any], progress: Progress
+) -> dict[str, Any]:
+    """Turn a capture into a run's folder; return ``out`` and what came of it."""
+    source, target, chosen = Path(capture), Path(out), parameters_of(choice)
+    plan = plan_in(source)
+    if plan is not None:
+        built = make_from_plan(plan, target, chosen, progress, scene_name(source))
+        return {"out": out, "objects": built.objects}
+    facts = make_run(source, target, chosen, progress=progress)
+    return {"out": out, "objects": len(facts["objects"]), "notes": facts["scan"]["notes"]}
+
+
+def demo(
+    out: str, progress: Progress, kind: str = "living", seed: int = DEMO_SEED, frames: int = 0
+) -> dict[str, Any]:
+    """Generate a room, scan it with a virtual camera and reconstruct it, as ``w2m demo`` does."""
+    target = Path(out)
+    progress("room", 0, 1)
+    room = generate_room(seed, kind=kind)
+    progress("room", 1, 1)
+    capture = target / "capture"
+    scan_room(room, capture, frames=frames or DEMO_FRAMES, seed=seed, progress=progress)
+    chosen = Parameters(build=BuildParameters(plaque=f"A {kind} room"))
+    facts = make_run(capture, target, chosen, progress=progress)
+    return {"out": out, "objects": len(facts["objects"])}

@@ -1,0 +1,70 @@
+"""A whole run: whatever was captured becomes a world with a report.
+
+In: a capture, or a plan alone. Out: the run's folder. ``w2m reconstruct`` and SceneForge's start
+page do the same through here.
+"""
+
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.archive import AnyPath, is_zip
+from world2minecraft.errors import InputError
+from world2minecraft.parameters import Parameters
+from world2minecraft.pipeline import reconstruct, registered_before
+from world2minecraft.plans import PlanWorld, build_plan, find_roomplan
+from world2minecraft.prepare import open_prepared
+from world2minecraft.progress import Progress, silent
+from world2minecraft.report import write_brief_report, write_report
+from world2minecraft.scan.sources import find_capture
+
+
+def make_run(
+    capture: Path,
+    out: Path,
+    chosen: Parameters,
+    start: str | None = None,
+    labels: Path | None = None,
+    progress: Progress = silent,
+) -> dict[str, Any]:
+    """Run the pipeline and write its report; return what ``report.json`` holds.
+
+    Raises:
+        CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.
+    """
+    if start == "report":
+        scan = registered_before(open_prepared(capture, out, chosen, labels, progress), out)
+    else:
+        scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
+    truth = capture if (capture / "truth.npz").is_file() else None
+    return write_report(out, scan, truth=truth, progress=progress)
+
+
+def plan_in(capture: Path) -> AnyPath | None:
+    """Return the RoomPlan JSON of a capture that is nothing else, None where there is none.
+
+    A capture with frames and a plan is a capture; its plan is given by ``--plan``.
+    """
+    if capture.suffix.lower() == ".json":
+        return find_roomplan(capture)
+    if capture.is_file() and not is_zip(capture):  # A video is not looked through for this.
+        return None
+    try:
+        find_capture(capture)
+    except InputError:
+        return find_roomplan(capture)
+    return None
+
+
+def make_from_plan(
+    place: AnyPath, out: Path, chosen: Parameters, progress: Progress = silent, name: str = ""
+) -> PlanWorld:
+    """Build a plan's world, with a brief report.
+
+    Raises:
+        InputError: the plan cannot be read. OutputError: ``out`` cannot be written.
+    """
+    built = build_plan(place, out, chosen, progress, name)
+    progress("report", 0, 1)
+    write_brief_report(out, built.scan)
+    progress("report", 1, 1)
+    return built
