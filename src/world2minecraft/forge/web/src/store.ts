@@ -1,6 +1,6 @@
 // What one tab knows. Parts of the page subscribe to the keys that they show.
 
-import type { Scene, SceneObject } from "./wire";
+import type { HeldRun, Scene, SceneObject } from "./wire";
 
 export type Mode = "inspect" | "voxels" | "objects" | "build" | "walk";
 export type ColourBy = "class" | "confidence" | "colour" | "difference";
@@ -18,14 +18,32 @@ export interface View {
   section: { low: [number, number, number]; high: [number, number, number] } | null; // cells
 }
 
+/** What the last change of the document did to the arrays, which are changed in place. */
+export interface Touched {
+  rev: number;
+  runs: readonly HeldRun[] | null; // null: everything may have changed
+}
+
+/** What tools do next; each tab has its own. */
+export interface ToolOptions {
+  classId: number; // that is painted or added
+  shape: "sphere" | "cube" | "single";
+  size: number; // diameter of the brush in cells
+  depth: number; // how many cells deep a box or lasso selects; 0: all the way
+  surfaceOnly: boolean; // only what is seen, not what lies behind it
+  snap: boolean; // objects that are moved come to rest on what is below
+}
+
 export interface State {
   scene: Scene | null;
   labels: Uint8Array; // [X, Y, Z] C order
   instance: Uint16Array;
   confidence: Uint8Array; // 0..255
+  touched: Touched;
   objects: ReadonlyMap<number, SceneObject>;
   mode: Mode;
   tool: string; // "navigate", "brush", "box", "lasso", "flood", "measure", ...
+  options: ToolOptions;
   view: View;
   selectedObjects: ReadonlySet<number>;
   selectedCells: ReadonlySet<number>; // flat cell numbers
@@ -42,9 +60,11 @@ const START: State = {
   labels: new Uint8Array(0),
   instance: new Uint16Array(0),
   confidence: new Uint8Array(0),
+  touched: { rev: 0, runs: null },
   objects: new Map(),
   mode: "inspect",
   tool: "navigate",
+  options: { classId: 10, shape: "sphere", size: 3, depth: 0, surfaceOnly: true, snap: false },
   view: {
     hidden: new Set([1]), // The ceiling: the whole room is in view.
     solo: null,
@@ -82,6 +102,10 @@ export class Store {
 
   setView(change: Partial<View>): void {
     this.set({ view: { ...this.state.view, ...change } });
+  }
+
+  setOptions(change: Partial<ToolOptions>): void {
+    this.set({ options: { ...this.state.options, ...change } });
   }
 
   /** Call back now and whenever one of the keys changes; returns what ends it. */
