@@ -22,6 +22,7 @@ VERBS: dict[str, str] = {
     "scan": "Tell what a capture holds, before any long work.",
     "reconstruct": "Turn a capture into a Minecraft world, with a report.",
     "build": "Build a room: a world of its own, in yours, on a server.",
+    "forge": "See every stage of a room in the browser, and mend it.",
     "join": "Join finished runs of single rooms into one home.",
     "rooms generate": "Generate a furnished room or a house, with exact truth.",
     "rooms scan": "Scan a generated room or house with a virtual depth camera.",

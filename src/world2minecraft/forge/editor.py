@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -38,6 +38,7 @@ from world2minecraft.forge.wire import PROTOCOL, classes_json, counts_json, obje
 from world2minecraft.types import Operation
 
 Listener = Callable[[int, str, Operation], None]
+Value = TypeVar("Value")
 MAX_IDS = 1 << 16
 
 
@@ -163,6 +164,11 @@ class Editor:
     def redo_kind(self) -> str:
         """The kind of what ``redo`` would do again; empty where there is nothing."""
         return self._history.line.redo_kind
+
+    def read(self, look: Callable[[], Value]) -> Value:
+        """Return what ``look`` returns; no step is done meanwhile."""
+        with self._lock:
+            return look()
 
     def on_change(self, listener: Listener) -> Callable[[], None]:
         """Call ``listener(rev, step, operation)`` after each step; return how to stop it.

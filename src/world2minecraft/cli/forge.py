@@ -1,0 +1,71 @@
+"""``w2m forge``: see every stage of a room in the browser, and put it right."""
+
+import webbrowser
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EXAMPLES = """\
+w2m forge OUT                   a run: its room, objects, photos, blocks
+w2m forge room.npz              any occupancy file; occ.json too
+w2m forge --demo                a room to try it on
+w2m forge                       a page to start from: drop a capture on it
+w2m forge OUT --no-browser      print the link, and open nothing
+"""
+
+
+def run(
+    source: Annotated[
+        Path | None, typer.Argument(metavar="[OUT_OR_FILE]", help="A run's folder or a file.")
+    ] = None,
+    demo: Annotated[bool, typer.Option("--demo", help="Open a room to try it on.")] = False,
+    host: Annotated[
+        str, typer.Option("--host", help="Listen here; others than this machine can come in.")
+    ] = "127.0.0.1",
+    port: Annotated[
+        int | None, typer.Option("--port", min=0, max=65535, help="8484, or any that is free.")
+    ] = None,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Print the link, and open nothing.")
+    ] = False,
+) -> None:
+    """Serve the editor of one room and open it in the browser, until Ctrl+C.
+
+    Everything is kept as it is done, beside the room, and can be undone; the room's own files
+    change only when you save. Only this machine can reach the editor, and only with the link that
+    is printed.
+
+    Args:
+        source: a run's folder, or an occupancy file; nothing for the start page.
+        demo: whether to open the demo room.
+        host: the address to listen on.
+        port: the port to listen on.
+        no_browser: whether to open no browser.
+
+    Raises:
+        UsageError: the words contradict each other, or the port is taken.
+        InputError: there is no room in the source.
+    """
+    from world2minecraft.errors import UsageError
+    from world2minecraft.forge.demo import demo_room
+    from world2minecraft.forge.editor import Editor
+    from world2minecraft.forge.serve import ForgeServer
+
+    if demo and source is not None:
+        raise UsageError("--demo is a room of its own; leave out the file, or --demo")
+    editor = Editor(demo_room()) if demo else Editor.open(source) if source else None
+    server = ForgeServer(editor, host=host, port=port)
+    if server.is_open:
+        print(
+            f"warning: whoever reaches {host} and has the link can edit, and nothing is "
+            "encrypted; an SSH tunnel is safer (docs/forge.md)"
+        )
+    print(f"SceneForge: {server.link}", flush=True)
+    print("Ctrl+C stops it; everything done is kept.", flush=True)
+    server.run(lambda: None if no_browser else _open(server.link))
+
+
+def _open(link: str) -> None:
+    """Open the browser; where there is none the link stands in the terminal."""
+    webbrowser.open(link)

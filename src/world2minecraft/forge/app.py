@@ -1,0 +1,145 @@
+"""The web application: a page, a small HTTP API and a websocket, all behind the guard."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+
+from world2minecraft.edit.scene import COMMANDS
+from world2minecraft.errors import UsageError, World2MinecraftError
+from world2minecraft.forge.failures import explained
+from world2minecraft.forge.guard import Guard
+from world2minecraft.forge.limits import BodyLimit, json_of
+from world2minecraft.forge.queries import QUERIES
+from world2minecraft.forge.session import NO_ROOM, Session
+from world2minecraft.forge.socket import live
+
+STATIC = Path(__file__).parent / "static"
+
+
+def build_app(
+    session: Session,
+    *,
+    token: str,
+    port: int,
+    hosts: Iterable[str] = (),
+    any_address: bool = False,
+) -> Starlette:
+    """Return the application that serves a session; see ``Guard`` for the arguments."""
+    guard = Middleware(Guard, token=token, port=port, hosts=hosts, any_address=any_address)
+    app = Starlette(
+        routes=[*routes(), Mount("/", StaticFiles(directory=STATIC, html=True))],
+        middleware=[guard, Middleware(BodyLimit)],
+        exception_handlers={
+            World2MinecraftError: _refused,
+            HTTPException: _http,
+            Exception: _broke,
+        },
+    )
+    app.state.session = session
+    return app
+
+
+def routes() -> list[BaseRoute]:
+    """All that is served under /api/."""
+    return [
+        Route("/api/scene", _scene),
+        Route("/api/volume", _volume),
+        Route("/api/do", _do, methods=["POST"]),
+        Route("/api/undo", _undo, methods=["POST"]),
+        Route("/api/redo", _redo, methods=["POST"]),
+        Route("/api/save", _save, methods=["POST"]),
+        Route("/api/preview", _preview, methods=["POST"]),
+        Route("/api/ask/{name}", _ask, methods=["POST"]),
+        Route("/api/commands", _commands),
+        WebSocketRoute("/api/live", live),
+    ]
+
+
+def session_of(request: Request) -> Session:
+    """Return the session that a request is for."""
+    return request.app.state.session
+
+
+async def object_of(request: Request) -> dict[str, Any]:
+    """Return the JSON object of a request's body; an empty body is an empty object.
+
+    Raises:
+        UsageError: it is none.
+    """
+    body = await request.body()
+    value = json_of(body) if body else {}
+    if not isinstance(value, dict):
+        raise UsageError("the body must be a JSON object")
+    return value
+
+
+async def _scene(request: Request) -> Response:
+    session = session_of(request)
+    if session.editor is None:
+        return JSONResponse({"error": NO_ROOM}, 404)
+    return JSONResponse(await session.scene())
+
+
+async def _volume(request: Request) -> Response:
+    zipped = "gzip" in request.headers.get("accept-encoding", "")
+    what = request.query_params.get("what", "labels")
+    rev, data = await session_of(request).volume(what, zipped)
+    headers = {"X-Rev": str(rev), "Vary": "Accept-Encoding"}
+    if zipped:
+        headers["Content-Encoding"] = "gzip"
+    return Response(data, headers=headers, media_type="application/octet-stream")
+
+
+async def _do(request: Request) -> Response:
+    return JSONResponse(await session_of(request).do(await object_of(request), "script"))
+
+
+async def _undo(request: Request) -> Response:
+    return JSONResponse(await session_of(request).undo())
+
+
+async def _redo(request: Request) -> Response:
+    return JSONResponse(await session_of(request).redo())
+
+
+async def _save(request: Request) -> Response:
+    return JSONResponse({"rev": await session_of(request).save()})
+
+
+async def _preview(request: Request) -> Response:
+    return JSONResponse(await session_of(request).preview(await object_of(request)))
+
+
+async def _ask(request: Request) -> Response:
+    fields = await object_of(request)
+    return JSONResponse(await session_of(request).ask(request.path_params["name"], fields))
+
+
+async def _commands(request: Request) -> Response:
+    kinds = {"commands": COMMANDS, "queries": QUERIES}
+    told = {
+        what: {name: kind.model_json_schema() for name, kind in known.items()}
+        for what, known in kinds.items()
+    }
+    return JSONResponse(told)
+
+
+async def _refused(request: Request, error: Exception) -> Response:
+    return JSONResponse({"error": explained(error)}, 400)
+
+
+async def _http(request: Request, error: Exception) -> Response:
+    status, detail = getattr(error, "status_code", 500), getattr(error, "detail", "")
+    return JSONResponse({"error": detail}, status, getattr(error, "headers", None))
+
+
+async def _broke(request: Request, error: Exception) -> Response:
+    return JSONResponse({"error": explained(error)}, 500)

@@ -1,0 +1,195 @@
+"""Who may talk to SceneForge: one guard before everything, HTTP and websocket alike.
+
+Binding to loopback is no boundary: any page that the user has open can send to it, and by DNS
+rebinding it can even read. So each request must name a host that is ours (``Host``), come from
+our own page or from no page at all (``Origin``, ``Sec-Fetch-Site``), and know the token: 256 bits
+that are printed in the link, exchanged at the first visit for a cookie that scripts cannot read
+and other sites do not send, and then gone from the address bar. A program sends the token as
+``Authorization: Bearer TOKEN`` instead.
+"""
+
+import json
+import re
+import secrets
+from collections.abc import Iterable
+from hmac import compare_digest
+from http.cookies import CookieError, SimpleCookie
+from ipaddress import ip_address
+from urllib.parse import parse_qs
+
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
+TOKEN_BYTES = 32
+HOST = re.compile(r"(?P<name>\[[0-9a-f:.]{2,45}\]|[a-z0-9_.-]{1,253})(?P<port>:[0-9]{1,5})?")
+POLICY = (
+    "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
+    "style-src 'self' 'unsafe-inline'; connect-src 'self'; object-src 'none'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'"
+)
+HEADERS = (
+    (b"content-security-policy", POLICY.encode()),
+    (b"x-content-type-options", b"nosniff"),
+    (b"x-frame-options", b"DENY"),
+    (b"referrer-policy", b"no-referrer"),
+    (b"cross-origin-opener-policy", b"same-origin"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+)
+NO_STORE = (b"cache-control", b"no-store")
+OPEN_THE_LINK = "open the link that w2m forge printed; it holds the key to this scene"
+
+
+class Guard:
+    """The outermost layer of the server; what it lets through is the user's own.
+
+    Args:
+        app: what it guards.
+        token: what the link holds; 43 characters of ``new_token``.
+        port: where the server listens, so that the cookies of two servers differ.
+        hosts: names, beside those of loopback, under which the server may be called.
+        any_address: whether an IP address will do too, as it must where the server is bound to
+            others than loopback; a rebound name is never one.
+    """
+
+    def __init__(
+        self,
+        app: ASGIApp,
+        *,
+        token: str,
+        port: int,
+        hosts: Iterable[str] = (),
+        any_address: bool = False,
+    ):
+        self.app, self.token, self.any_address = app, token, any_address
+        self.hosts = {*LOOPBACK, *(name.lower() for name in hosts)}
+        self.cookie = f"w2m_forge_{port}"
+        self.session = new_token()  # What the cookie holds: a token in the link is not it.
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Let a request through, or refuse it with 403 and a line that says why."""
+        if scope["type"] == "lifespan":
+            await self.app(scope, receive, send)
+            return
+        headers = _headers(scope)
+        refusal = self._foreign(headers)
+        if not refusal and self._brings_token(scope):
+            await _welcome(scope, send, f"{self.cookie}={self.session}")
+            return
+        refusal = refusal or self._unknown(headers)
+        if refusal:
+            await _refuse(scope, receive, send, refusal)
+            return
+        await self.app(scope, receive, _with_headers(scope, send))
+
+    def _foreign(self, headers: dict[str, list[str]]) -> str:
+        """Why a request is not from our own page or a program; empty where it may be."""
+        hosts = headers.get("host", [])
+        if len(hosts) != 1 or not self._is_ours(hosts[0].lower()):
+            return "this server is not called by that name; use the link that w2m forge printed"
+        own = {f"{scheme}://{hosts[0].lower()}" for scheme in ("http", "https")}
+        if any(origin.lower() not in own for origin in headers.get("origin", [])):
+            return "another site may not use this scene"
+        if any(site not in ("same-origin", "none") for site in headers.get("sec-fetch-site", [])):
+            return "another site may not open this; paste the link into the address bar"
+        return ""
+
+    def _is_ours(self, host: str) -> bool:
+        found = HOST.fullmatch(host)
+        if not found:
+            return False
+        return found["name"] in self.hosts or (self.any_address and _is_address(found["name"]))
+
+    def _brings_token(self, scope: Scope) -> bool:
+        """Whether this is a visit to the link that was printed."""
+        if scope["type"] != "http" or scope["method"] != "GET" or scope["path"] != "/":
+            return False
+        brought = parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
+        return len(brought) == 1 and _same(brought[0], self.token)
+
+    def _unknown(self, headers: dict[str, list[str]]) -> str:
+        """Why the sender is not known; empty where it is."""
+        for value in headers.get("authorization", []):
+            scheme, _, given = value.partition(" ")
+            if scheme.lower() == "bearer" and _same(given.strip(), self.token):
+                return ""
+        for value in headers.get("cookie", []):
+            if _same(_cookie(value, self.cookie), self.session):
+                return ""
+        return OPEN_THE_LINK
+
+
+def new_token() -> str:
+    """Return 256 random bits, 43 characters that stand in a link."""
+    return secrets.token_urlsafe(TOKEN_BYTES)
+
+
+def _headers(scope: Scope) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for name, value in scope["headers"]:
+        found.setdefault(name.decode("latin-1").lower(), []).append(value.decode("latin-1"))
+    return found
+
+
+def _cookie(header: str, name: str) -> str:
+    try:
+        morsel = SimpleCookie(header).get(name)
+    except CookieError:
+        return ""
+    return morsel.value if morsel else ""
+
+
+def _same(given: str, wanted: str) -> bool:
+    return compare_digest(given.encode(), wanted.encode())
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ip_address(name.strip("[]"))
+    except ValueError:
+        return False
+    return True
+
+
+async def _welcome(scope: Scope, send: Send, cookie: str) -> None:
+    """Set the cookie and go on to the page without the token in the address bar."""
+    told = f"{cookie}; HttpOnly; SameSite=Strict; Path=/"
+    headers = [(b"location", b"/"), (b"set-cookie", told.encode()), (b"content-length", b"0")]
+    send = _with_headers(scope, send)
+    await send({"type": "http.response.start", "status": 303, "headers": headers})
+    await send({"type": "http.response.body", "body": b""})
+
+
+async def _refuse(scope: Scope, receive: Receive, send: Send, why: str) -> None:
+    """Answer 403; a websocket is refused before it is opened."""
+    if scope["type"] == "websocket":
+        await receive()
+        await send({"type": "websocket.close", "code": 1008, "reason": why})
+        return
+    is_api = scope["path"].startswith("/api/")
+    body = (json.dumps({"error": why}) if is_api else f"SceneForge: {why}.\n").encode()
+    kind = b"application/json" if is_api else b"text/plain; charset=utf-8"
+    headers = [(b"content-type", kind), (b"content-length", str(len(body)).encode())]
+    headers.append((b"connection", b"close"))  # What follows in the stream is not read.
+    send = _with_headers(scope, send)
+    await send({"type": "http.response.start", "status": 403, "headers": headers})
+    await send({"type": "http.response.body", "body": body})
+
+
+def _with_headers(scope: Scope, send: Send) -> Send:
+    """Return ``send`` that adds the security headers to every answer."""
+    if scope["type"] != "http":
+        return send
+    always = [*HEADERS, NO_STORE] if _never_kept(scope["path"]) else [*HEADERS]
+
+    async def adding(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            names = {name for name, _ in always}
+            kept = [pair for pair in message.get("headers", []) if pair[0].lower() not in names]
+            message = {**message, "headers": [*kept, *always]}
+        await send(message)
+
+    return adding
+
+
+def _never_kept(path: str) -> bool:
+    return path == "/" or path.startswith("/api/")

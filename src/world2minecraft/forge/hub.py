@@ -1,0 +1,102 @@
+"""The tabs that are open: each gets every message in order, or is told to begin anew.
+
+A tab that does not read (its laptop sleeps) costs a bounded queue: when that is full it is
+emptied, and once the tab reads again its first message is a fresh ``hello``, at which it gets the
+scene again. No tab waits for another.
+"""
+
+import asyncio
+import json
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from world2minecraft.forge.wire import PROTOCOL
+
+MAX_QUEUED_BYTES = 8 << 20
+MAX_QUEUED = 512
+MAX_TABS = 64
+
+
+class Tab:
+    """One open page: what it has yet to be told."""
+
+    def __init__(self, actor: str):
+        self.actor = actor
+        self._queue: deque[str] = deque()
+        self._bytes = 0
+        self._lost = False
+        self._something = asyncio.Event()
+
+    def put(self, text: str) -> None:
+        """Add a message, or drop all where the tab does not keep up."""
+        self._something.set()
+        if self._lost:
+            return
+        self._queue.append(text)
+        self._bytes += len(text)
+        if len(self._queue) > MAX_QUEUED or self._bytes > MAX_QUEUED_BYTES:
+            self.forget()
+
+    def forget(self) -> None:
+        """Drop what waits; the tab is to begin anew."""
+        self._queue.clear()
+        self._bytes, self._lost = 0, True
+        self._something.set()
+
+    async def get(self, rev: Callable[[], int]) -> str:
+        """Return the next message; a ``hello`` with the revision of now where some were lost."""
+        while True:
+            if self._lost:
+                self._lost = False
+                return hello(rev())
+            if self._queue:
+                text = self._queue.popleft()
+                self._bytes -= len(text)
+                return text
+            self._something.clear()
+            await self._something.wait()
+
+
+class Hub:
+    """All tabs of a server. Its methods are called on the server's loop, but for ``tell_soon``."""
+
+    def __init__(self):
+        self._tabs: list[Tab] = []
+        self._count = 0
+        self._loop: asyncio.AbstractEventLoop | None = None  # Known once a tab is open.
+
+    def open(self) -> Tab | None:
+        """Return a new tab, None where there are too many."""
+        if len(self._tabs) >= MAX_TABS:
+            return None
+        self._loop = asyncio.get_running_loop()
+        self._count += 1
+        tab = Tab(f"tab {self._count}")
+        self._tabs.append(tab)
+        return tab
+
+    def close(self, tab: Tab) -> None:
+        """Forget a tab."""
+        self._tabs.remove(tab)
+
+    def tell(self, message: dict[str, Any]) -> None:
+        """Send a message of wire.ts to every tab."""
+        text = json.dumps(message, separators=(",", ":"), allow_nan=False)
+        for tab in self._tabs:
+            tab.put(text)
+
+    def tell_soon(self, message: dict[str, Any]) -> None:
+        """The same from any thread; nothing happens where no tab is open."""
+        if self._loop is not None and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self.tell, message)
+
+    def restart(self) -> None:
+        """Let every tab begin anew: another document is open."""
+        for tab in self._tabs:
+            tab.forget()
+
+
+def hello(rev: int) -> str:
+    """Return the message at which a page gets the scene, at first or again."""
+    return json.dumps({"type": "hello", "protocol": PROTOCOL, "rev": rev})

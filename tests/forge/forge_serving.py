@@ -1,0 +1,68 @@
+"""A real server on a free port, and clients of it."""
+
+import json
+import socket
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+import numpy as np
+from websockets.sync.client import connect
+
+from world2minecraft.exchange.occupancy import labels_grid
+from world2minecraft.forge.editor import Editor
+from world2minecraft.forge.serve import ForgeServer
+from world2minecraft.forge.sources import Opened
+
+
+def small_editor(shape=(12, 10, 8), folder=Path("OUT")) -> Editor:
+    """A floor and a wall, without objects."""
+    labels = np.zeros(shape, np.uint8)
+    labels[:, :, 0], labels[0] = 2, 3
+    return Editor(Opened("den", folder, (), labels_grid(labels), np.eye(4), ()))
+
+
+@contextmanager
+def served(editor=None, **options):
+    with ForgeServer(editor, port=0, **options) as server:
+        yield server
+
+
+def bearer(server) -> dict[str, str]:
+    return {"Authorization": f"Bearer {server.token}"}
+
+
+def client(server, **options) -> httpx.Client:
+    """A script: it sends the token with each request."""
+    return httpx.Client(base_url=server.url, headers=bearer(server), timeout=30, **options)
+
+
+@contextmanager
+def tab(server, **headers):
+    """A websocket whose hello was read."""
+    url = f"ws://127.0.0.1:{server.port}/api/live"
+    with connect(url, additional_headers=bearer(server) | headers) as socket_:
+        assert heard(socket_)["type"] == "hello"
+        yield socket_
+
+
+def heard(socket_) -> dict:
+    return json.loads(socket_.recv(timeout=20))
+
+
+def say(socket_, **message) -> None:
+    socket_.send(json.dumps(message))
+
+
+def paint(first, length=3, class_id=8) -> dict:
+    return {"op": "set_cells", "cells": [[first, length]], "class_id": class_id}
+
+
+def raw(server, data: bytes, most=65536) -> bytes:
+    """What the server answers to bytes as they are, until it closes."""
+    with socket.create_connection(("127.0.0.1", server.port), timeout=20) as stream:
+        stream.sendall(data)
+        answer = b""
+        while len(answer) < most and (part := stream.recv(65536)):
+            answer += part
+        return answer
