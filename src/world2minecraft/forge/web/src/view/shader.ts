@@ -1,0 +1,83 @@
+// The shaders of the voxels. The vertex shader hides classes and cuts the slices by moving
+// corners, so neither needs a new mesh; the fragment shader draws edges and contact shadows.
+
+export const VERTEX = /* glsl */ `
+precision highp float;
+precision highp int;
+uniform mat4 projectionMatrix, viewMatrix, modelMatrix;
+uniform vec4 palette[16]; // rgb, and whether the class is drawn
+uniform vec3 origin; // metres
+uniform float voxel; // metres
+uniform vec3 boxLow, boxHigh; // cells; what the slices leave
+uniform float shrink; // side of a drawn cube, share of a cell
+in vec4 place, kind;
+out vec3 cell, tint;
+flat out vec3 normal;
+flat out float span;
+
+const float LIGHT[6] = float[6](0.86, 0.93, 1.0, 0.80, 0.73, 0.55); // +x +y +z -x -y -z
+
+void main() {
+  int bits = int(place.w + 0.5);
+  int face = bits & 7;
+  int corner = bits >> 3;
+  int axis = face % 3;
+  vec3 n = vec3(axis == 0, axis == 1, axis == 2) * (face < 3 ? 1.0 : -1.0);
+  vec3 at = (modelMatrix * vec4(place.xyz, 1.0)).xyz;
+  at = floor((at - origin) / voxel + 0.5);
+  int label = int(kind.x + 0.5);
+  bool hidden = palette[label].a < 0.5;
+#ifdef CUBES
+  vec3 owner = at;
+  vec3 side = vec3(corner & 1, (corner >> 1) & 1, corner >> 2);
+  at += 0.5 + (side - 0.5) * shrink;
+  hidden = hidden || any(lessThan(owner, boxLow)) || any(greaterThanEqual(owner, boxHigh));
+#else
+  float plane = dot(at, abs(n)), low = dot(boxLow, abs(n)), high = dot(boxHigh, abs(n));
+  hidden = hidden || (face < 3 ? plane <= low || plane > high : plane < low || plane >= high);
+  at = clamp(at, boxLow, boxHigh);
+#endif
+  if (hidden) at = boxLow; // all corners in one place: no area
+  cell = at;
+  normal = n;
+  span = kind.y;
+  tint = palette[label & 15].rgb * LIGHT[face];
+  gl_Position = projectionMatrix * viewMatrix * vec4(origin + at * voxel, 1.0);
+}
+`;
+
+export const FRAGMENT = /* glsl */ `
+precision highp float;
+precision highp sampler3D;
+uniform sampler3D solid; // 1 where a drawn cell is; z y x
+uniform vec3 shape; // cells of the texture: two more than the scene
+uniform float edges, opacity;
+uniform vec3 fog;
+uniform vec2 fogSpan; // 1 / w at which it starts and is full
+in vec3 cell, tint;
+flat in vec3 normal;
+flat in float span;
+out vec4 colour;
+
+void main() {
+#ifdef SCREEN_DOOR
+  // Layers behind each other get other patterns, else the nearest would hide all of them.
+  float depth = dot(floor(cell - normal * 0.5), vec3(0.754877, 0.569840, 0.431597)) ;
+  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))) + depth);
+  if (noise >= opacity) discard;
+#endif
+  vec3 rgb = tint;
+#ifdef SHADOWS
+  float near = texture(solid, ((cell + 1.0 + normal * 0.5 * span) / shape).zyx).r;
+  rgb *= 1.0 - 0.42 * near;
+#endif
+#ifdef EDGES
+  vec3 across = abs(fract(cell - 0.5) - 0.5) + abs(normal);
+  vec3 wide = fwidth(cell);
+  float line = max(wide.x, max(wide.y, wide.z));
+  float edge = 1.0 - smoothstep(0.0, 1.2 * line, min(across.x, min(across.y, across.z)));
+  rgb *= 1.0 - edges * edge * clamp(0.34 / line - 1.0, 0.0, 1.0);
+#endif
+  colour = vec4(rgb, 1.0);
+}
+`;
