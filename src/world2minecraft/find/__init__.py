@@ -4,7 +4,7 @@ This is the paper's Algorithm 1 from ``density`` (D) to the centres (C'), and th
 each object (O_k).
 """
 
-from world2minecraft.find.objects import CenterMap, Found, find_objects
+from world2minecraft.find.objects import CenterMap, Found, find_objects, measured
 from world2minecraft.find.parameters import FindParameters
 
-__all__ = ["CenterMap", "FindParameters", "Found", "find_objects"]
+__all__ = ["CenterMap", "FindParameters", "Found", "find_objects", "measured"]

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from world2minecraft.classes import UNKNOWN
 from world2minecraft.coordinates import cell_centers_m
 from world2minecraft.errors import UsageError
 from world2minecraft.find.askew import askew_rectangle
@@ -21,7 +22,7 @@ from world2minecraft.find.rows import part_rows
 from world2minecraft.find.specks import without_specks
 from world2minecraft.find.stacks import join_stacked
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
-from world2minecraft.types import ObjectInstance, OccupancyGrid
+from world2minecraft.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
 
 MAX_OBJECTS = 65535
 
@@ -102,6 +103,22 @@ def _instances(
         _instance(number, grid, group, around, reach)
         for number, group in enumerate(sorted(groups, key=lambda g: _rank(grid, g)), start=1)
     )
+
+
+def measured(grid: OccupancyGrid, number: int, class_id: int, cells: np.ndarray) -> ObjectInstance:
+    """Return the object that cells, int32 [N, 3], of a grid are: its box and its front.
+
+    Args:
+        grid: what is around it; the labels of its own cells may be of other classes.
+        number: its id.
+        class_id: its class, 5 to 11.
+        cells: one at least.
+    """
+    labels = grid.labels.copy()
+    labels[tuple(cells.T)] = class_id
+    source = np.where(labels == UNKNOWN, UNSEEN, OBSERVED).astype(np.uint8)
+    grid = replace(grid, labels=labels, source=source)
+    return _instance(number, grid, cells, surroundings(labels), True)
 
 
 def _rank(grid: OccupancyGrid, cells: np.ndarray) -> tuple[int, ...]:

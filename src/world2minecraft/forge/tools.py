@@ -7,8 +7,8 @@ import numpy as np
 
 from world2minecraft.edit.scene import Tools
 from world2minecraft.errors import UnknownNameError
-from world2minecraft.find import FindParameters, find_objects
-from world2minecraft.furnish import FurnishParameters, furnish
+from world2minecraft.find import FindParameters, find_objects, measured
+from world2minecraft.furnish import FurnishParameters, fit_template, furnish
 from world2minecraft.types import Layout, ObjectInstance, OccupancyGrid, Placement
 
 
@@ -18,7 +18,10 @@ def tools_of(rooms: Sequence[Layout] = ()) -> Tools:
     def match(grid: OccupancyGrid, one: ObjectInstance) -> tuple[Placement, ...]:
         return furnish(grid, (one,), FurnishParameters(), rooms)
 
-    return Tools(match, found)
+    def fit(grid: OccupancyGrid, one: ObjectInstance, name: str, turns: int | None) -> Placement:
+        return fit_template(grid, one, name, turns, rooms)
+
+    return Tools(match, found, fit, measured)
 
 
 def found(

@@ -3,7 +3,8 @@
 It is the paper's argmax of |O_k intersected with Rot(T_j, delta)| over their union.
 """
 
+from world2minecraft.furnish.fitting import fit_template, ranked_matches
 from world2minecraft.furnish.parameters import FurnishParameters
 from world2minecraft.furnish.placing import furnish
 
-__all__ = ["FurnishParameters", "furnish"]
+__all__ = ["FurnishParameters", "fit_template", "furnish", "ranked_matches"]

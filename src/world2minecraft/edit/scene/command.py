@@ -13,20 +13,30 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from world2minecraft.edit.scene.draft import SceneDraft
+from world2minecraft.errors import UsageError
 from world2minecraft.types import ObjectInstance, OccupancyGrid, Operation, Placement
 
 MAX_RUNS = 200_000
 
 
+def not_at_hand(*_given: Any) -> Any:
+    """Stand for a tool that was not given: raise ``UsageError``."""
+    raise UsageError("this edit needs a stage that is not at hand; open the scene with Editor")
+
+
 class Tools(NamedTuple):
     """What commands need of the stages, which edits do not know.
 
-    ``match`` returns the furniture that stands for an object in a grid; ``find`` the grid with
-    its instances and the objects, by the parameters given.
+    ``match`` returns the furniture that stands for an object in a grid; ``find`` the instance of
+    each cell and the objects, by the parameters given (``FindParameters``). ``fit`` returns one
+    template in an object's place, in the turn given or the best, whatever is there. ``measure``
+    returns the object of an id and a class that cells int32 [N, 3] are: its box and its front.
     """
 
     match: Callable[[OccupancyGrid, ObjectInstance], tuple[Placement, ...]]
     find: Callable[[OccupancyGrid, dict[str, Any]], tuple[np.ndarray, tuple[ObjectInstance, ...]]]
+    fit: Callable[[OccupancyGrid, ObjectInstance, str, int | None], Placement] = not_at_hand
+    measure: Callable[[OccupancyGrid, int, int, np.ndarray], ObjectInstance] = not_at_hand
 
 
 class Command(BaseModel):

@@ -5,6 +5,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from world2minecraft.edit.scene.command import Command
+from world2minecraft.edit.scene.object_commands import OBJECT_COMMANDS
 from world2minecraft.edit.scene.voxels import DeleteComponent, FillBox, Paste, SetCells
 from world2minecraft.edit.scene.whole_class import DeleteClass, RelabelClass
 from world2minecraft.errors import UnknownNameError, UsageError
@@ -18,6 +19,7 @@ COMMANDS: dict[str, type[Command]] = {
         Paste,
         RelabelClass,
         DeleteClass,
+        *OBJECT_COMMANDS,
     )
 }
 
