@@ -11,8 +11,6 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-from world2minecraft.forge.wire import PROTOCOL
-
 MAX_QUEUED_BYTES = 8 << 20
 MAX_QUEUED = 512
 MAX_TABS = 64
@@ -44,12 +42,12 @@ class Tab:
         self._bytes, self._lost = 0, True
         self._something.set()
 
-    async def get(self, rev: Callable[[], int]) -> str:
-        """Return the next message; a ``hello`` with the revision of now where some were lost."""
+    async def get(self, hello: Callable[[], dict[str, Any]]) -> str:
+        """Return the next message; a ``hello`` of now where some were lost."""
         while True:
             if self._lost:
                 self._lost = False
-                return hello(rev())
+                return as_text(hello())
             if self._queue:
                 text = self._queue.popleft()
                 self._bytes -= len(text)
@@ -82,7 +80,7 @@ class Hub:
 
     def tell(self, message: dict[str, Any]) -> None:
         """Send a message of wire.ts to every tab."""
-        text = json.dumps(message, separators=(",", ":"), allow_nan=False)
+        text = as_text(message)
         for tab in self._tabs:
             tab.put(text)
 
@@ -97,6 +95,6 @@ class Hub:
             tab.forget()
 
 
-def hello(rev: int) -> str:
-    """Return the message at which a page gets the scene, at first or again."""
-    return json.dumps({"type": "hello", "protocol": PROTOCOL, "rev": rev})
+def as_text(message: dict[str, Any]) -> str:
+    """Return a message as it is sent."""
+    return json.dumps(message, separators=(",", ":"), allow_nan=False)

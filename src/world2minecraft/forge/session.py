@@ -17,7 +17,9 @@ from world2minecraft.errors import UsageError
 from world2minecraft.forge.changes import change_of, preview_of
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.hub import Hub
+from world2minecraft.forge.jobs import Jobs
 from world2minecraft.forge.volumes import volume_bytes
+from world2minecraft.forge.wire import PROTOCOL
 from world2minecraft.types import Operation
 
 QUICK = frozenset({"set_cells", "move_object", "turn_objects", "delete_objects", "set_template"})
@@ -30,13 +32,16 @@ Value = TypeVar("Value")
 class Session:
     """The one document of a server, and the tabs that show it.
 
-    ``editor`` is None before one is opened. ``cancels`` says how each running job is stopped.
+    ``editor`` is None before one is opened. ``shown`` counts the documents that were shown, so
+    that a tab knows a new one from a new revision; 0 is none. ``jobs`` is the long work beside.
     """
 
     def __init__(self, editor: Editor | None = None):
         self.editor: Editor | None = None
         self.hub = Hub()
-        self.cancels: dict[str, Callable[[], None]] = {}
+        self.jobs = Jobs(self.hub.tell_soon)
+        self.shown = 0
+        self._count = 0
         self._turn = asyncio.Lock()
         self._volumes: dict[str, tuple[int, bytes]] = {}
         self._unlisten: Callable[[], None] = lambda: None
@@ -121,7 +126,8 @@ class Session:
 
     async def scene(self) -> dict[str, Any]:
         """Return the scene as wire.ts has it. Raises UsageError where none is open."""
-        return await asyncio.to_thread(self.document.scene_json)
+        told = {"document": self.shown}
+        return told | await asyncio.to_thread(self.document.scene_json)
 
     async def volume(self, what: str, zipped: bool) -> tuple[int, bytes]:
         """Return the revision and one array as ``W2MV``, in gzip where ``zipped``.
@@ -141,23 +147,27 @@ class Session:
     def active(self) -> None:
         """Note that a person is at work: effort is measured without idling."""
 
-    def cancel(self, job: str) -> None:
-        """Stop a job; nothing happens where it is done or unknown."""
-        self.cancels.get(job, lambda: None)()
+    def hello(self) -> dict[str, Any]:
+        """Return what a tab is told first, and again where it is to begin anew."""
+        return {"type": "hello", "protocol": PROTOCOL, "rev": self.rev, "document": self.shown}
 
     def report(self, error: BaseException) -> None:
         """Write what went wrong by a mistake of ours to the terminal."""
         LOG.error("unexpected %s", type(error).__name__, exc_info=error)
 
     async def close(self) -> None:
-        """Close the document."""
+        """End the jobs and close the document."""
+        await asyncio.to_thread(self.jobs.close)
         await self.show(None)
 
     def _take(self, editor: Editor | None) -> None:
         """Show a document, and tell the tabs of each step whoever does it."""
         self.editor = editor
         self._volumes.clear()
+        self.shown = 0
         if editor is not None:
+            self._count += 1
+            self.shown = self._count
 
             def told(rev: int, step: str, operation: Operation) -> None:
                 self.hub.tell_soon(change_of(editor, rev, step, operation))

@@ -5,7 +5,6 @@ the tab gave; a change is told to every tab before it is told done.
 """
 
 import asyncio
-import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,7 +12,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from world2minecraft.errors import UsageError, World2MinecraftError
 from world2minecraft.forge.failures import explained
-from world2minecraft.forge.hub import Tab, hello
+from world2minecraft.forge.hub import Tab, as_text
 from world2minecraft.forge.limits import json_of
 from world2minecraft.forge.session import Session
 
@@ -30,7 +29,8 @@ async def live(socket: WebSocket) -> None:
     sender = None
     try:
         await socket.accept()
-        tab.put(hello(session.rev))
+        for message in (session.hello(), *session.jobs.states()):
+            tab.put(as_text(message))
         sender = asyncio.create_task(_send(socket, tab, session))
         while True:
             await _answer(await socket.receive(), tab, session)
@@ -46,7 +46,7 @@ async def _send(socket: WebSocket, tab: Tab, session: Session) -> None:
     """Send what waits; ends with the socket."""
     try:
         while True:
-            await socket.send_text(await tab.get(lambda: session.rev))
+            await socket.send_text(await tab.get(session.hello))
     except (WebSocketDisconnect, RuntimeError):
         return
 
@@ -61,12 +61,12 @@ async def _answer(received: Mapping[str, Any], tab: Tab, session: Session) -> No
         if not isinstance(message, dict):
             raise UsageError('a message is an object with "type"')
         if await _do(message, tab, session):
-            tab.put(json.dumps({"type": "done", "seq": _seq(message), "rev": session.rev}))
+            tab.put(as_text({"type": "done", "seq": _seq(message), "rev": session.rev}))
     except Exception as error:
         if not isinstance(error, World2MinecraftError):
             session.report(error)
         text = explained(error)
-        tab.put(json.dumps({"type": "refused", "seq": _seq(message), "error": text}))
+        tab.put(as_text({"type": "refused", "seq": _seq(message), "error": text}))
 
 
 async def _do(message: dict[str, Any], tab: Tab, session: Session) -> bool:
@@ -76,7 +76,7 @@ async def _do(message: dict[str, Any], tab: Tab, session: Session) -> bool:
         session.active()
         return False
     if kind == "cancel":
-        session.cancel(str(message.get("job")))
+        session.jobs.cancel(str(message.get("job")))
         return False
     if kind == "do":
         await session.do(message.get("command"), tab.actor)

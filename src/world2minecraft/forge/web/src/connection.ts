@@ -10,6 +10,7 @@ import type {
   ClientMessage,
   Done,
   HeldRun,
+  Hello,
   JobState,
   Refused,
   Scene,
@@ -117,20 +118,20 @@ export class Connection {
   }
 
   private hear(message: ServerMessage): void {
-    if (message.type === "hello") this.greet(message.protocol, message.rev);
+    if (message.type === "hello") this.greet(message);
     else if (message.type === "change") this.take(message);
     else if (message.type === "saved") this.saved(message.rev);
     else if (message.type === "job") this.jobListeners.forEach((call) => call(message));
     else this.answer(message);
   }
 
-  private greet(protocol: number, rev: number): void {
-    if (protocol !== PROTOCOL) {
+  private greet(hello: Hello): void {
+    if (hello.protocol !== PROTOCOL) {
       this.store.set({ status: TEXT.error.protocol });
       return;
     }
     const scene = this.store.get().scene;
-    if (scene && scene.rev !== rev) void this.load();
+    if (scene && (scene.rev !== hello.rev || scene.document !== hello.document)) void this.load();
   }
 
   private take(change: Change): void {

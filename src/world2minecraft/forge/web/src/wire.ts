@@ -44,6 +44,7 @@ export interface SceneObject {
 /** GET /api/scene */
 export interface Scene {
   protocol: number;
+  document: number; // another one, another document
   name: string;
   rev: number;
   saved_rev: number;
@@ -76,10 +77,15 @@ export interface Change {
   redo: string;
 }
 
+/**
+ * The first message, and sent again where a tab slept too long to be told all changes, or another
+ * document was opened: where document or rev is not what the tab has, it gets the scene again.
+ */
 export interface Hello {
   type: "hello";
   protocol: number;
   rev: number;
+  document: number; // 0: none is open
 }
 
 export interface Saved {
