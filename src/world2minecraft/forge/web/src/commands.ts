@@ -56,10 +56,78 @@ export interface DeleteClass {
   class_id: number;
 }
 
+/** Put a piece of furniture of its usual size at a place, on what is under it there. */
+export interface AddObject {
+  op: "add_object";
+  /** >= 5, <= 11 */
+  class_id: number;
+  at_m: [number, number, number];
+  template?: string | null;
+  quarter_turns?: number | null;
+}
+
+/** Remove objects: their cells are empty then; floor and walls behind them stay. */
+export interface DeleteObjects {
+  op: "delete_objects";
+  ids: number[];
+}
+
+/** Put the same object again, centred at ``to_m``, or else beside itself where most is free. */
+export interface DuplicateObject {
+  op: "duplicate_object";
+  /** >= 1, <= 65535 */
+  id: number;
+  to_m?: [number, number, number] | null;
+}
+
+/** Move an object, with its cells and its furniture, by whole cells to a new centre. */
+export interface MoveObject {
+  op: "move_object";
+  /** >= 1, <= 65535 */
+  id: number;
+  to_m: [number, number, number];
+}
+
+/** Match the furniture of objects anew, as the reconstruction does, from their cells. */
+export interface Rematch {
+  op: "rematch";
+  ids: number[];
+}
+
+/** Choose the furniture that stands for an object, fitted to its cells. */
+export interface SetTemplate {
+  op: "set_template";
+  /** >= 1, <= 65535 */
+  id: number;
+  template: string;
+  quarter_turns?: number | null;
+}
+
+/** Turn objects by quarters about their centres, counter-clockwise from above. */
+export interface TurnObjects {
+  op: "turn_objects";
+  ids: number[];
+  /** >= -3, <= 3 */
+  quarter_turns: number;
+}
+
 /** How many cells each class has, and how many objects there are. */
 export type CountsQuery = Record<string, never>;
 
-export type Command = SetCells | FillBox | DeleteComponent | Paste | RelabelClass | DeleteClass;
+export type Command =
+  | SetCells
+  | FillBox
+  | DeleteComponent
+  | Paste
+  | RelabelClass
+  | DeleteClass
+  | AddObject
+  | DeleteObjects
+  | DuplicateObject
+  | MoveObject
+  | Rematch
+  | SetTemplate
+  | TurnObjects;
 
 /** What each query is asked with. */
 export interface Queries {
