@@ -12,6 +12,7 @@ import subprocess
 import sys
 from collections.abc import Mapping
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from world2minecraft.errors import WorkerError, World2MinecraftError
@@ -26,14 +27,24 @@ class ToldError(World2MinecraftError):
     """What a process said went wrong, as it said it."""
 
 
-def run_apart(task: str, **needs: Any) -> Work:
+def run_apart(task: str, within: Path | None = None, **needs: Any) -> Work:
     """Return the work of a job that does a task of ``worker.TASKS`` in a process.
 
     Args:
         task: its name.
+        within: a folder whose path is left out of what is said went wrong: it tells nobody more.
         needs: JSON values that the task is given.
     """
-    return lambda report: _follow(begin(task, needs), report)
+
+    def work(report: Report) -> Any:
+        try:
+            return _follow(begin(task, needs), report)
+        except ToldError as error:
+            raise ToldError(
+                str(error).replace(f"{within}{os.sep}", "") if within else error
+            ) from None
+
+    return work
 
 
 def begin(task: str, needs: Mapping[str, Any]) -> "subprocess.Popen[bytes]":

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
@@ -13,13 +12,16 @@ from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 
 from world2minecraft.edit.scene import COMMANDS
-from world2minecraft.errors import UsageError, World2MinecraftError
+from world2minecraft.errors import World2MinecraftError
+from world2minecraft.forge import start
 from world2minecraft.forge.failures import explained
 from world2minecraft.forge.guard import Guard
-from world2minecraft.forge.limits import BodyLimit, json_of
+from world2minecraft.forge.limits import BodyLimit
 from world2minecraft.forge.queries import QUERIES
+from world2minecraft.forge.requests import object_of
 from world2minecraft.forge.session import NO_ROOM, Session
 from world2minecraft.forge.socket import live
+from world2minecraft.forge.workshop import Workshop
 
 STATIC = Path(__file__).parent / "static"
 
@@ -27,6 +29,7 @@ STATIC = Path(__file__).parent / "static"
 def build_app(
     session: Session,
     *,
+    workshop: Workshop | None = None,
     token: str,
     port: int,
     hosts: Iterable[str] = (),
@@ -35,7 +38,7 @@ def build_app(
     """Return the application that serves a session; see ``Guard`` for the arguments."""
     guard = Middleware(Guard, token=token, port=port, hosts=hosts, any_address=any_address)
     app = Starlette(
-        routes=[*routes(), Mount("/", StaticFiles(directory=STATIC, html=True))],
+        routes=[*routes(), *start.routes(), Mount("/", StaticFiles(directory=STATIC, html=True))],
         middleware=[guard, Middleware(BodyLimit)],
         exception_handlers={
             World2MinecraftError: _refused,
@@ -43,7 +46,7 @@ def build_app(
             Exception: _broke,
         },
     )
-    app.state.session = session
+    app.state.session, app.state.workshop = session, workshop
     return app
 
 
@@ -66,19 +69,6 @@ def routes() -> list[BaseRoute]:
 def session_of(request: Request) -> Session:
     """Return the session that a request is for."""
     return request.app.state.session
-
-
-async def object_of(request: Request) -> dict[str, Any]:
-    """Return the JSON object of a request's body; an empty body is an empty object.
-
-    Raises:
-        UsageError: it is none.
-    """
-    body = await request.body()
-    value = json_of(body) if body else {}
-    if not isinstance(value, dict):
-        raise UsageError("the body must be a JSON object")
-    return value
 
 
 async def _scene(request: Request) -> Response:

@@ -124,7 +124,9 @@ class CaptureFolder:
         place, size = self.place_of(number), self.files[number].size
         held = _size(place)
         if start != held:
-            raise ConflictError(self.files[number].path, f"{held} bytes of it are here; go on there")
+            raise ConflictError(
+                self.files[number].path, f"{held} bytes of it are here; go on there"
+            )
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
             with place.open("ab") as stream:
@@ -198,7 +200,7 @@ class Captures:
         inner = tuple(UploadFile(one.path[len(top) + 1 :], one.size) for one in checked)
         inner = inner if top else checked
         alone = len(inner) == 1 and not top
-        name = inner[0].path if alone else check_name(top or title or "capture")
+        name = inner[0].path if alone else _folder_name(top or title)
         return self._made(title or top or name, name, inner, "")
 
     def adopt(self, path: Path) -> CaptureFolder:
@@ -246,6 +248,13 @@ class Captures:
         if free < size + SPARE_BYTES:
             needed = (size + SPARE_BYTES) >> 20
             raise OutputError(self.home, f"its disk has {free >> 20} MB free; {needed} are needed")
+
+
+def _folder_name(title: str) -> str:
+    try:
+        return check_name(title)
+    except UsageError:  # Nothing of it can be a name.
+        return "capture"
 
 
 def _size(place: Path) -> int:

@@ -7,15 +7,18 @@ import threading
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from ipaddress import ip_address
+from pathlib import Path
 
 import uvicorn
 
 from world2minecraft.errors import UsageError
 from world2minecraft.forge.app import build_app
+from world2minecraft.forge.captures import MOST_UPLOAD_BYTES, user_home
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.guard import new_token
 from world2minecraft.forge.limits import MAX_JSON_BYTES
 from world2minecraft.forge.session import Session
+from world2minecraft.forge.workshop import Workshop
 
 LOOPBACK = "127.0.0.1"
 PORT = 8484  # The same each time, so that the page's own settings are found again.
@@ -31,6 +34,9 @@ class ForgeServer:
         port: where to listen; None for 8484, or any that is free where it is taken.
         token: what the link holds; a new one where None.
         hosts: further names under which the server may be called.
+        home: the folder for captures and rooms made here; the user's own where None.
+        most_upload_bytes: the most that one dropped capture may hold.
+        capture: where the photos of the room lie, where its folder does not say so.
 
     Raises:
         UsageError: the port is taken, or there is no such address here.
@@ -44,15 +50,22 @@ class ForgeServer:
         port: int | None = None,
         token: str | None = None,
         hosts: Iterable[str] = (),
+        home: Path | None = None,
+        most_upload_bytes: int = MOST_UPLOAD_BYTES,
+        capture: Path | None = None,
     ):
         self.socket = _listening(host, port)
         self.host, self.port = host, int(self.socket.getsockname()[1])
         self.token = token or new_token()
         self.session = Session(editor)
+        self.workshop = Workshop(
+            self.session, home or user_home(), most_bytes=most_upload_bytes, capture=capture
+        )
         self.is_open = not _is_loopback(host)
         named = [*hosts, *([host, socket.gethostname()] if self.is_open else [])]
         app = build_app(
             self.session,
+            workshop=self.workshop,
             token=self.token,
             port=self.port,
             hosts=named,
@@ -120,6 +133,7 @@ class ForgeServer:
             await serving
         finally:
             self.socket.close()
+            await asyncio.to_thread(self.workshop.close)
             await self.session.close()
 
 

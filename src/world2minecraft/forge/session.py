@@ -165,6 +165,7 @@ class Session:
         self.editor = editor
         self._volumes.clear()
         self.shown = 0
+        self._unlisten = lambda: None
         if editor is not None:
             self._count += 1
             self.shown = self._count

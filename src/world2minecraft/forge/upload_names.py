@@ -40,7 +40,9 @@ def checked_files(told: Any, most_bytes: int) -> tuple[UploadFile, ...]:
     if not isinstance(told, list) or not told:
         raise UsageError('"files" must be a list of {"path", "size"}, one for each file')
     if len(told) > MOST_FILES:
-        raise LimitError("the capture", f"has {len(told):,} files; at most {MOST_FILES:,} are taken")
+        raise LimitError(
+            "the capture", f"has {len(told):,} files; at most {MOST_FILES:,} are taken"
+        )
     files = tuple(one for one in map(_checked, told) if not _ignored(one.path))
     if not files:
         raise UsageError("there is nothing in it; drop a folder with pictures, a zip or a video")

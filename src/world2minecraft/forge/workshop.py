@@ -1,26 +1,17 @@
 """What stands around the document: jobs, captures, and the rooms that were open before."""
 
 import asyncio
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, Protocol
 
 from world2minecraft.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.files import read_json, write_json
 from world2minecraft.forge.captures import MOST_UPLOAD_BYTES, CaptureFolder, Captures
 from world2minecraft.forge.editor import Editor
-from world2minecraft.forge.jobs import Jobs
+from world2minecraft.forge.jobs import Jobs, JobState, Work
+from world2minecraft.forge.session import NO_ROOM, Session
 
 MOST_RECENT = 12
-
-
-class Stage(Protocol):
-    """The server's session, as far as it is needed here."""
-
-    editor: Any
-
-    async def show(self, editor: Any) -> None:
-        """Put another document in the place of this one."""
-        ...
 
 
 class Workshop:
@@ -35,7 +26,7 @@ class Workshop:
 
     def __init__(
         self,
-        session: Any,
+        session: Session,
         home: Path,
         *,
         most_bytes: int = MOST_UPLOAD_BYTES,
@@ -54,8 +45,20 @@ class Workshop:
             UsageError: none is open.
         """
         if self.session.editor is None:
-            raise UsageError("no room is open; choose one on the start page")
+            raise UsageError(NO_ROOM)
         return self.session.editor
+
+    def begin(
+        self,
+        title: str,
+        work: Work,
+        usual_s: Mapping[str, float] | None = None,
+        ended: Callable[[JobState], None] = lambda state: None,
+    ) -> str:
+        """Begin a job that tabs can cancel; arguments and errors as ``Jobs.start``."""
+        number = self.jobs.start(title, work, usual_s, ended)
+        self.session.cancels[number] = lambda: self.jobs.cancel(number)
+        return number
 
     async def open(self, source: Path) -> None:
         """Open a room in the place of what is open; every tab begins anew."""
