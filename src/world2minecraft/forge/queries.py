@@ -4,30 +4,17 @@ Like a command, a query is a small checked value; it changes nothing. A new one 
 its line in ``QUERIES``.
 """
 
-from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ValidationError
 
 from world2minecraft.edit.scene.commands import first_fault
 from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.forge.object_queries import OBJECT_QUERIES
+from world2minecraft.forge.query import Query
 
 if TYPE_CHECKING:
     from world2minecraft.forge.editor import Editor
-
-
-class Query(BaseModel):
-    """What all queries share."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-    @abstractmethod
-    def answer(self, editor: "Editor") -> Any:
-        """Return the answer as JSON values.
-
-        Raises:
-            UsageError: it cannot be answered for this scene; the message says why.
-        """
 
 
 class Counts(Query):
@@ -39,7 +26,7 @@ class Counts(Query):
         return {"cells": counts, "objects": len(editor.draft.objects)}
 
 
-QUERIES: dict[str, type[Query]] = {"counts": Counts}
+QUERIES: dict[str, type[Query]] = {"counts": Counts, **OBJECT_QUERIES}
 
 
 def parse_query(name: str, fields: dict[str, Any]) -> Query:

@@ -40,11 +40,27 @@ class Patch:
         )
         self.put(cells, held)
 
-    def give(self, cells: np.ndarray, instance: int) -> None:
-        """Let cells belong to another object, or with 0 to none; what they are stays."""
+    def give(self, cells: np.ndarray, instance: int, class_id: int | None = None) -> None:
+        """Let cells belong to another object, with 0 to none; and be of its class, if one is given.
+
+        What they are stays else.
+        """
+        owners = np.full(len(cells), instance, np.uint16)
+        if class_id is None:
+            self._change(cells, instance=owners)
+        else:
+            sure = np.ones(len(cells), np.float16)
+            labels = np.full(len(cells), class_id, np.uint8)
+            self._change(cells, instance=owners, labels=labels, confidence=sure)
+
+    def relabel(self, cells: np.ndarray, class_id: int) -> None:
+        """Let occupied cells be of another class, surely; whose they are stays."""
+        labels, sure = np.full(len(cells), class_id, np.uint8), np.ones(len(cells), np.float16)
+        self._change(cells, labels=labels, confidence=sure)
+
+    def _change(self, cells: np.ndarray, **values: np.ndarray) -> None:
         held = self._draft.held(cells)
-        fields = {name: getattr(held, name) for name in ARRAYS}
-        self.put(cells, GridCells(**fields | {"instance": np.full(len(cells), instance, "u2")}))
+        self.put(cells, GridCells(**{name: getattr(held, name) for name in ARRAYS} | values))
 
     def planned(self, kind: str, **told: Any) -> Operation:
         """Return the operation; ``told`` is what ``SceneDraft.planned`` takes."""

@@ -80,12 +80,38 @@ export interface DuplicateObject {
   to_m?: [number, number, number] | null;
 }
 
+/** Make objects one, which has the id and the class of the first that is named. */
+export interface MergeObjects {
+  op: "merge_objects";
+  ids: number[];
+}
+
 /** Move an object, with its cells and its furniture, by whole cells to a new centre. */
 export interface MoveObject {
   op: "move_object";
   /** >= 1, <= 65535 */
   id: number;
   to_m: [number, number, number];
+}
+
+/** Find the objects of a class, or all, anew by other figures of the paper's clustering. */
+export interface Recluster {
+  op: "recluster";
+  class_id?: number | null;
+  /** >= 1, <= 31 */
+  density_kernel: number;
+  /** >= 0, <= 1 */
+  density_threshold: number;
+  /** > 0, <= 100 */
+  cluster_radius: number;
+}
+
+/** Give objects another class, their cells too, and furniture of that class. */
+export interface RelabelObjects {
+  op: "relabel_objects";
+  ids: number[];
+  /** >= 5, <= 11 */
+  class_id: number;
 }
 
 /** Match the furniture of objects anew, as the reconstruction does, from their cells. */
@@ -103,6 +129,23 @@ export interface SetTemplate {
   quarter_turns?: number | null;
 }
 
+/** Move an object down, or up, onto what is under it, or sideways to the nearest wall. */
+export interface SnapObject {
+  op: "snap_object";
+  /** >= 1, <= 65535 */
+  id: number;
+  to: "floor" | "wall";
+}
+
+/** Split an object into a number of parts by where its cells lie, or in two by a plane. */
+export interface SplitObject {
+  op: "split_object";
+  /** >= 1, <= 65535 */
+  id: number;
+  parts?: number | null;
+  plane?: CutPlane | null;
+}
+
 /** Turn objects by quarters about their centres, counter-clockwise from above. */
 export interface TurnObjects {
   op: "turn_objects";
@@ -114,6 +157,36 @@ export interface TurnObjects {
 /** How many cells each class has, and how many objects there are. */
 export type CountsQuery = Record<string, never>;
 
+/** The best five templates for an object, each in its best turn, with the IoU of its cells. */
+export interface AlternativesQuery {
+  /** >= 1, <= 65535 */
+  id: number;
+}
+
+/** The paper's centres for some figures of its clustering, as a preview; nothing is changed. */
+export interface CentersQuery {
+  /** >= 1, <= 31 */
+  density_kernel: number;
+  /** >= 0, <= 1 */
+  density_threshold: number;
+  /** > 0, <= 100 */
+  cluster_radius: number;
+  class_id?: number | null;
+}
+
+/** Places worth a look, the most doubtful first. */
+export type DoubtfulQuery = Record<string, never>;
+
+/** Furniture that collides or reaches out of its room, by the metrics of the report. */
+export type WarningsQuery = Record<string, never>;
+
+/** A plane square to an axis of the room, such as x = 1.4 m. */
+export interface CutPlane {
+  axis: "x" | "y" | "z";
+  /** >= -10000, <= 10000 */
+  at_m: number;
+}
+
 export type Command =
   | SetCells
   | FillBox
@@ -124,12 +197,21 @@ export type Command =
   | AddObject
   | DeleteObjects
   | DuplicateObject
+  | MergeObjects
   | MoveObject
+  | Recluster
+  | RelabelObjects
   | Rematch
   | SetTemplate
+  | SnapObject
+  | SplitObject
   | TurnObjects;
 
 /** What each query is asked with. */
 export interface Queries {
   counts: CountsQuery;
+  alternatives: AlternativesQuery;
+  centers: CentersQuery;
+  doubtful: DoubtfulQuery;
+  warnings: WarningsQuery;
 }
