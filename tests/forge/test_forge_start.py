@@ -240,7 +240,7 @@ def test_a_wrong_choice_begins_nothing(server, script, choice, words):
 
 
 def test_a_job_is_cancelled_over_http(server, script):
-    number = server.workshop.begin(
+    number = server.workshop.jobs.start(
         "Demo", run_apart("demo", out=str(server.workshop.home / "x"), frames=200)
     )
     assert script.post(f"/api/jobs/{number}/cancel").status_code == 200

@@ -133,7 +133,6 @@ class ForgeServer:
             await serving
         finally:
             self.socket.close()
-            await asyncio.to_thread(self.workshop.close)
             await self.session.close()
 
 

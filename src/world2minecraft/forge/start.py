@@ -149,7 +149,7 @@ async def _look(request: Request) -> Response:
     shop, one = workshop_of(request), _named(request)
     _check_ready(shop, one)
     work = run_apart("survey", one.source.parent, capture=str(one.source), folder=str(one.folder))
-    shop.working[one.id] = number = shop.begin(one.title, work, {"look": 4.0})
+    shop.working[one.id] = number = shop.jobs.start(one.title, work, {"look": 4.0})
     return JSONResponse({"job": number})
 
 
@@ -160,7 +160,7 @@ async def _reconstruct(request: Request) -> Response:
     work = run_apart(
         "reconstruct", one.source.parent, capture=str(one.source), out=str(one.run), choice=choice
     )
-    number = shop.begin(one.title, work, reconstruct_s(one.survey()))
+    number = shop.jobs.start(one.title, work, reconstruct_s(one.survey()))
     shop.working[one.id] = number
     return JSONResponse({"job": number})
 
@@ -200,7 +200,7 @@ async def _demo(request: Request) -> Response:
         raise UsageError(f"frames must be 3 to 200, not {str(frames)[:40]!r}")
     out = shop.home / "demo" / f"{kind}-{seed}"
     work = run_apart("demo", out=str(out), kind=kind, seed=seed, frames=frames)
-    return JSONResponse({"job": shop.begin(f"A {kind} room", work, demo_s(), _remember(shop))})
+    return JSONResponse({"job": shop.jobs.start(f"A {kind} room", work, demo_s(), _remember(shop))})
 
 
 def _remember(shop: Workshop) -> Any:

@@ -1,14 +1,12 @@
 """What stands around the document: jobs, captures, and the rooms that were open before."""
 
 import asyncio
-from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from world2minecraft.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.files import read_json, write_json
 from world2minecraft.forge.captures import MOST_UPLOAD_BYTES, CaptureFolder, Captures
 from world2minecraft.forge.editor import Editor
-from world2minecraft.forge.jobs import Jobs, JobState, Work
 from world2minecraft.forge.session import NO_ROOM, Session
 
 MOST_RECENT = 12
@@ -34,7 +32,7 @@ class Workshop:
     ):
         self.session, self.home, self.capture = session, home, capture
         self.captures = Captures(home, most_bytes)
-        self.jobs = Jobs(session.hub.tell_soon)
+        self.jobs = session.jobs
         self.working: dict[str, str] = {}  # The job of a capture, by the capture's id.
 
     @property
@@ -47,18 +45,6 @@ class Workshop:
         if self.session.editor is None:
             raise UsageError(NO_ROOM)
         return self.session.editor
-
-    def begin(
-        self,
-        title: str,
-        work: Work,
-        usual_s: Mapping[str, float] | None = None,
-        ended: Callable[[JobState], None] = lambda state: None,
-    ) -> str:
-        """Begin a job that tabs can cancel; arguments and errors as ``Jobs.start``."""
-        number = self.jobs.start(title, work, usual_s, ended)
-        self.session.cancels[number] = lambda: self.jobs.cancel(number)
-        return number
 
     async def open(self, source: Path) -> None:
         """Open a room in the place of what is open; every tab begins anew."""
@@ -106,10 +92,6 @@ class Workshop:
         except UnknownNameError:
             running = False
         return number if running else None
-
-    def close(self) -> None:
-        """End all jobs."""
-        self.jobs.close()
 
     def _noted(self) -> list[str]:
         try:
