@@ -5,6 +5,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from world2minecraft.edit.scene.command import Command
+from world2minecraft.edit.scene.mending import FillHoles, RemoveFloaters, Smooth
 from world2minecraft.edit.scene.object_commands import OBJECT_COMMANDS
 from world2minecraft.edit.scene.voxels import DeleteComponent, FillBox, Paste, SetCells
 from world2minecraft.edit.scene.whole_class import DeleteClass, RelabelClass
@@ -19,6 +20,9 @@ COMMANDS: dict[str, type[Command]] = {
         Paste,
         RelabelClass,
         DeleteClass,
+        RemoveFloaters,
+        FillHoles,
+        Smooth,
         *OBJECT_COMMANDS,
     )
 }
