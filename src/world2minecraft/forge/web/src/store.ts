@@ -30,6 +30,7 @@ export interface ToolOptions {
   shape: "sphere" | "cube" | "single";
   size: number; // diameter of the brush in cells
   depth: number; // how many cells deep a box or lasso selects; 0: all the way
+  fills: "empty" | "occupied" | "all"; // which cells the brush changes
   surfaceOnly: boolean; // only what is seen, not what lies behind it
   snap: boolean; // objects that are moved come to rest on what is below
 }
@@ -64,7 +65,7 @@ const START: State = {
   objects: new Map(),
   mode: "inspect",
   tool: "navigate",
-  options: { classId: 10, shape: "sphere", size: 3, depth: 0, surfaceOnly: true, snap: false },
+  options: { classId: 10, shape: "sphere", size: 3, depth: 0, fills: "empty", surfaceOnly: true, snap: false },
   view: {
     hidden: new Set([1]), // The ceiling: the whole room is in view.
     solo: null,
