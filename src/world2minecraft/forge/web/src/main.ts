@@ -3,15 +3,19 @@
 import "./style.css";
 import "./style_controls.css";
 import "./style_stage.css";
+import "./style_panels.css";
 import { Store } from "./store";
 import { startApp } from "./ui/app";
-import { noView } from "./ui/no_view";
 import { h } from "./ui/dom";
+import { registerEditing } from "./ui/editing";
+import { SceneView } from "./view/view";
 
 const store = new Store();
 const host = document.querySelector<HTMLElement>("#app") ?? document.body.appendChild(h("div"));
 
-void startApp(host, store, () => noView()).then((app) => {
+registerEditing();
+
+void startApp(host, store, (canvas) => new SceneView(canvas, store)).then((app) => {
   const { view, connection } = app;
   Object.assign(window, { __forge: { store, view, connection, app, idle: () => view.idle() } });
 });

@@ -29,7 +29,7 @@ export interface ToolOptions {
   classId: number; // that is painted or added
   shape: "sphere" | "cube" | "single";
   size: number; // diameter of the brush in cells
-  depth: number; // how many cells deep a box or lasso selects; 0: all the way
+  depth: number; // how many cells behind what is seen a box or lasso selects; 0: all the way
   fills: "empty" | "occupied" | "all"; // which cells the brush changes
   surfaceOnly: boolean; // only what is seen, not what lies behind it
   snap: boolean; // objects that are moved come to rest on what is below

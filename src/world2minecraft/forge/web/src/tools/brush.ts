@@ -5,7 +5,7 @@ import type { Vec3 } from "../wire";
 import { flatOf, isInside, line, runsOf, stamp, UNSEEN } from "./cells";
 import type { Desk, Gesture, Press, Tool } from "./tool";
 
-const ERASED: Vec3 = [255, 82, 82];
+const ERASED = "#ff5252";
 const STEPS: Vec3[] = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]]; // prettier-ignore
 
 export function brushTool(desk: Desk, id: "brush" | "erase"): Tool {
@@ -79,7 +79,8 @@ function under({ app }: Desk, erases: boolean, cell: Vec3): number[] {
   return found.length || !erases ? found : [flatOf(cell, scene.shape)].filter(shown);
 }
 
-function colourOf({ app }: Desk, erases: boolean): Vec3 {
+function colourOf({ app }: Desk, erases: boolean): string {
   const { scene, options } = app.store.get();
-  return erases || !options.classId ? ERASED : (scene?.classes[options.classId]?.colour ?? ERASED);
+  const colour = scene?.classes[options.classId]?.colour;
+  return erases || !options.classId || !colour ? ERASED : `rgb(${colour.join(",")})`;
 }

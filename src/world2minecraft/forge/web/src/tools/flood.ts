@@ -1,11 +1,10 @@
 // Selects what is connected: all cells of the class that hold together by faces.
 
-import type { Vec3 } from "../wire";
 import { component, runsOf } from "./cells";
 import { combineOf } from "./selection";
 import type { Desk, Tool } from "./tool";
 
-const HINT: Vec3 = [255, 255, 255];
+const HINT = "#ffffff";
 
 export function floodTool(desk: Desk): Tool {
   const { app } = desk;

@@ -6,7 +6,7 @@ import { runsOf } from "./cells";
 import { cellsOfObject, objectAt, shifted } from "./objects_at";
 import type { Desk, Gesture, Press, Tool } from "./tool";
 
-const GHOST: Vec3 = [255, 179, 92];
+const GHOST = "#ffb35c";
 
 const NUDGES: Record<string, Vec3> = {
   ArrowLeft: [-1, 0, 0],

@@ -1,14 +1,14 @@
 // Selects cells within a box or a lasso on the screen, as deep as the toolbar says.
 
-import type { Point } from "./marks";
+import type { DepthLimit } from "../view/regions";
 import { combineOf } from "./selection";
 import type { Desk, Gesture, Press, Tool } from "./tool";
 
 const LASSO_STEP_PX = 3;
 
-export function depthOf({ app }: Desk): number {
+function depthOf({ app }: Desk): DepthLimit {
   const { depth, surfaceOnly } = app.store.get().options;
-  return surfaceOnly ? 1 : depth;
+  return surfaceOnly ? "surface" : depth || "through";
 }
 
 export function boxTool(desk: Desk): Tool {
@@ -30,7 +30,7 @@ function boxGesture(desk: Desk, from: Press): Gesture {
   };
 }
 
-function corners(from: Press, to: Press): Point[] {
+function corners(from: Press, to: Press): [number, number][] {
   return [[from.x, from.y], [to.x, from.y], [to.x, to.y], [from.x, to.y]]; // prettier-ignore
 }
 
@@ -51,7 +51,7 @@ function lassoGesture(desk: Desk, from: Press): Gesture {
     end: (at) => {
       clear();
       if (points.length < 3) return;
-      desk.selection.cells(desk.app.view.cellsInLasso(points, depthOf(desk)), combineOf(at));
+      desk.selection.cells(desk.app.view.lasso(points, depthOf(desk)), combineOf(at));
     },
     cancel: clear,
   };

@@ -4,6 +4,7 @@ import { Connection, NoDocument, type AnyCommand } from "../connection";
 import type { Mode, Store } from "../store";
 import { TEXT } from "../text";
 import { Actions } from "./actions";
+import { cannotEdit } from "./blocked";
 import { h } from "./dom";
 import { makeFrame } from "./frame";
 import { listenToKeys } from "./keyboard";
@@ -78,12 +79,7 @@ async function open(app: App, root: HTMLElement): Promise<void> {
 }
 
 function pageActions({ actions, store, connection, toast }: App, tell: (error: unknown) => null): void {
-  const blocked = (): string => {
-    const { scene, online } = store.get();
-    if (!scene) return TEXT.why.noScene;
-    if (!online) return TEXT.why.offline;
-    return scene.read_only && TEXT.why.readOnly(scene.read_only);
-  };
+  const blocked = (): string => cannotEdit(store);
   actions.on("undo", {
     run: () => void connection.undo().catch(tell),
     why: () => blocked() || (store.get().scene?.undo ? "" : TEXT.why.nothingToUndo),

@@ -1,9 +1,10 @@
 // One stop of the Tab key for a row of buttons; the arrow keys go along it.
 
-const STEPS: Record<string, number> = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 };
+const ALONG: Record<string, number> = { ArrowRight: 1, ArrowLeft: -1 };
+const ACROSS: Record<string, number> = { ArrowDown: 1, ArrowUp: -1 };
 
-/** Let the arrow keys, Home and End move between the controls of a row, list or grid. */
-export function rove(host: HTMLElement, select = "button, [role=option], [role=treeitem]"): void {
+/** Let the arrow keys, Home and End move between the controls of a row, or of a grid of columns. */
+export function rove(host: HTMLElement, select = "button", columns = 1): void {
   const items = (): HTMLElement[] =>
     [...host.querySelectorAll<HTMLElement>(select)].filter((one) => one.offsetParent !== null);
   const settle = (chosen?: HTMLElement): void => {
@@ -18,7 +19,8 @@ export function rove(host: HTMLElement, select = "button, [role=option], [role=t
   host.addEventListener("keydown", (event) => {
     const all = items();
     const at = all.indexOf(document.activeElement as HTMLElement);
-    const step = STEPS[event.key];
+    const across = ACROSS[event.key];
+    const step = ALONG[event.key] ?? (across && across * columns);
     if (at < 0 || (step === undefined && event.key !== "Home" && event.key !== "End")) return;
     const last = all.length - 1;
     const to = event.key === "Home" ? 0 : event.key === "End" ? last : at + (step ?? 0);
