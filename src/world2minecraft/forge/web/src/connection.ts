@@ -125,13 +125,21 @@ export class Connection {
     else this.answer(message);
   }
 
+  /** Another document, or changes that were missed: everything is got again. */
   private greet(hello: Hello): void {
     if (hello.protocol !== PROTOCOL) {
       this.store.set({ status: TEXT.error.protocol });
       return;
     }
-    const scene = this.store.get().scene;
-    if (scene && (scene.rev !== hello.rev || scene.document !== hello.document)) void this.load();
+    const { document, rev } = this.store.get().scene ?? { document: 0, rev: 0 };
+    if (document !== hello.document || (document && rev !== hello.rev)) this.reload();
+  }
+
+  private reload(): void {
+    this.load().catch((error: unknown) => {
+      if (error instanceof NoDocument) this.store.set({ scene: null });
+      else this.store.set({ status: error instanceof Error ? error.message : TEXT.error.load });
+    });
   }
 
   private take(change: Change): void {
@@ -141,7 +149,7 @@ export class Connection {
     }
     const scene = this.store.get().scene;
     if (!scene || change.rev <= scene.rev) return;
-    if (change.rev !== scene.rev + 1 || change.cells === null) void this.load();
+    if (change.rev !== scene.rev + 1 || change.cells === null) this.reload();
     else applyChange(this.store, change);
     this.changeListeners.forEach((call) => call(change));
   }

@@ -6,6 +6,8 @@ import { TEXT } from "./text";
 
 export type Group = keyof typeof TEXT.groups;
 
+export const GROUPS = Object.keys(TEXT.groups) as Group[];
+
 export interface Binding {
   id: string;
   keys: readonly string[]; // "Ctrl+Shift+Z"; Ctrl is Cmd on a Mac; a gesture has words here
@@ -64,7 +66,8 @@ const ROWS: Row[] = [
   ["brush.shape", "tools", ["Shift+X"], VOXELS],
   ["surface", "tools", ["U"], VOXELS],
   ["cells.relabel", "voxels", ["Enter"], VOXELS],
-  ["cells.smooth", "voxels", [], VOXELS],
+  ["cells.fillBox", "voxels", ["Shift+Enter"], VOXELS],
+  ["cells.smooth", "voxels", ["Shift+S"], VOXELS],
   ["cells.component", "voxels", ["Shift+Delete"], VOXELS],
   ["holes.fill", "voxels", ["H"], VOXELS],
   ["floaters.find", "voxels", ["Shift+H"], VOXELS],

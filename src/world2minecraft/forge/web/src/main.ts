@@ -8,12 +8,14 @@ import { Store } from "./store";
 import { startApp } from "./ui/app";
 import { h } from "./ui/dom";
 import { registerEditing } from "./ui/editing";
+import { registerHints } from "./ui/hints";
 import { SceneView } from "./view/view";
 
 const store = new Store();
 const host = document.querySelector<HTMLElement>("#app") ?? document.body.appendChild(h("div"));
 
 registerEditing();
+registerHints();
 
 void startApp(host, store, (canvas) => new SceneView(canvas, store)).then((app) => {
   const { view, connection } = app;

@@ -4,7 +4,6 @@
 import type { App } from "../ui/slots";
 import { takesText } from "../ui/dom";
 import { Marks } from "./marks";
-import { Selection } from "./selection";
 import type { Desk, Gesture, Press, Tool } from "./tool";
 
 const CLICK_PX = 4; // a press that moved less is a click
@@ -20,15 +19,13 @@ export class ToolManager {
   private gesture: Gesture | null = null;
   private chosen: Tool | null = null;
   private right: { x: number; y: number } | null = null;
-  last: Press | null = null;
 
   constructor(
     private app: App,
     private ends: Ends,
   ) {
-    const selection = new Selection(app.store);
     const begin = (gesture: Gesture): void => void (this.gesture = gesture);
-    this.desk = { app, selection, marks: new Marks(app.stage), begin };
+    this.desk = { app, selection: app.selection, marks: new Marks(app.stage), begin };
     app.view.controls.claims = (event) => this.claims(event);
     this.listen();
     app.store.watch(["tool"], ({ tool }) => this.choose(tool));
@@ -94,7 +91,7 @@ export class ToolManager {
 
   private move(event: PointerEvent): void {
     const at = this.pressOf(event);
-    this.last = at;
+    this.app.pointer.at = at;
     if (this.gesture) this.gesture.move(at);
     else this.hover(this.app.view.controls.dragging ? null : at);
     this.ends.hover(at);
@@ -118,7 +115,7 @@ export class ToolManager {
   private hover(at: Press | null): void {
     this.chosen?.hover?.(at);
     if (!at) {
-      this.last = null;
+      this.app.pointer.at = null;
       this.ends.hover(null);
     }
   }
@@ -127,7 +124,7 @@ export class ToolManager {
     if (takesText(event.target)) return;
     const used = this.gesture?.key?.(event) ?? (!this.gesture && (this.chosen?.key?.(event) ?? false));
     if (this.gesture?.sticks && !used && event.key === "Enter") {
-      this.finish(this.last ?? { x: 0, y: 0, ...NO_KEYS });
+      this.finish({ ...(this.app.pointer.at ?? { x: 0, y: 0 }), ...NO_KEYS });
     } else if (!used) return;
     event.preventDefault();
     event.stopImmediatePropagation();

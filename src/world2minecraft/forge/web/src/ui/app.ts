@@ -6,13 +6,19 @@ import { TEXT } from "../text";
 import { Actions } from "./actions";
 import { cannotEdit } from "./blocked";
 import { h } from "./dom";
+import { Selection } from "../tools/selection";
+import { startEditing } from "./editing";
 import { makeFrame } from "./frame";
+import { mountHelp } from "./help";
 import { listenToKeys } from "./keyboard";
 import { closeMenu } from "./menu";
 import { mountDrawer, mountSide } from "./panels";
+import { mountPalette } from "./palette";
 import { slots, type App } from "./slots";
 import { mountStatusLine } from "./status_line";
 import { applyTheme, switchTheme } from "./theme";
+import { mountToolOptions } from "./tool_options";
+import { mountCorner, mountRail } from "./tool_rail";
 import { makeToast } from "./toast";
 import { MODES, mountTopBar } from "./top_bar";
 import type { ViewLike } from "./view_like";
@@ -37,6 +43,8 @@ export async function startApp(host: HTMLElement, store: Store, makeView: MakeVi
     view,
     connection,
     actions,
+    selection: new Selection(store),
+    pointer: { at: null },
     stage: frame.stage,
     canvas: frame.canvas,
     toast,
@@ -44,10 +52,24 @@ export async function startApp(host: HTMLElement, store: Store, makeView: MakeVi
     ask: <T>(name: string, fields = {}) => connection.ask<T>(name, fields).catch(tell),
   };
   pageActions(app, tell);
+  const line = mountStatusLine(frame.status, app);
+  const tools = startEditing(app, (at) => {
+    const hit = at && view.pick(at.x, at.y);
+    line.show({ cell: hit ? hit.cell : null, flat: hit ? hit.flat : -1 });
+  });
   mountTopBar(frame.top, app);
+  mountRail(frame.rail, app);
+  mountCorner(frame.corner, app);
+  mountToolOptions(frame.options, app);
   mountSide(frame.left, "left", app);
   mountSide(frame.right, "right", app);
-  mountStatusLine(frame.status, app);
+  const sheets = [mountPalette(app), mountHelp(app)];
+  actions.on("cancel", () => {
+    const done = closeMenu() || sheets.some((sheet) => sheet.close()) || tools.cancel();
+    if (done) return;
+    if (store.get().tool !== "navigate") store.set({ tool: "navigate" });
+    else app.selection.clear();
+  });
   for (const part of slots.stageParts()) {
     const place = h("div", { class: "over-part", data: { part: part.id } });
     frame.over.append(place);
@@ -63,19 +85,25 @@ export async function startApp(host: HTMLElement, store: Store, makeView: MakeVi
   return app;
 }
 
+/** Open the document. Where there is none the start page is shown, until there is one. */
 async function open(app: App, root: HTMLElement): Promise<void> {
+  const page = h("div", { class: "start-page" });
+  const start = slots.startPage();
+  let ready = false;
+  app.store.watch(["scene"], ({ scene }) => {
+    const show = ready && !scene && start !== null;
+    if (show && !page.hasChildNodes()) start?.(page, app);
+    if (show) root.append(page);
+    else page.remove();
+    root.classList.toggle("is-start", show);
+  });
   try {
     await app.connection.open();
-    app.view.frame();
   } catch (error) {
-    const start = slots.startPage();
-    if (error instanceof NoDocument && start) {
-      root.classList.add("is-start");
-      const page = h("div", { class: "start-page" });
-      root.append(page);
-      start(page, app);
-    } else app.toast(error instanceof Error ? error.message : TEXT.error.load, "error");
+    if (!(error instanceof NoDocument)) app.toast(error instanceof Error ? error.message : TEXT.error.load, "error");
   }
+  ready = true;
+  if (!app.store.get().scene) app.store.set({ scene: null });
 }
 
 function pageActions({ actions, store, connection, toast }: App, tell: (error: unknown) => null): void {
@@ -93,7 +121,6 @@ function pageActions({ actions, store, connection, toast }: App, tell: (error: u
     why: blocked,
   });
   actions.on("theme", () => switchTheme(store));
-  actions.on("cancel", () => void closeMenu());
   for (const mode of MODES) {
     actions.on(`mode.${mode}`, {
       run: () => store.set({ mode }),

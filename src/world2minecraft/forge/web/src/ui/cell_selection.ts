@@ -3,7 +3,6 @@
 import type { Store } from "../store";
 import { TEXT } from "../text";
 import { boundsOf, cellOf, runsOf } from "../tools/cells";
-import type { Selection } from "../tools/selection";
 import type { Vec3 } from "../wire";
 import { cannotEdit } from "./blocked";
 import { fill, h } from "./dom";
@@ -47,8 +46,8 @@ function chips(store: Store): HTMLElement {
   return h("div", { class: "stack" }, h("strong", {}, TEXT.cells(selectedCells.size)), h("div", { class: "chips" }, ...rows));
 }
 
-export function cellActions(app: App, selection: Selection): void {
-  const { actions, store, view } = app;
+export function cellActions(app: App): void {
+  const { actions, store, view, selection } = app;
   const none = (): string => (store.get().selectedCells.size ? "" : TEXT.why.noCells);
   const why = (): string => cannotEdit(store) || none();
   const held = (): object => ({ cells: runsOf(store.get().selectedCells), locked: [...store.get().view.locked] });
@@ -73,7 +72,7 @@ export function cellActions(app: App, selection: Selection): void {
   });
   actions.on("cells.component", {
     run: () => {
-      const at = app.lastPress();
+      const at = app.pointer.at;
       const hit = at && view.pick(at.x, at.y);
       if (hit) void app.do({ op: "delete_component", cell: hit.cell, locked: [...store.get().view.locked] });
       else app.toast(TEXT.why.noPlace, "error");

@@ -1,7 +1,6 @@
 // What can be done with selected objects, by keys, buttons and the palette alike.
 
 import { boxOf } from "../tools/objects_at";
-import type { Selection } from "../tools/selection";
 import { TEXT } from "../text";
 import type { Alternative, SceneObject } from "../wire";
 import { cannotEdit } from "./blocked";
@@ -14,7 +13,7 @@ export function selectedOf({ store }: App): SceneObject[] {
   return [...selectedObjects].flatMap((id) => objects.get(id) ?? []);
 }
 
-export function objectActions(app: App, selection: Selection): void {
+export function objectActions(app: App): void {
   const { actions, store } = app;
   const some = (): string => cannotEdit(store) || (selectedOf(app).length ? "" : TEXT.why.noObject);
   const one = (): string => some() || (selectedOf(app).length === 1 ? "" : TEXT.why.oneObject);
@@ -39,8 +38,8 @@ export function objectActions(app: App, selection: Selection): void {
   }));
   actions.on("object.template", { why: one, run: () => void nextTemplate(app, 1) });
   actions.on("object.templateBack", { why: one, run: () => void nextTemplate(app, -1) });
-  actions.on("object.next", { why: () => none(app), run: () => stepObject(app, selection, 1) });
-  actions.on("object.previous", { why: () => none(app), run: () => stepObject(app, selection, -1) });
+  actions.on("object.next", { why: () => none(app), run: () => stepObject(app, 1) });
+  actions.on("object.previous", { why: () => none(app), run: () => stepObject(app, -1) });
 }
 
 function none({ store }: App): string {
@@ -74,11 +73,11 @@ function isNow(one: SceneObject, row: Alternative): boolean {
   return now?.template === row.template && now.quarter_turns === row.quarter_turns;
 }
 
-function stepObject(app: App, selection: Selection, by: number): void {
+function stepObject(app: App, by: number): void {
   const all = [...app.store.get().objects.values()].sort((a, b) => a.class_id - b.class_id || a.id - b.id);
   const at = all.findIndex(({ id }) => app.store.get().selectedObjects.has(id));
   const next = all[(at + (at < 0 && by < 0 ? 0 : by) + all.length) % all.length];
   if (!next) return;
-  selection.objects([next.id]);
+  app.selection.objects([next.id]);
   app.view.focus(boxOf(next));
 }

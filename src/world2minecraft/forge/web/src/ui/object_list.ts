@@ -1,14 +1,14 @@
 // All objects as a tree by class. Choosing one selects it and looks at it.
 
 import type { SceneObject } from "../wire";
-import { combineOf, type Selection } from "../tools/selection";
+import { combineOf } from "../tools/selection";
 import { boxOf } from "../tools/objects_at";
 import { TEXT } from "../text";
 import { fill, h } from "./dom";
 import { icon } from "./icons";
 import type { App } from "./slots";
 
-export function mountObjectList(host: HTMLElement, app: App, selection: Selection): void {
+export function mountObjectList(host: HTMLElement, app: App): void {
   const { store } = app;
   const tree = h("ul", { class: "tree", role: "tree", "aria-label": TEXT.objects.title });
   tree.setAttribute("aria-multiselectable", "true");
@@ -27,7 +27,7 @@ export function mountObjectList(host: HTMLElement, app: App, selection: Selectio
     const item = (event.target as HTMLElement).closest<HTMLElement>("[role=treeitem]");
     if (!item) return;
     item.focus();
-    if (item.dataset.object) choose(app, selection, Number(item.dataset.object), event);
+    if (item.dataset.object) choose(app, Number(item.dataset.object), event);
     else if (item.dataset.branch) {
       fold(folded, Number(item.dataset.branch));
       draw();
@@ -84,8 +84,8 @@ function leaf(one: SceneObject, selected: boolean): HTMLElement {
   );
 }
 
-function choose(app: App, selection: Selection, id: number, event: MouseEvent): void {
-  selection.objects([id], combineOf(event));
+function choose(app: App, id: number, event: MouseEvent): void {
+  app.selection.objects([id], combineOf(event));
   const one = app.store.get().objects.get(id);
   if (one && event.detail === 2) app.view.focus(boxOf(one));
 }

@@ -4,6 +4,7 @@
 import type { Connection } from "../connection";
 import type { Mode, Store } from "../store";
 import type { Actions } from "./actions";
+import type { Selection } from "../tools/selection";
 import type { ViewLike } from "./view_like";
 
 /** What each part of the page is given. */
@@ -12,6 +13,8 @@ export interface App {
   view: ViewLike;
   connection: Connection;
   actions: Actions; // app.actions.on("id of keys.ts", { run, why })
+  selection: Selection; // of this tab, with an undo of its own
+  pointer: { at: { x: number; y: number } | null }; // over the canvas, in its CSS pixels
   stage: HTMLElement; // holds the canvas; overlays go here
   canvas: HTMLCanvasElement;
   /** One line over the scene that goes by itself. */
