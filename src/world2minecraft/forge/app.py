@@ -14,6 +14,7 @@ from starlette.staticfiles import StaticFiles
 from world2minecraft.edit.scene import COMMANDS
 from world2minecraft.errors import World2MinecraftError
 from world2minecraft.forge import start
+from world2minecraft.forge.build_routes import build_routes
 from world2minecraft.forge.failures import explained
 from world2minecraft.forge.guard import Guard
 from world2minecraft.forge.limits import BodyLimit
@@ -62,6 +63,7 @@ def routes() -> list[BaseRoute]:
         Route("/api/preview", _preview, methods=["POST"]),
         Route("/api/ask/{name}", _ask, methods=["POST"]),
         Route("/api/commands", _commands),
+        *build_routes(),
         WebSocketRoute("/api/live", live),
     ]
 

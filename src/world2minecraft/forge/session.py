@@ -116,6 +116,10 @@ class Session:
         """Return the answer to a question about the scene. Raises as ``do``."""
         return await self._asked(lambda document: document.ask(name, **fields))
 
+    async def asked(self, question: Callable[[Editor], Value]) -> Value:
+        """Return what a function of the document gives; it runs in a thread, in its turn."""
+        return await self._asked(question)
+
     async def save(self) -> int:
         """Write the files of the scene; return the revision that they hold. Raises as ``do``."""
         async with self._turn:
