@@ -185,7 +185,6 @@ ORBIT = """async ([inside, frames]) => {
       resolve();
     }));
     view.orbit = {...view.orbit, azimuth: view.orbit.azimuth + 0.05};
-    view.drawNow ? view.drawNow() : 0;
     await drawn;
   }
   view.orbit = before;

@@ -17,8 +17,6 @@ export class VoxelMaterial {
     shape: { value: new THREE.Vector3(1, 1, 1) },
     edges: { value: 0.3 },
     opacity: { value: 1 },
-    fog: { value: new THREE.Color() },
-    fogSpan: { value: new THREE.Vector2(0, 1) },
   };
 
   readonly greedy = this.variant({});

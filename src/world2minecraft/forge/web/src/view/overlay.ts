@@ -2,7 +2,7 @@
 
 import * as THREE from "three";
 
-import { quadIndex } from "./chunks";
+import { quadIndex } from "./chunk";
 import { cellOf } from "./volume";
 import type { Run, Vec3 } from "../wire";
 

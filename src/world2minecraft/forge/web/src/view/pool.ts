@@ -11,6 +11,7 @@ const AHEAD = 3; // Orders a worker holds, so that it never waits for the page.
 export class Pool {
   private workers: { worker: Worker; busy: number; stale: boolean }[] = [];
   private queue: Job[] = [];
+  private readonly sent = new Set<string>();
   private volume: { labels: Uint8Array; shape: Vec3 } | null = null;
 
   constructor(private readonly done: (meshed: Meshed) => void) {}
@@ -28,7 +29,7 @@ export class Pool {
 
   /** Orders that wait are replaced by these, first first. */
   replace(jobs: Job[]): void {
-    this.queue = jobs.reverse();
+    this.queue = jobs.filter((job) => !this.sent.has(nameOf(job))).reverse();
     if (this.queue.length) this.start();
     this.feed();
   }
@@ -45,6 +46,7 @@ export class Pool {
       const entry = { worker, busy: 0, stale: true };
       worker.onmessage = ({ data }: MessageEvent<Meshed>) => {
         entry.busy -= 1;
+        this.sent.delete(nameOf(data));
         this.feed();
         this.done(data);
       };
@@ -65,8 +67,13 @@ export class Pool {
           entry.stale = false;
         }
         entry.busy += 1;
+        this.sent.add(nameOf(job));
         entry.worker.postMessage({ type: "mesh", ...job } satisfies MeshOrder);
       }
     }
   }
+}
+
+function nameOf({ key, epoch, step, style }: Pick<Job, "key" | "epoch" | "step" | "style">): string {
+  return `${key} ${epoch} ${step} ${style}`;
 }

@@ -12,6 +12,7 @@ uniform vec3 boxLow, boxHigh; // cells; what the slices leave
 uniform float shrink; // side of a drawn cube, share of a cell
 in vec4 place, kind;
 out vec3 cell, tint;
+out vec2 across; // along the face, in cells
 flat out vec3 normal;
 flat out float span;
 
@@ -39,6 +40,7 @@ void main() {
 #endif
   if (hidden) at = boxLow; // all corners in one place: no area
   cell = at;
+  across = axis == 0 ? at.yz : axis == 1 ? at.zx : at.xy;
   normal = n;
   span = kind.y;
   tint = palette[label & 15].rgb * LIGHT[face];
@@ -52,9 +54,8 @@ precision highp sampler3D;
 uniform sampler3D solid; // 1 where a drawn cell is; z y x
 uniform vec3 shape; // cells of the texture: two more than the scene
 uniform float edges, opacity;
-uniform vec3 fog;
-uniform vec2 fogSpan; // 1 / w at which it starts and is full
 in vec3 cell, tint;
+in vec2 across;
 flat in vec3 normal;
 flat in float span;
 out vec4 colour;
@@ -72,11 +73,11 @@ void main() {
   rgb *= 1.0 - 0.42 * near;
 #endif
 #ifdef EDGES
-  vec3 across = abs(fract(cell - 0.5) - 0.5) + abs(normal);
-  vec3 wide = fwidth(cell);
-  float line = max(wide.x, max(wide.y, wide.z));
-  float edge = 1.0 - smoothstep(0.0, 1.2 * line, min(across.x, min(across.y, across.z)));
-  rgb *= 1.0 - edges * edge * clamp(0.34 / line - 1.0, 0.0, 1.0);
+  vec2 wide = fwidth(across);
+  vec2 away = abs(fract(across - 0.5) - 0.5) / wide; // pixels from the nearest line
+  float line = max(wide.x, wide.y); // cells a pixel
+  float edge = clamp(1.2 - min(away.x, away.y), 0.0, 1.0);
+  rgb *= 1.0 - edges * edge * clamp(1.4 - 4.0 * line, 0.0, 1.0);
 #endif
   colour = vec4(rgb, 1.0);
 }

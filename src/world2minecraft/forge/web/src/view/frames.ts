@@ -1,0 +1,81 @@
+// When frames are drawn: only when something changed, coarsely while things move, in full once
+// they stand still.
+
+import type { Fineness, Quality } from "./quality";
+
+const REST_MS = 160; // without a change, until all is drawn in full
+const WARM = 3; // first frames compile shaders: they tell nothing about speed
+
+export interface Painted {
+  again: boolean; // the next frame shows something else: a flight goes on
+  settled: boolean; // nothing is missing in it
+}
+
+export class Frames {
+  lastMs = 0; // of a frame while moving, to the next one's start
+  private asked = 0;
+  private timer = 0;
+  private wanted = false;
+  private began = 0;
+  private count = 0;
+  private settled = false;
+  private waiting: (() => void)[] = [];
+
+  constructor(
+    private readonly quality: Quality,
+    private readonly paint: (fineness: Fineness, now: number) => Painted,
+  ) {}
+
+  /** Something changed: draw soon. */
+  invalidate(): void {
+    clearTimeout(this.timer);
+    this.wanted = true;
+    this.ask();
+  }
+
+  /** Resolves when all is drawn in full and nothing moves. */
+  idle(): Promise<void> {
+    return new Promise((resolve) => {
+      this.waiting.push(resolve);
+      this.invalidate();
+    });
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.asked);
+    clearTimeout(this.timer);
+  }
+
+  private ask(): void {
+    this.asked ||= requestAnimationFrame((now) => this.tick(now));
+  }
+
+  private tick(now: number): void {
+    this.asked = 0;
+    if (this.began) {
+      this.lastMs = performance.now() - this.began;
+      if (++this.count > WARM && this.settled) this.quality.took(this.lastMs);
+      this.began = 0;
+    }
+    if (this.wanted) this.draw(now);
+  }
+
+  private draw(now: number): void {
+    this.wanted = false;
+    this.began = performance.now();
+    const { again, settled } = this.paint(this.quality.moving, now);
+    this.settled = settled;
+    this.wanted = again;
+    this.ask(); // Also where nothing is to be drawn: to see when this frame was done.
+    if (again || !settled) return;
+    this.timer = window.setTimeout(() => this.drawFull(), this.waiting.length ? 0 : REST_MS);
+  }
+
+  private drawFull(): void {
+    if (this.wanted) return;
+    const { again, settled } = this.paint(this.quality.still, performance.now());
+    if (again) this.invalidate();
+    else if (settled) for (const resolve of this.waiting.splice(0)) resolve();
+    // else: invalidate() comes with the meshes that miss
+  }
+}
