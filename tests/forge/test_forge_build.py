@@ -76,7 +76,8 @@ def test_a_build_is_the_one_that_would_be_written(server, script):
     assert (got["rev"], got["blocks_per_metre"], got["style"]) == (0, 4.0, "blocks")
     assert got["blocks"] == np.count_nonzero(volume.states)
     assert np.array_equal(got["position"].reshape(-1, 4, 3), mesh.position)
-    assert np.array_equal(got["kind"][::4], np.stack([mesh.semantic, mesh.cuts], axis=1))
+    assert np.array_equal(got["kind"][::4, 0], mesh.layer)
+    assert np.array_equal(got["kind"][::4, 1], mesh.semantic + 256 * mesh.cuts.astype(int))
     assert np.array_equal(got["state"], mesh.state)
     room = apply(np.reshape(got["grid_to_room"], (4, 4)), got["position"].astype(float))
     size = np.array(grid.shape) * grid.voxel_m

@@ -140,13 +140,12 @@ def _arrays(mesh: BlockMesh) -> dict[str, np.ndarray]:
     """Return what is drawn, a row for each corner, and what a click tells, a row for each quad."""
     emission = np.repeat(mesh.emission[:, None], 4, axis=1)[..., None]
     colour = np.concatenate([mesh.tint, mesh.shade[:, None]], axis=1)
-    kind = np.stack([mesh.semantic, mesh.cuts], axis=1)
+    kind = np.stack([mesh.layer, mesh.semantic + mesh.cuts * np.uint16(256)], axis=1)
     return {
         "position": mesh.position.reshape(-1, 3),
         "uv": mesh.uv.reshape(-1, 2),
         "light": np.concatenate([mesh.light, emission], axis=2).reshape(-1, 4),
         "colour": np.repeat(colour, 4, axis=0),
-        "layer": np.repeat(mesh.layer, 4),
         "kind": np.repeat(kind, 4, axis=0),
         "state": mesh.state,
         "instance": mesh.instance,

@@ -39,6 +39,8 @@ export class SceneView {
   readonly controls: Controls;
   readonly scene = new THREE.Scene(); // in metres of the room, z up; others may add to it
   readonly renderer: THREE.WebGLRenderer;
+  /** Finds what a ray in metres meets where something else than the voxels is drawn. */
+  picker: ((ray: { from: Vec3; direction: Vec3 }) => Picked | null) | null = null;
   private readonly material = new VoxelMaterial();
   private readonly chunks = new Chunks(this.material, () => this.invalidate());
   private readonly look = new Look(this.material, this.chunks);
@@ -103,6 +105,7 @@ export class SceneView {
     if (!scene || !this.copy.length) return null;
     this.measure();
     const { from, direction } = this.sight.ray(x, y);
+    if (this.picker) return this.picker({ from, direction });
     const ray = direction.map((d) => d / scene.voxel_m) as Vec3;
     const hit = pickCell({ labels: this.copy, shape: scene.shape }, this.look.seen, this.inCells(from), ray);
     if (!hit) return null;
@@ -158,6 +161,13 @@ export class SceneView {
   setOverlay(name: string, runs: readonly Run[] | null, colour = "#ffffff"): void {
     const { scene } = this.store.get();
     if (scene) this.overlays.set(name, runs, scene.shape, colour);
+    this.invalidate();
+  }
+
+  /** Draw the voxels, or leave the picture to what others put into `scene`. */
+  showCells(on: boolean): void {
+    this.chunks.group.visible = on;
+    this.overlays.group.visible = on;
     this.invalidate();
   }
 
