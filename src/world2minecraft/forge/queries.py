@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from world2minecraft.edit.scene.commands import first_fault
 from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.forge.cell_queries import CELL_QUERIES
 from world2minecraft.forge.object_queries import OBJECT_QUERIES
 from world2minecraft.forge.query import Query
 
@@ -26,7 +27,7 @@ class Counts(Query):
         return {"cells": counts, "objects": len(editor.draft.objects)}
 
 
-QUERIES: dict[str, type[Query]] = {"counts": Counts, **OBJECT_QUERIES}
+QUERIES: dict[str, type[Query]] = {"counts": Counts, **CELL_QUERIES, **OBJECT_QUERIES}
 
 
 def parse_query(name: str, fields: dict[str, Any]) -> Query:

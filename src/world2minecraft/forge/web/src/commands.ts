@@ -56,6 +56,33 @@ export interface DeleteClass {
   class_id: number;
 }
 
+/** Erase all pieces of at most ``max_cells`` that hold to nothing. */
+export interface RemoveFloaters {
+  locked?: number[];
+  op: "remove_floaters";
+  /** >= 1 */
+  max_cells?: number;
+  keep?: number[];
+}
+
+/** Fill the holes of a plane, of an object's surface, or of all planes. */
+export interface FillHoles {
+  locked?: number[];
+  op: "fill_holes";
+  plane: string;
+  cell?: [number, number, number] | null;
+  /** >= 0 */
+  hole_m2?: number;
+}
+
+/** Smooth furniture by a majority filter; structure never moves. */
+export interface Smooth {
+  locked?: number[];
+  op: "smooth";
+  class_id?: number | null;
+  runs?: [number, number][] | null;
+}
+
 /** Put a piece of furniture of its usual size at a place, on what is under it there. */
 export interface AddObject {
   op: "add_object";
@@ -157,6 +184,23 @@ export interface TurnObjects {
 /** How many cells each class has, and how many objects there are. */
 export type CountsQuery = Record<string, never>;
 
+/** Pieces of at most ``max_cells`` that hold to nothing, the largest first. */
+export interface FloatersQuery {
+  /** >= 1 */
+  max_cells?: number;
+}
+
+/** The planes of the room, and the holes and openings of each. */
+export interface HolesQuery {
+  /** >= 0 */
+  hole_m2?: number;
+}
+
+/** How the scene differs from another occupancy of the same room, and the IoU. */
+export interface CompareQuery {
+  path?: string;
+}
+
 /** The best five templates for an object, each in its best turn, with the IoU of its cells. */
 export interface AlternativesQuery {
   /** >= 1, <= 65535 */
@@ -194,6 +238,9 @@ export type Command =
   | Paste
   | RelabelClass
   | DeleteClass
+  | RemoveFloaters
+  | FillHoles
+  | Smooth
   | AddObject
   | DeleteObjects
   | DuplicateObject
@@ -210,6 +257,9 @@ export type Command =
 /** What each query is asked with. */
 export interface Queries {
   counts: CountsQuery;
+  floaters: FloatersQuery;
+  holes: HolesQuery;
+  compare: CompareQuery;
   alternatives: AlternativesQuery;
   centers: CentersQuery;
   doubtful: DoubtfulQuery;
