@@ -13,7 +13,7 @@ from starlette.staticfiles import StaticFiles
 
 from world2minecraft.edit.scene import COMMANDS
 from world2minecraft.errors import World2MinecraftError
-from world2minecraft.forge import start
+from world2minecraft.forge import compare_routes, photo_routes, start
 from world2minecraft.forge.build_routes import build_routes
 from world2minecraft.forge.failures import explained
 from world2minecraft.forge.guard import Guard
@@ -39,7 +39,13 @@ def build_app(
     """Return the application that serves a session; see ``Guard`` for the arguments."""
     guard = Middleware(Guard, token=token, port=port, hosts=hosts, any_address=any_address)
     app = Starlette(
-        routes=[*routes(), *start.routes(), Mount("/", StaticFiles(directory=STATIC, html=True))],
+        routes=[
+            *routes(),
+            *start.routes(),
+            *photo_routes.routes(),
+            *compare_routes.routes(),
+            Mount("/", StaticFiles(directory=STATIC, html=True)),
+        ],
         middleware=[guard, Middleware(BodyLimit)],
         exception_handlers={
             World2MinecraftError: _refused,

@@ -29,8 +29,16 @@ def volume_bytes(draft: SceneDraft, what: str) -> bytes:
     if what not in VOLUMES:
         raise UnknownNameError("volume", what, VOLUMES)
     values = as_bytes(draft.confidence) if what == "confidence" else getattr(draft, what)
+    return _packed(draft, values, THREE_A_CELL if what == "colour" else 0)
+
+
+def labels_bytes(draft: SceneDraft, labels: np.ndarray) -> bytes:
+    """Return labels uint8 [X, Y, Z] that lie on a scene's cells."""
+    return _packed(draft, labels, 0)
+
+
+def _packed(draft: SceneDraft, values: np.ndarray, flags: int) -> bytes:
     kind = U16 if values.dtype == np.uint16 else U8
-    flags = THREE_A_CELL if what == "colour" else 0
     corner = (float(value) for value in draft.origin_m)
     head = (MAGIC, VERSION, kind, flags, *draft.shape, draft.voxel_m, *corner, CLASS_COUNT)
     return HEADER.pack(*head) + values.astype(values.dtype.newbyteorder("<"), copy=False).tobytes()

@@ -1,15 +1,31 @@
 """What stands around the document: jobs, captures, and the rooms that were open before."""
 
 import asyncio
+import threading
+from dataclasses import dataclass
 from pathlib import Path
+
+import numpy as np
 
 from world2minecraft.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.files import read_json, write_json
 from world2minecraft.forge.captures import MOST_UPLOAD_BYTES, CaptureFolder, Captures
+from world2minecraft.forge.comparing import truth_folder
 from world2minecraft.forge.editor import Editor
+from world2minecraft.forge.photos import RunPhotos, find_capture_of, read_photos
 from world2minecraft.forge.session import NO_ROOM, Session
 
 MOST_RECENT = 12
+PLACES = "captures.json"  # Where the capture of each run lies, as the user said.
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """What the document is compared with: labels uint8 [X, Y, Z] in the cells of an editor."""
+
+    name: str
+    labels: np.ndarray
+    editor: Editor
 
 
 class Workshop:
@@ -30,7 +46,11 @@ class Workshop:
         most_bytes: int = MOST_UPLOAD_BYTES,
         capture: Path | None = None,
     ):
-        self.session, self.home, self.capture = session, home, capture
+        self.session, self.home = session, home
+        self.compared: Compared | None = None
+        self._capture = capture
+        self._photos: tuple[Editor, RunPhotos] | None = None
+        self._lock = threading.Lock()
         self.captures = Captures(home, most_bytes)
         self.jobs = session.jobs
         self.working: dict[str, str] = {}  # The job of a capture, by the capture's id.
@@ -49,9 +69,48 @@ class Workshop:
     async def open(self, source: Path) -> None:
         """Open a room in the place of what is open; every tab begins anew."""
         editor = await asyncio.to_thread(Editor.open, source)
-        self.capture = None
+        self._capture, self._photos, self.compared = None, None, None
         await self.session.show(editor)
         self.remember(source)
+
+    @property
+    def run(self) -> Path:
+        """The folder of the open document. Raises UsageError where none is open."""
+        return self.editor.opened.folder
+
+    def capture_of_run(self) -> Path | None:
+        """Return where the capture of the open run lies, as far as anybody said so."""
+        run = self.run.resolve()
+        noted = read_noted(self.home / PLACES)
+        if self._capture is not None:
+            place = str(self._capture.resolve())
+            if noted.get(str(run)) != place:
+                write_json(self.home / PLACES, noted | {str(run): place})
+            return self._capture
+        for one in self.captures.all():
+            if one.run.resolve() == run:
+                return one.source
+        place = noted.get(str(run))
+        return Path(place) if place and Path(place).exists() else None
+
+    def photos(self) -> RunPhotos:
+        """Return the photos of the open run; the first time takes seconds.
+
+        Raises:
+            UsageError: it has none, or does not say where they are. CaptureError: they cannot be
+            read.
+        """
+        editor = self.editor
+        with self._lock:
+            if self._photos is None or self._photos[0] is not editor:
+                capture = find_capture_of(self.run, self.capture_of_run())
+                made = read_photos(self.run, capture, editor.opened.scan_to_room)
+                self._photos = (editor, made)
+            return self._photos[1]
+
+    def truth_folder(self) -> Path | None:
+        """Return where the truth of the open run lies, None where there is none."""
+        return truth_folder(self.run, self.capture_of_run()) if self.session.editor else None
 
     def remember(self, source: Path) -> None:
         """Note that a room was opened; the newest come first."""
@@ -99,3 +158,13 @@ class Workshop:
         except InputError:
             return []
         return [text for text in noted if isinstance(text, str)] if isinstance(noted, list) else []
+
+
+def read_noted(path: Path) -> dict[str, str]:
+    """Return the texts by text of a JSON object; none where the file is not there or not whole."""
+    try:
+        noted = read_json(path)
+    except InputError:
+        return {}
+    pairs = noted.items() if isinstance(noted, dict) else ()
+    return {key: value for key, value in pairs if isinstance(value, str)}

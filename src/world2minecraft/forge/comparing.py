@@ -1,0 +1,85 @@
+"""Another occupancy of the same room, laid on the cells of the document: a truth, a prediction.
+
+The page counts what was added, removed and changed, and the IoU, from the two arrays of labels.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.classes import UNKNOWN
+from world2minecraft.edit.scene import SceneDraft
+from world2minecraft.errors import InputError, UsageError
+from world2minecraft.evaluate.truth import read_truth
+from world2minecraft.exchange.occupancy import read_occupancy
+from world2minecraft.metrics.truth import carry_truth
+from world2minecraft.types import OccupancyGrid
+
+SUFFIXES = (".npz", ".npy", ".json")
+
+
+def labels_of_file(path: Path, draft: SceneDraft) -> np.ndarray:
+    """Return the labels uint8 [X, Y, Z] of an occupancy file in the cells of a scene.
+
+    A cell takes the label at its centre, 255 where the file does not reach.
+
+    Raises:
+        InputError: it is no occupancy file. UsageError: it lies beside the scene.
+    """
+    return labels_on(read_occupancy(path), draft)
+
+
+def labels_on(grid: OccupancyGrid, draft: SceneDraft) -> np.ndarray:
+    """Return the labels of a grid in the cells of a scene, as ``labels_of_file``.
+
+    Raises:
+        UsageError: the two do not meet.
+    """
+    at, inside = [], []
+    for axis in range(3):
+        centres_m = draft.origin_m[axis] + (np.arange(draft.shape[axis]) + 0.5) * draft.voxel_m
+        cells = np.floor((centres_m - grid.origin_m[axis]) / grid.voxel_m).astype(np.int64)
+        inside.append((cells >= 0) & (cells < grid.shape[axis]))
+        at.append(np.clip(cells, 0, grid.shape[axis] - 1))
+    labels = grid.labels[np.ix_(*at)].copy()
+    x, y, z = inside
+    reached = x[:, None, None] & y[:, None] & z
+    if not reached.any():
+        raise UsageError(
+            "the file lies beside this room: no cell of it is here; its origin_m must be in the "
+            "room's frame"
+        )
+    labels[~reached] = UNKNOWN
+    return labels
+
+
+def truth_folder(run: Path, capture: Path | None) -> Path | None:
+    """Return where the truth of a generated room lies, None where there is none."""
+    for folder in (run / "capture", capture):
+        if folder is not None and (folder / "truth.npz").is_file():
+            return folder
+    return None
+
+
+def labels_of_truth(folder: Path, draft: SceneDraft, scan_to_room: np.ndarray) -> np.ndarray:
+    """Return the truth uint8 [X, Y, Z] of a generated room in the cells of a scene.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    truth = read_truth(folder)
+    truth_to_room = scan_to_room @ truth.truth_to_scan
+    place = (draft.shape, draft.origin_m, draft.voxel_m)
+    return carry_truth(truth.labels, truth.voxel_m, truth.origin_m, truth_to_room, *place)
+
+
+def checked_name(name: str) -> str:
+    """Return the suffix of a file to compare with.
+
+    Raises:
+        InputError: it is of no kind that is read.
+    """
+    suffix = Path(name).suffix.lower()
+    if suffix not in SUFFIXES:
+        raise InputError(name[:80], "is no occupancy file; those end with .npz, .npy or .json")
+    return suffix
