@@ -5,50 +5,13 @@ import io
 import numpy as np
 import pytest
 from forge_serving import client, served, small_editor
-from hypothesis import given
-from hypothesis import strategies as st
 
 from world2minecraft.edit.scene import SceneDraft
-from world2minecraft.errors import UsageError
-from world2minecraft.exchange.occupancy import labels_grid
 from world2minecraft.exchange.room import read_room
-from world2minecraft.forge.comparing import labels_of_truth, labels_on
+from world2minecraft.forge.comparing import labels_of_truth
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.volumes import HEADER
 from world2minecraft.metrics.occupancy import count_occupancy
-
-
-def noise(shape, seed=0):
-    return np.random.default_rng(seed).integers(0, 12, shape).astype(np.uint8)
-
-
-def test_a_grid_compares_with_itself_cell_by_cell():
-    grid = labels_grid(noise((5, 6, 7)))
-    assert np.array_equal(labels_on(grid, SceneDraft(grid)), grid.labels)
-
-
-@given(st.tuples(*[st.integers(-3, 3)] * 3))
-def test_a_moved_grid_is_laid_where_it_stands(shift):
-    labels = noise((6, 6, 6))
-    scene = SceneDraft(labels_grid(labels))
-    moved = labels_grid(labels, origin_m=0.08 * np.array(shift, float))
-    found = labels_on(moved, scene)
-    for cell in np.ndindex(6, 6, 6):
-        there = np.array(cell) - shift
-        inside = ((there >= 0) & (there < 6)).all()
-        assert found[cell] == (labels[tuple(there)] if inside else 255)
-
-
-def test_finer_cells_are_read_at_the_centres():
-    coarse = noise((4, 4, 4))
-    fine = labels_grid(np.kron(coarse, np.ones((3, 3, 3), np.uint8)), voxel_m=0.08 / 3)
-    assert np.array_equal(labels_on(fine, SceneDraft(labels_grid(coarse))), coarse)
-
-
-def test_a_grid_beside_the_room_is_refused():
-    scene = SceneDraft(labels_grid(noise((4, 4, 4))))
-    with pytest.raises(UsageError, match="lies beside this room"):
-        labels_on(labels_grid(noise((4, 4, 4)), origin_m=np.array([80.0, 0, 0])), scene)
 
 
 def test_the_truth_of_a_generated_room_meets_its_run(small_run):

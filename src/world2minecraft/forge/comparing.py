@@ -7,13 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
 from world2minecraft.edit.scene import SceneDraft
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.edit.scene.difference import labels_in_cells
+from world2minecraft.errors import InputError
 from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.exchange.occupancy import read_occupancy
 from world2minecraft.metrics.truth import carry_truth
-from world2minecraft.types import OccupancyGrid
 
 SUFFIXES = (".npz", ".npy", ".json")
 
@@ -24,33 +23,9 @@ def labels_of_file(path: Path, draft: SceneDraft) -> np.ndarray:
     A cell takes the label at its centre, 255 where the file does not reach.
 
     Raises:
-        InputError: it is no occupancy file. UsageError: it lies beside the scene.
+        InputError: it is no occupancy file. UsageError: it lies beside the scene, or has larger cells.
     """
-    return labels_on(read_occupancy(path), draft)
-
-
-def labels_on(grid: OccupancyGrid, draft: SceneDraft) -> np.ndarray:
-    """Return the labels of a grid in the cells of a scene, as ``labels_of_file``.
-
-    Raises:
-        UsageError: the two do not meet.
-    """
-    at, inside = [], []
-    for axis in range(3):
-        centres_m = draft.origin_m[axis] + (np.arange(draft.shape[axis]) + 0.5) * draft.voxel_m
-        cells = np.floor((centres_m - grid.origin_m[axis]) / grid.voxel_m).astype(np.int64)
-        inside.append((cells >= 0) & (cells < grid.shape[axis]))
-        at.append(np.clip(cells, 0, grid.shape[axis] - 1))
-    labels = grid.labels[np.ix_(*at)].copy()
-    x, y, z = inside
-    reached = x[:, None, None] & y[:, None] & z
-    if not reached.any():
-        raise UsageError(
-            "the file lies beside this room: no cell of it is here; its origin_m must be in the "
-            "room's frame"
-        )
-    labels[~reached] = UNKNOWN
-    return labels
+    return labels_in_cells(read_occupancy(path), draft)
 
 
 def truth_folder(run: Path, capture: Path | None) -> Path | None:
