@@ -2,6 +2,7 @@
 
 import * as THREE from "three";
 
+import type { ColourBy } from "../store";
 import { FRAGMENT, VERTEX } from "./shader";
 import type { Vec3 } from "../wire";
 
@@ -14,6 +15,7 @@ export class VoxelMaterial {
     boxHigh: { value: new THREE.Vector3(1, 1, 1) },
     shrink: { value: 1 },
     solid: { value: null as THREE.Data3DTexture | null },
+    field: { value: null as THREE.Data3DTexture | null },
     shape: { value: new THREE.Vector3(1, 1, 1) },
     edges: { value: 0.3 },
     opacity: { value: 1 },
@@ -52,9 +54,16 @@ export class VoxelMaterial {
   }
 
   /** Switch whole parts of the shader on or off; each combination is compiled once. */
-  setParts(parts: { edges: boolean; shadows: boolean; opacity: number }): void {
+  setParts(parts: { edges: boolean; shadows: boolean; opacity: number; by: ColourBy }): void {
     this.uniforms.opacity.value = parts.opacity;
-    const wanted = { EDGES: parts.edges, SHADOWS: parts.shadows, SCREEN_DOOR: parts.opacity < 1 };
+    const wanted = {
+      EDGES: parts.edges,
+      SHADOWS: parts.shadows,
+      SCREEN_DOOR: parts.opacity < 1,
+      BY_CONFIDENCE: parts.by === "confidence",
+      BY_COLOUR: parts.by === "colour",
+      BY_DIFFERENCE: parts.by === "difference",
+    };
     for (const material of [this.greedy, this.cubes]) {
       const defines = material.defines as Record<string, string>;
       for (const [name, on] of Object.entries(wanted)) {
@@ -70,5 +79,6 @@ export class VoxelMaterial {
     this.greedy.dispose();
     this.cubes.dispose();
     this.uniforms.solid.value?.dispose();
+    this.uniforms.field.value?.dispose();
   }
 }

@@ -11,12 +11,12 @@ uniform float voxel; // metres
 uniform vec3 boxLow, boxHigh; // cells; what the slices leave
 uniform float shrink; // side of a drawn cube, share of a cell
 in vec4 place, kind;
-out vec3 cell, tint;
+out vec3 cell;
 out vec2 across; // along the face, in cells
-flat out vec3 normal;
-flat out float span;
+flat out vec3 normal, tint;
+flat out float span, light;
 
-const float LIGHT[6] = float[6](0.86, 0.93, 1.0, 0.80, 0.73, 0.55); // +x +y +z -x -y -z
+const float LIGHT[6] = float[6](0.85, 0.93, 1.0, 0.79, 0.72, 0.52); // +x +y +z -x -y -z
 
 void main() {
   int bits = int(place.w + 0.5);
@@ -43,31 +43,57 @@ void main() {
   across = axis == 0 ? at.yz : axis == 1 ? at.zx : at.xy;
   normal = n;
   span = kind.y;
-  tint = palette[label & 15].rgb * LIGHT[face];
+  tint = palette[label & 15].rgb;
+  light = LIGHT[face];
   gl_Position = projectionMatrix * viewMatrix * vec4(origin + at * voxel, 1.0);
 }
 `;
 
+// The ramp runs from doubtful, warm and light, to sure, dark and blue: about even steps to the eye.
 export const FRAGMENT = /* glsl */ `
 precision highp float;
 precision highp sampler3D;
 uniform sampler3D solid; // 1 where a drawn cell is; z y x
-uniform vec3 shape; // cells of the texture: two more than the scene
+uniform sampler3D field; // a value for each cell; z y x
+uniform vec3 shape; // cells of \`solid\`: two more than the scene
 uniform float edges, opacity;
-in vec3 cell, tint;
+in vec3 cell;
 in vec2 across;
-flat in vec3 normal;
-flat in float span;
+flat in vec3 normal, tint;
+flat in float span, light;
 out vec4 colour;
+
+vec3 ramp(float t) {
+  const vec3 STOPS[5] = vec3[5](vec3(0.99, 0.86, 0.42), vec3(0.96, 0.55, 0.35), vec3(0.77, 0.31, 0.45),
+    vec3(0.45, 0.27, 0.55), vec3(0.22, 0.27, 0.50));
+  float at = clamp(t, 0.0, 1.0) * 3.999;
+  int stop = int(at);
+  return mix(STOPS[stop], STOPS[stop + 1], fract(at));
+}
+
+vec3 base() {
+  ivec3 owner = ivec3(floor(cell - normal * 0.5)).zyx;
+#if defined(BY_CONFIDENCE)
+  return ramp(texelFetch(field, owner, 0).r);
+#elif defined(BY_COLOUR)
+  return texelFetch(field, owner, 0).rgb;
+#elif defined(BY_DIFFERENCE)
+  float code = texelFetch(field, owner, 0).r * 255.0;
+  vec3 same = mix(vec3(dot(tint, vec3(0.3, 0.6, 0.1))), vec3(0.62), 0.7);
+  return code > 1.5 ? vec3(0.98, 0.70, 0.22) : code > 0.5 ? vec3(0.25, 0.74, 0.46) : same;
+#else
+  return tint;
+#endif
+}
 
 void main() {
 #ifdef SCREEN_DOOR
   // Layers behind each other get other patterns, else the nearest would hide all of them.
-  float depth = dot(floor(cell - normal * 0.5), vec3(0.754877, 0.569840, 0.431597)) ;
+  float depth = dot(floor(cell - normal * 0.5), vec3(0.754877, 0.569840, 0.431597));
   float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))) + depth);
   if (noise >= opacity) discard;
 #endif
-  vec3 rgb = tint;
+  vec3 rgb = base() * light;
 #ifdef SHADOWS
   float near = texture(solid, ((cell + 1.0 + normal * 0.5 * span) / shape).zyx).r;
   rgb *= 1.0 - 0.42 * near;

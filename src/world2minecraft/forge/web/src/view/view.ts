@@ -6,10 +6,14 @@ import * as THREE from "three";
 import type { State, Store } from "../store";
 import type { Run, Vec3 } from "../wire";
 import { fitted, type Orbit } from "./camera";
+import { Caps } from "./caps";
 import { Chunks } from "./chunks";
 import { Controls } from "./controls";
+import { Fields, type Difference } from "./fields";
 import { Frames, type Painted } from "./frames";
+import { Ground } from "./ground";
 import { Look } from "./look";
+import { Markers } from "./markers";
 import { VoxelMaterial } from "./material";
 import { Overlays } from "./overlay";
 import { pickCell, type Hit } from "./pick";
@@ -17,6 +21,7 @@ import { Quality, type Fineness } from "./quality";
 import { cellsInPolygon, type DepthLimit, type Point } from "./regions";
 import { Sight, type Pose } from "./sight";
 
+export type { Difference } from "./fields";
 export type { DepthLimit } from "./regions";
 export type { Pose } from "./sight";
 
@@ -43,7 +48,14 @@ export class SceneView {
   picker: ((ray: { from: Vec3; direction: Vec3 }) => Picked | null) | null = null;
   private readonly material = new VoxelMaterial();
   private readonly chunks = new Chunks(this.material, () => this.invalidate());
-  private readonly look = new Look(this.material, this.chunks);
+  private readonly look = new Look(
+    this.material,
+    this.chunks,
+    new Fields(this.material, () => this.refresh()),
+    new Caps(this.chunks.group, this.material),
+  );
+  private readonly markers = new Markers();
+  private readonly ground = new Ground();
   private readonly overlays = new Overlays();
   private readonly sight = new Sight(START);
   private readonly frames: Frames;
@@ -58,7 +70,7 @@ export class SceneView {
   ) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false });
     this.frames = new Frames(new Quality(), (fineness, now) => this.paint(fineness, now));
-    this.scene.add(this.chunks.group, this.overlays.group);
+    this.scene.add(this.ground.lines, this.chunks.group, this.overlays.group, this.markers.group);
     this.controls = new Controls(canvas, this);
     this.controls.claims = () => store.get().tool !== "navigate";
     const size = new ResizeObserver(() => this.invalidate());
@@ -67,8 +79,11 @@ export class SceneView {
       () => size.disconnect(),
       store.watch(["scene", "labels", "view", "theme"], (state, changed) => {
         if (changed.has("scene") || changed.has("labels")) this.takeVolume(state);
-        this.scene.background = new THREE.Color(GROUND[state.theme]);
-        this.look.take(state, this.copy);
+        this.takeTheme(state);
+        this.refresh();
+      }),
+      store.watch(["objects", "selectedObjects", "mode", "view", "theme", "scene"], (state) => {
+        this.markers.take(state);
         this.invalidate();
       }),
     ];
@@ -90,12 +105,6 @@ export class SceneView {
 
   set pose(pose: Pose | null) {
     this.sight.pose = pose;
-    this.invalidate();
-  }
-
-  /** Whether the voxels are drawn; others may draw something in their place. */
-  set voxels(shown: boolean) {
-    this.chunks.group.visible = shown;
     this.invalidate();
   }
 
@@ -171,6 +180,13 @@ export class SceneView {
     this.invalidate();
   }
 
+  /** What "difference" shows: against another scene; null: nothing. */
+  setDifference(difference: Difference | null): void {
+    this.look.fields.setDifference(difference, this.copy.length);
+    this.setOverlay("removed", difference?.removed ?? null, "#ff5d5d");
+    this.refresh();
+  }
+
   /** Fly to where the whole scene is in view. */
   frame(): void {
     const box = this.box();
@@ -216,7 +232,7 @@ export class SceneView {
 
   dispose(): void {
     for (const end of this.ends) end();
-    for (const part of [this.frames, this.controls, this.chunks, this.material, this.renderer]) part.dispose();
+    for (const part of [this.frames, this.markers, this.ground, this.controls, this.chunks, this.material, this.renderer]) part.dispose();
   }
 
   private box(): { low: Vec3; high: Vec3 } | null {
@@ -251,6 +267,17 @@ export class SceneView {
     this.chunks.load(this.copy, shape, voxel_m, origin_m);
     const { low, high } = this.box()!;
     this.sight.orbit = fitted(START, low, high, this.measure().aspect);
+  }
+
+  private refresh(): void {
+    this.look.take(this.store.get(), this.copy);
+    this.invalidate();
+  }
+
+  private takeTheme({ theme }: Readonly<State>): void {
+    this.scene.background = new THREE.Color(GROUND[theme]);
+    const box = this.box();
+    if (box) this.ground.take(box.low, box.high, theme === "dark");
   }
 
   private measure(): Sight {
@@ -289,6 +316,7 @@ export class SceneView {
     if (size.x === wide && size.y === tall && this.renderer.getPixelRatio() === ratio) return;
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(wide, tall, false);
+    this.markers.resize(wide, tall);
   }
 }
 
