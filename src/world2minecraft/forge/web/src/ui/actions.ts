@@ -9,6 +9,7 @@ import { icon, type IconName } from "./icons";
 export interface Action {
   run(): void;
   why?(): string; // why it cannot be done now; empty where it can
+  title?(): string; // what it would do now, where that changes
   active?(): boolean; // for what is switched on and off, or chosen
 }
 
@@ -95,8 +96,11 @@ export class Actions {
 
   private show(node: HTMLElement, id: string): void {
     const keys = bindingOf(id)?.keys[0];
-    setWhy(node, this.why(id), keys ? `${titleOf(id)} (${keys})` : titleOf(id));
-    if (this.actions.get(id)?.active) {
+    const action = this.actions.get(id);
+    const title = action?.title?.() ?? titleOf(id);
+    setWhy(node, this.why(id), keys ? `${title} (${keys})` : title);
+    if (action?.title) node.setAttribute("aria-label", title);
+    if (action?.active) {
       node.setAttribute("aria-pressed", String(this.active(id)));
     }
   }

@@ -111,10 +111,12 @@ function pageActions({ actions, store, connection, toast }: App, tell: (error: u
   actions.on("undo", {
     run: () => void connection.undo().catch(tell),
     why: () => blocked() || (store.get().scene?.undo ? "" : TEXT.why.nothingToUndo),
+    title: () => TEXT.top.undo(store.get().scene?.undo ?? ""),
   });
   actions.on("redo", {
     run: () => void connection.redo().catch(tell),
     why: () => blocked() || (store.get().scene?.redo ? "" : TEXT.why.nothingToRedo),
+    title: () => TEXT.top.redo(store.get().scene?.redo ?? ""),
   });
   actions.on("save", {
     run: () => void connection.save().then(() => toast(TEXT.top.saved), tell),

@@ -32,7 +32,7 @@ export function mountDoubtful(host: HTMLElement, app: App): void {
     draw();
     if (!place) return;
     visit(app, place);
-    app.store.set({ status: place.why });
+    app.store.set({ status: words(place) });
   };
   const step = async (by: number): Promise<void> => {
     const rev = app.store.get().scene?.rev ?? 0;
@@ -57,10 +57,14 @@ export function mountDoubtful(host: HTMLElement, app: App): void {
 
 function rowOf(one: Doubt, at: number, chosen: boolean, go: (at: number) => void): HTMLElement {
   const node = h("button", { type: "button", class: "found", data: { doubt: String(at) } });
-  node.append(h("span", { class: "found-at" }, at + 1), h("span", { class: "tree-word" }, one.why));
+  node.append(h("span", { class: "found-at" }, at + 1), h("span", { class: "tree-word" }, words(one)));
   node.setAttribute("aria-pressed", String(chosen));
   node.addEventListener("click", () => go(at));
   return node;
+}
+
+function words({ why, object_id }: Doubt): string {
+  return TEXT.doubtful.why(TEXT.doubtful.reasons[why] ?? why, object_id ?? 0);
 }
 
 function visit({ store, view }: App, place: Doubt): void {

@@ -40,10 +40,12 @@ function section(group: (typeof GROUPS)[number], lines: readonly Binding[]): HTM
   if (!lines.length) return null;
   const rows = lines.flatMap((one) => [
     h("dt", {}, ...one.keys.map((key) => h("kbd", { class: "key" }, shownKey(key)))),
-    h("dd", {}, one.title, one.modes && one.modes.length < 3 && h("span", { class: "note" }, ` ${one.modes.map((mode) => TEXT.action[`mode.${mode}`]).join(", ")}`)),
+    h("dd", {}, one.title, one.modes && one.modes.length < 3 && !SAID.has(group) && h("span", { class: "note" }, ` ${one.modes.map((mode) => TEXT.action[`mode.${mode}`]).join(", ")}`)),
   ]);
   return h("section", { class: "help-group" }, h("h3", {}, TEXT.groups[group]), h("dl", {}, ...rows));
 }
+
+const SAID = new Set(["voxels", "objects", "selection", "classes"]); // groups that say their modes
 
 const SHOWN: Record<string, string> = { Escape: "Esc", ArrowRight: "→", ArrowLeft: "←", PageUp: "Page up", PageDown: "Page down" };
 

@@ -20,8 +20,8 @@ function mount(host: HTMLElement, app: App): void {
   const card = h(
     "section",
     { class: "hints", "aria-label": TEXT.hints.title },
-    h("div", { class: "hints-head" }, h("strong", {}, TEXT.hints.title), close),
     h("ul", {}, ...items),
+    close,
   );
   close.addEventListener("click", () => {
     localStorage.setItem(MEMORY, "seen");

@@ -9,7 +9,7 @@ import { icon } from "./icons";
 import { rove } from "./rove";
 import type { App } from "./slots";
 
-const COLUMNS = 4; // buttons of a row: class, lock, eye, more
+const COLUMNS = 4; // buttons of a row: class, more, lock, eye
 
 export function mountLegend(host: HTMLElement, app: App): void {
   const rows = h("div", { class: "legend", role: "group", "aria-label": TEXT.legend.title });
@@ -59,7 +59,7 @@ function makeRow(app: App, id: number, colour: string): Row {
   eye.addEventListener("click", (event) => toggleSeen(app, id, event.altKey));
   lock.addEventListener("click", () => toggleLock(app, id));
   more.addEventListener("click", () => classMenu(app, id, more));
-  const node = h("div", { class: "legend-row", data: { class: String(id) } }, name, lock, eye, more);
+  const node = h("div", { class: "legend-row", data: { class: String(id) } }, name, more, lock, eye);
   if (!id) for (const one of [eye, lock, more]) one.style.visibility = "hidden";
   return { node, name, count, eye, lock };
 }

@@ -9,17 +9,17 @@ import type { App } from "./slots";
 
 interface Centre {
   class_id: number;
-  center_m: Vec3;
+  at_m: Vec3;
   cells?: number;
 }
 
 // Those of the reconstruction; the sliders go around them.
-const params = { density_kernel: 3, density_threshold: 5, cluster_radius: 2 };
+const params = { density_kernel: 3, density_threshold: 0.2, cluster_radius: 2 };
 type Name = keyof typeof params;
 
 const RANGES: Record<Name, [number, number, number]> = {
   density_kernel: [1, 9, 2],
-  density_threshold: [0, 27, 1],
+  density_threshold: [0, 1, 0.02],
   cluster_radius: [1, 10, 0.5],
 };
 const PAUSE_MS = 150; // after the last change of a slider, before the server is asked
@@ -42,9 +42,9 @@ export function mountRecluster(host: HTMLElement, app: App): void {
     note.textContent = TEXT.recluster.note;
   };
   const ask = async (): Promise<void> => {
-    const found = await app.ask<Centre[] | { centers: Centre[] }>("centers", { ...params });
+    const found = await app.ask<Centre[]>("centers", { ...params });
     if (!found) return;
-    shown = Array.isArray(found) ? found : found.centers;
+    shown = found;
     note.textContent = TEXT.recluster.found(shown.length, app.store.get().objects.size);
     makeDots(app, marks, shown);
     place();
@@ -87,9 +87,9 @@ function makeDots({ store }: App, marks: HTMLElement, centres: readonly Centre[]
 }
 
 function placeDots({ view }: App, marks: HTMLElement, centres: readonly Centre[]): void {
-  centres.forEach(({ center_m }, at) => {
+  centres.forEach(({ at_m }, at) => {
     const dot = marks.children[at] as HTMLElement | undefined;
-    const where = view.project(center_m);
+    const where = view.project(at_m);
     if (!dot) return;
     dot.hidden = !where;
     if (where) dot.style.transform = `translate(${where[0]}px, ${where[1]}px)`;

@@ -16,8 +16,14 @@ export function mountTopBar(host: HTMLElement, app: App): void {
   const undo = actions.button("undo", { icon: "undo" });
   const redo = actions.button("redo", { icon: "redo" });
   host.append(
-    h("div", { class: "top-scene" }, h("span", { class: "brand", "aria-hidden": "true" }), name, saved),
-    h("div", { class: "top-history" }, undo, redo, actions.button("save", { icon: "save" })),
+    h(
+      "div",
+      { class: "top-scene" },
+      h("span", { class: "brand", "aria-hidden": "true" }),
+      name,
+      saved,
+      h("div", { class: "top-history" }, undo, redo, actions.button("save", { icon: "save" })),
+    ),
     modeTabs(app),
     h(
       "div",
@@ -60,7 +66,7 @@ function modeTabs({ actions, store }: App): HTMLElement {
     });
     tab.setAttribute("role", "tab");
     tab.removeAttribute("aria-label");
-    tab.prepend(h("kbd", { "aria-hidden": "true" }, at + 1));
+    tab.prepend(h("kbd", { "aria-hidden": "true" }, `⇧${at + 1}`));
     return tab;
   });
   const row = h("div", { class: "mode-tabs", role: "tablist", "aria-label": TEXT.top.modes }, ...tabs);

@@ -1,0 +1,182 @@
+"""The window itself: what is seen first, keys, help, palette, legend, looking around."""
+
+from world2minecraft.classes import CLASS_NAMES
+
+
+def test_the_demo_room_is_whole_in_view_without_its_ceiling_and_with_three_hints(open_tab, shot):
+    forge = open_tab(hints=True)
+    shot(forge, "first")
+    assert forge.page.title() == "Demo room · SceneForge"
+    assert forge.state("s.view.hidden") == [1]
+    assert forge.page.locator(".hints li").count() == 3
+    for corner in ([0, 0, 0], [1, 1, 0], [0, 1, 1], [1, 0, 1]):
+        share = [f"s.scene.origin_m[{i}]+{corner[i]}*s.scene.shape[{i}]*0.08" for i in range(3)]
+        x, y = forge.point_at(forge.state(f"[{','.join(share)}]"))
+        assert 244 < x < 992 and 44 < y < 734, "a corner of the room is not in view"
+    forge.page.get_by_label("Close the hints for good").click()
+    forge.page.reload()
+    forge.page.wait_for_selector(".legend-row")
+    assert forge.page.locator(".hints").count() == 0
+    assert forge.mistakes == []
+
+
+def test_drag_turns_wheel_comes_closer_and_keys_look_along_axes(forge):
+    page = forge.page
+    orbit = "window.__forge.view.orbit"
+    before = page.evaluate(orbit)
+    forge.drag((620, 600), (700, 560))
+    forge.idle()
+    turned = page.evaluate(orbit)
+    assert turned["azimuth"] != before["azimuth"] and turned["distance"] == before["distance"]
+    page.mouse.move(620, 400)
+    page.mouse.wheel(0, -240)
+    forge.idle()
+    assert page.evaluate(orbit)["distance"] < turned["distance"]
+    page.keyboard.down("Shift")
+    forge.drag((620, 600), (700, 600))
+    page.keyboard.up("Shift")
+    forge.idle()
+    assert page.evaluate(orbit)["target"] != turned["target"]
+    forge.key("Numpad7")
+    forge.idle()
+    assert page.evaluate(orbit)["elevation"] > 1.5
+    forge.key("Numpad5")
+    assert page.evaluate(orbit)["ortho"] is True
+    forge.key("Shift+F")
+    forge.idle()
+    assert forge.state("s.selectedObjects") == []
+
+
+def test_the_legend_hides_shows_alone_locks_and_chooses(forge, shot):
+    page = forge.page
+    sofa = page.locator(".legend-row[data-class='7']")
+    assert sofa.locator(".legend-count").inner_text() == f"{forge.state('s.scene.counts[7]'):,}"
+    eye = sofa.locator(".mini").nth(2)
+    eye.click()
+    forge.until("s.view.hidden.has(7)")
+    assert eye.get_attribute("aria-pressed") == "false"
+    eye.click()
+    eye.click(modifiers=["Alt"])
+    forge.until("s.view.solo", 7)
+    shot(forge, "solo")
+    eye.click(modifiers=["Alt"])
+    forge.until("s.view.solo", None)
+    sofa.hover()
+    sofa.locator(".mini").nth(1).click()
+    forge.until("s.view.locked.has(7)")
+    forge.mode("voxels")
+    for key, number in {"8": 8, "0": 10, "-": 11, "=": 0, "1": 1}.items():
+        forge.key(key)
+        forge.until("s.options.classId", number)
+    sofa.locator(".legend-name").click()
+    forge.until("s.options.classId", 7)
+
+
+def test_whole_classes_are_relabelled_and_deleted_by_their_menu(forge):
+    page = forge.page
+    counts = forge.state("s.scene.counts")
+    row = page.locator(".legend-row[data-class='8']")
+    row.hover()
+    row.locator(".mini").nth(0).click()
+    page.get_by_role("menuitem", name="Give all another class…").click()
+    page.get_by_role("menuitem", name="furn").click()
+    forge.until("s.scene.counts[8]", 0)
+    assert forge.state("s.scene.counts[10]") == counts[10] + counts[8]
+    forge.key("Control+z")
+    forge.until("s.scene.counts[8]", counts[8])
+    row.hover()
+    row.locator(".mini").nth(0).click()
+    page.get_by_role("menuitem", name="Delete all table").click()
+    forge.until("s.scene.counts[8]", 0)
+    row.locator(".mini").nth(0).click()
+    gone = page.get_by_role("menuitem", name="Delete all table")
+    assert gone.get_attribute("aria-description") == "There is no cell of table"
+    forge.key("Escape")
+    assert page.locator(".menu").count() == 0
+
+
+def test_help_and_palette_are_made_of_the_one_table(forge, shot):
+    page = forge.page
+    forge.key("?")
+    shot(forge, "help")
+    assert page.locator(".help").is_visible()
+    words = page.locator(".help").inner_text()
+    for name in CLASS_NAMES:
+        assert f"Choose {name}" in words
+    assert "Ctrl+Shift+Z" in words and "Next doubtful place" in words
+    forge.key("Escape")
+    assert not page.locator(".help").is_visible()
+    forge.key("Control+k")
+    page.keyboard.type("measure")
+    shot(forge, "palette")
+    forge.key("Enter")
+    forge.until("s.tool", "measure")
+    forge.key("Control+k")
+    page.keyboard.type("undo")
+    row = page.locator(".palette-row[data-action='undo']")
+    assert row.get_attribute("aria-disabled") == "true"
+    assert "Nothing was done yet" in row.inner_text()
+
+
+def test_what_cannot_be_done_says_why(forge):
+    page = forge.page
+    undo = forge.action("undo")
+    assert undo.get_attribute("aria-disabled") == "true"
+    assert undo.get_attribute("aria-description") == "Nothing was done yet"
+    assert "Nothing was done yet" in undo.get_attribute("title")
+    undo.click(force=True)  # Playwright itself clicks nothing that is disabled.
+    assert "Nothing was done yet" in page.locator(".toast").inner_text()
+    forge.mode("objects")
+    assert forge.action("object.merge").get_attribute("aria-description") == "No object is selected"
+
+
+def test_the_keyboard_alone_reaches_and_does_everything(forge):
+    page = forge.page
+    forge.key("Shift+Digit3")
+    forge.until("s.mode", "objects")
+    forge.key("ArrowRight")
+    forge.until("s.selectedObjects.size", 1)
+    forge.key("Tab")
+    stops = set()
+    for _ in range(60):
+        stops.add(
+            page.evaluate(
+                "(() => { const a = document.activeElement; return a.closest('.mode-tabs, .rail,"
+                " .legend, .tree, .corner, .side.right, .top-page, .canvas')?.className ?? ''; })()"
+            )
+        )
+        forge.key("Tab")
+    wanted = ("mode-tabs", "rail", "legend", "tree", "corner", "side right", "top-page", "canvas")
+    for place in wanted:
+        assert any(place in stop for stop in stops), f"Tab does not reach {place}: {stops}"
+    page.locator("[role=tab][aria-selected=true]").focus()
+    forge.key("ArrowLeft")
+    assert page.evaluate("document.activeElement.dataset.action") == "mode.voxels"
+    forge.key("Enter")
+    forge.until("s.mode", "voxels")
+
+
+def test_theme_and_a_narrow_window(open_tab, shot):
+    forge = open_tab(width=1024, height=700)
+    for mode in ("inspect", "voxels", "objects"):
+        forge.mode(mode)
+        overflow = forge.page.evaluate("document.documentElement.scrollWidth > innerWidth")
+        assert not overflow
+        for bar in forge.page.locator(".top, .side, .status").all():
+            assert forge.page.evaluate("e => e.scrollWidth <= e.clientWidth", bar.element_handle())
+    shot(forge, "narrow")
+    forge.action("theme").click()
+    forge.until("s.theme", "light")
+    shot(forge, "light")
+    assert forge.page.evaluate("document.documentElement.dataset.theme") == "light"
+    assert forge.mistakes == []
+
+
+def test_a_lost_server_is_told_and_nothing_can_be_changed(forge, server):
+    server.stop()
+    forge.until("s.online", False)
+    assert forge.page.locator(".saved").inner_text() == "No connection"
+    forge.key("Shift+Digit3", "ArrowRight")
+    forge.until("s.selectedObjects.size", 1)
+    assert "connection" in forge.action("object.turn").get_attribute("aria-description")
+    forge.mistakes.clear()  # The browser itself reports that it cannot connect.
