@@ -6,7 +6,6 @@ import { brushTool } from "../tools/brush";
 import { eyedropperTool } from "../tools/eyedropper";
 import { floodTool } from "../tools/flood";
 import { ToolManager } from "../tools/manager";
-import { showObjectMarks } from "../tools/object_marks";
 import { measureTool } from "../tools/measure";
 import { moveTool } from "../tools/move";
 import { navigateTool } from "../tools/navigate";
@@ -62,7 +61,6 @@ export function startEditing(app: App, hover: (at: Press | null) => void): ToolM
       active: () => app.store.get().tool === tool.id,
     });
   }
-  showObjectMarks(app);
   viewActions(app);
   objectActions(app);
   cellActions(app);
