@@ -80,12 +80,13 @@ def test_what_collides_is_told(editor):
 
 def test_what_hangs_in_the_air_is_the_most_doubtful_place(editor):
     rows = editor.ask("doubtful")
-    assert rows[0]["why"] == "floater" and rows[0]["object_id"] == the(editor, 11).id
+    assert rows[0]["kind"] == "floater" and rows[0]["object_id"] == the(editor, 11).id
+    assert rows[0]["why"] == "64 cells of objs in the air, on nothing"
     assert np.abs(np.array(rows[0]["at_m"]) - the(editor, 11).center_m)[:2].max() < 0.1
     assert [row["doubt"] for row in rows] == sorted((r["doubt"] for r in rows), reverse=True)
     editor.do("delete_objects", ids=[the(editor, 11).id])
     assert floaters(editor.draft.labels).parts == 0
-    assert all(row["why"] != "floater" for row in editor.ask("doubtful"))
+    assert all(row["kind"] != "floater" for row in editor.ask("doubtful"))
 
 
 def test_a_chair_and_its_turned_copy_are_split_and_merged(editor):

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, Field
 
+from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.edit.scene.boxes import object_named
+from world2minecraft.edit.scene.doubts import Doubt, find_doubts, ordered
 from world2minecraft.edit.scene.furnishing import ObjectClass
 from world2minecraft.edit.scene.objects import Id
 from world2minecraft.edit.scene.objects_of import instance_of, placements_of
@@ -15,17 +17,13 @@ from world2minecraft.find.clusters import centroids, cluster_candidates
 from world2minecraft.find.density import candidate_cells, density_map, object_cells
 from world2minecraft.forge.query import Query
 from world2minecraft.furnish import ranked_matches
-from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.metrics.layout import collisions, floaters, out_of_rooms
+from world2minecraft.metrics.layout import collisions, out_of_rooms
 
 if TYPE_CHECKING:
-    from world2minecraft.edit.scene import SceneDraft
     from world2minecraft.forge.editor import Editor
 
 OFFERED = 5
 LEAST_DOUBT = 0.3  # Of what is surer than this nobody needs to be told.
-UNSURE = 0.5  # The confidence under which a cell is rather wrong than right.
-UNSURE_CELLS = 30  # About 0.2 m2 at 0.08 m; fewer are the edges of things.
 MOST_PLACES = 200
 
 
@@ -88,28 +86,38 @@ class Warnings(Query):
 
 
 class Doubtful(Query):
-    """Places worth a look, the most doubtful first.
+    """Places worth a look, the most doubtful first, each with the reason in ``why``.
 
-    ``why`` is ``outside``, ``collision``, ``floater``, ``no_template`` (built from its cells),
-    ``low_iou``, ``low_confidence`` or ``unsure_cells``.
+    ``kind`` is ``outside``, ``collision``, ``floater``, ``unsupported``, ``low_iou``,
+    ``near_tie``, ``no_template`` (built from its cells), ``low_confidence``, ``unsure_cells``,
+    ``crumb`` or ``completed``.
     """
 
     def answer(self, editor: "Editor") -> Any:
-        """Return ``[{"at_m", "why", "doubt" 0 to 1, "object_id" or null}]``."""
-        found = [*_doubtful_objects(editor), *_doubtful_cells(editor.draft)]
-        seen: set[int] = set()
-        rows = []
-        for doubt, why, number, at in sorted(found, key=lambda row: (-row[0], row[1], row[2])):
-            if number in seen or doubt < LEAST_DOUBT:
-                continue
-            seen |= {number} if number else set()
-            at_m = np.round(at, 3).tolist()
-            row = {"at_m": at_m, "why": why, "doubt": round(doubt, 3), "object_id": number or None}
-            rows.append(row)
-        return rows[:MOST_PLACES]
+        """Return ``[{"at_m", "why", "kind", "doubt" 0 to 1, "object_id" or null}]``."""
+        found = ordered([*_clash_doubts(editor), *find_doubts(editor.draft)])
+        return [
+            {
+                "at_m": np.round(one.at_m, 3).tolist(),
+                "why": one.why,
+                "kind": one.kind,
+                "doubt": round(one.doubt, 3),
+                "object_id": one.object_id or None,
+            }
+            for one in found[:MOST_PLACES]
+            if one.doubt >= LEAST_DOUBT
+        ]
 
 
-Doubt = tuple[float, str, int, np.ndarray]  # How much, why, the object or 0, where.
+def _clash_doubts(editor: "Editor") -> Iterator[Doubt]:
+    for clash in _clashes(editor):
+        number = clash["ids"][-1]
+        name = CLASS_NAMES[editor.draft.objects[number].class_id]
+        doubt, why = 1.0, f"this {name} reaches out of its room"
+        if clash["kind"] == "collision":
+            other = editor.draft.objects[clash["ids"][0]]
+            doubt, why = 0.95, f"this {name} and {CLASS_NAMES[other.class_id]} {other.id} collide"
+        yield Doubt(clash["kind"], why, doubt, np.array(clash["at_m"]), number)
 
 
 def _clashes(editor: "Editor") -> Iterator[dict[str, Any]]:
@@ -122,37 +130,6 @@ def _clashes(editor: "Editor") -> Iterator[dict[str, Any]]:
     for index in out_of_rooms(placed, rooms) if rooms else ():
         at_m = np.round(placed[index].center_m, 3).tolist()
         yield {"kind": "outside", "ids": [placed[index].object_id], "at_m": at_m}
-
-
-def _doubtful_objects(editor: "Editor") -> Iterator[Doubt]:
-    objects = editor.draft.objects
-    for clash in _clashes(editor):
-        doubt = 1.0 if clash["kind"] == "outside" else 0.95
-        yield doubt, clash["kind"], clash["ids"][-1], np.array(clash["at_m"])
-    for one in objects.values():
-        yield 1 - one.confidence, "low_confidence", one.id, one.center_m
-        if one.confidence == 1:
-            continue  # A person has looked at it.
-        for placed in one.placements:
-            why = "no_template" if placed.template == "cells" else "low_iou"
-            yield 1 - placed.iou, why, one.id, placed.center_m
-
-
-def _doubtful_cells(draft: "SceneDraft") -> Iterator[Doubt]:
-    unsure = (draft.labels % 255 > 0) & (draft.confidence < UNSURE) & (draft.instance == 0)
-    for mask, why, least in (
-        (floaters(draft.labels).mask, "floater", 1),
-        (unsure, "unsure_cells", UNSURE_CELLS),
-    ):
-        parts, count = connected_parts(mask)
-        sizes = np.bincount(parts.ravel(), minlength=count + 1)
-        for number in np.flatnonzero(sizes[1:] >= least) + 1:
-            cells = np.argwhere(parts == number)
-            held = draft.confidence[tuple(cells.T)].astype(np.float64)
-            doubt = 0.97 if why == "floater" else float(1 - held.mean())
-            owner = int(np.bincount(draft.instance[tuple(cells.T)]).argmax())
-            at_m = draft.origin_m + (cells.mean(axis=0) + 0.5) * draft.voxel_m
-            yield doubt, why, owner if owner in draft.objects else 0, at_m
 
 
 OBJECT_QUERIES: dict[str, type[Query]] = {

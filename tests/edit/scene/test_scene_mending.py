@@ -58,6 +58,13 @@ def test_floaters_are_the_small_pieces_but_the_largest(seed):
     assert all(one.cells.tolist() in everything for one in found)
 
 
+def test_a_large_piece_of_structure_never_floats():
+    labels = box_room()
+    labels[20:30, 20:30, 10], labels[20:23, 20:23, 20], labels[40, 40, 10:20] = 3, 1, 10
+    found = find_floaters(box_draft(labels), 100_000)
+    assert [(len(one.cells), one.class_id) for one in found] == [(10, 10), (9, 1)]
+
+
 def slowly_smoothed(labels):
     result = labels.copy()
     for cell in map(tuple, np.argwhere(labels < 255).tolist()):

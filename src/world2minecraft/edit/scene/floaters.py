@@ -2,15 +2,18 @@
 
 A piece is all occupied cells, of whatever classes, that hold together by faces, edges or corners.
 It floats where it is small and not the largest of the scene: what holds to a wall, a floor or a
-large piece is part of that piece. A lamp whose cord was not seen floats by this rule too, so that
-the list names its object.
+large piece is part of that piece. A piece with cells of structure floats only where it is smaller
+than the smallest wall, however large one asks for: a ceiling without walls is no dirt. A lamp whose
+cord was not seen floats by this rule too, so the list names its object.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.classes import STRUCTURE_CLASSES
 from world2minecraft.edit.scene.draft import SceneDraft
+from world2minecraft.edit.scene.planes import WALL_M2
 from world2minecraft.geometry.parts import connected_parts
 
 MAX_CELLS = 30  # A football. Of the tuning rooms' floaters nine in ten are smaller.
@@ -32,6 +35,8 @@ def find_floaters(draft: SceneDraft, max_cells: int = MAX_CELLS) -> list[Floater
     sizes = np.bincount(parts.ravel(), minlength=count + 1)
     sizes[0] = 0
     small = (sizes > 0) & (sizes <= max_cells)
+    built = np.unique(parts[np.isin(draft.labels, STRUCTURE_CLASSES)])
+    small[built] &= sizes[built] < WALL_M2 / draft.voxel_m**2
     small[int(sizes.argmax())] = False
     at = np.argwhere(small[parts]).astype(np.int32)
     numbers = parts[tuple(at.T)]

@@ -218,7 +218,7 @@ export interface CentersQuery {
   class_id?: number | null;
 }
 
-/** Places worth a look, the most doubtful first. */
+/** Places worth a look, the most doubtful first, each with the reason in ``why``. */
 export type DoubtfulQuery = Record<string, never>;
 
 /** Furniture that collides or reaches out of its room, by the metrics of the report. */
