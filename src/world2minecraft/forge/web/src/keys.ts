@@ -21,6 +21,7 @@ type Row = [id: keyof typeof TEXT.action, group: Group, keys: string[], modes?: 
 
 const VOXELS: Mode[] = ["voxels"];
 const OBJECTS: Mode[] = ["objects"];
+const FURNISHING: Mode[] = ["objects", "build"];
 const BOTH: Mode[] = ["voxels", "objects"];
 const LOOKING: Mode[] = ["inspect", "voxels", "objects", "build"];
 
@@ -78,10 +79,10 @@ const ROWS: Row[] = [
   ["select.redo", "selection", ["Alt+Shift+Z"], BOTH],
   ["tool.move", "objects", ["G"], OBJECTS],
   ["tool.add", "objects", ["N"], OBJECTS],
-  ["object.turn", "objects", ["R"], OBJECTS],
-  ["object.turnBack", "objects", ["Shift+R"], OBJECTS],
-  ["object.template", "objects", ["T"], OBJECTS],
-  ["object.templateBack", "objects", ["Shift+T"], OBJECTS],
+  ["object.turn", "objects", ["R"], FURNISHING],
+  ["object.turnBack", "objects", ["Shift+R"], FURNISHING],
+  ["object.template", "objects", ["T"], FURNISHING],
+  ["object.templateBack", "objects", ["Shift+T"], FURNISHING],
   ["object.split", "objects", ["S"], OBJECTS],
   ["object.merge", "objects", ["M"], OBJECTS],
   ["object.duplicate", "objects", ["D"], OBJECTS],

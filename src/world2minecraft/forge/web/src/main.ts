@@ -4,20 +4,27 @@ import "./style.css";
 import "./style_controls.css";
 import "./style_stage.css";
 import "./style_panels.css";
+import "./style_build.css";
+import { builderOf, registerBuild } from "./build/mode";
 import { Store } from "./store";
 import { startApp } from "./ui/app";
 import { h } from "./ui/dom";
 import { registerEditing } from "./ui/editing";
 import { registerHints } from "./ui/hints";
 import { SceneView } from "./view/view";
+import { registerWalk, walkingOf } from "./walk/mode";
 
 const store = new Store();
 const host = document.querySelector<HTMLElement>("#app") ?? document.body.appendChild(h("div"));
 
 registerEditing();
 registerHints();
+registerBuild();
+registerWalk();
 
 void startApp(host, store, (canvas) => new SceneView(canvas, store)).then((app) => {
   const { view, connection } = app;
-  Object.assign(window, { __forge: { store, view, connection, app, idle: () => view.idle() } });
+  const build = builderOf(app);
+  const walk = walkingOf(app);
+  Object.assign(window, { __forge: { build, walk, store, view, connection, app, idle: () => view.idle() } });
 });

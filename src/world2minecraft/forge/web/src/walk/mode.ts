@@ -1,0 +1,181 @@
+// Walk: through the build, or through the voxels, with the game's physics.
+
+import { builderOf } from "../build/mode";
+import { describe } from "../build/words";
+import { Packet } from "../build/packet";
+import { Color } from "three";
+import type { Mode } from "../store";
+import { TEXT } from "../text";
+import { fill, h } from "../ui/dom";
+import { segment } from "../ui/fields";
+import { registerMode, registerPanel, registerStagePart, type App } from "../ui/slots";
+import type { SceneView } from "../view/view";
+import { Input } from "./input";
+import { Walker } from "./walker";
+
+type Ground = "blocks" | "voxels";
+
+const SKY = 0x8fb8f0;
+const TOLD_MS = 250; // between two looks at what is ahead
+
+export class Walking {
+  walker: Walker | null = null;
+  ground: Ground = "blocks";
+  private readonly input: Input;
+  private readonly view: SceneView;
+  private back: Mode = "inspect";
+  private frame = 0;
+  private last = 0;
+  private toldAt = 0;
+  private sky: SceneView["scene"]["background"] = null;
+  private listeners = new Set<() => void>();
+  private asked = 0;
+
+  constructor(private readonly app: App) {
+    this.view = app.view as unknown as SceneView;
+    this.input = new Input(app.canvas, { leave: () => this.app.store.set({ mode: this.back }), moved: () => undefined });
+    app.store.watch(["mode"], ({ mode }) => {
+      if (mode !== "walk") this.back = mode;
+    });
+    builderOf(app).watch(() => void this.renew());
+    app.store.watch(["touched"], () => this.ground === "voxels" && void this.renew());
+  }
+
+  watch(call: () => void): void {
+    this.listeners.add(call);
+  }
+
+  get isOn(): boolean {
+    return this.app.store.get().mode === "walk";
+  }
+
+  enter(): void {
+    this.sky = this.view.scene.background;
+    this.view.scene.background = new Color(SKY);
+    this.choose(this.ground);
+    this.input.start();
+    (document.activeElement as HTMLElement | null)?.blur();
+    this.last = performance.now();
+    this.frame = requestAnimationFrame((now) => this.pass(now));
+  }
+
+  leave(): void {
+    cancelAnimationFrame(this.frame);
+    this.input.stop();
+    this.walker = null;
+    this.view.pose = null;
+    this.view.scene.background = this.sky;
+    builderOf(this.app).show(false);
+  }
+
+  choose(ground: Ground): void {
+    this.ground = ground;
+    builderOf(this.app).show(ground === "blocks", true);
+    void this.load();
+    this.tell();
+  }
+
+  private async renew(): Promise<void> {
+    const { mesh, busy } = builderOf(this.app).loader;
+    const rev = this.ground === "blocks" ? mesh?.facts.rev : this.app.store.get().scene?.rev;
+    const size = this.ground === "blocks" ? mesh?.facts.blocks_per_metre : this.walker?.scale;
+    if (!this.isOn || busy || !this.walker) return;
+    if (this.walker.rev !== rev || this.walker.scale !== size) await this.load();
+  }
+
+  private async load(): Promise<void> {
+    const asked = ++this.asked;
+    const { size, style } = builderOf(this.app).loader.wish;
+    const build = `what=build&blocks_per_metre=${size}&style=${style}`;
+    const answer = await fetch(`api/collision?${this.ground === "blocks" ? build : "what=voxels"}`);
+    if (!answer.ok) {
+      this.app.toast(((await answer.json()) as { error: string }).error, "error");
+      return;
+    }
+    const data = await answer.arrayBuffer();
+    if (asked !== this.asked || !this.isOn) return;
+    const walker = new Walker(Packet.read(data, "W2MC"));
+    if (this.walker) walker.standAt(this.walker.feet, this.walker);
+    this.walker = walker;
+    this.tell();
+  }
+
+  private pass(now: number): void {
+    this.frame = requestAnimationFrame((next) => this.pass(next));
+    const milliseconds = now - this.last;
+    this.last = now;
+    const { walker } = this;
+    if (!walker) return;
+    const [right, down] = this.input.look(milliseconds);
+    walker.look(right, down);
+    walker.keys = this.input.keys;
+    const moved = walker.pass(milliseconds);
+    if (moved || right || down || !this.view.pose) {
+      this.view.pose = walker.pose;
+      this.app.connection.active();
+    }
+    if (now - this.toldAt > TOLD_MS) {
+      this.toldAt = now;
+      this.tell();
+    }
+  }
+
+  /** What is in the middle of the picture, in words. */
+  ahead(): string {
+    const { pose } = this.view;
+    if (!pose || this.ground !== "blocks") return "";
+    const met = builderOf(this.app).ahead(pose.position, pose.forward);
+    if (!met) return "";
+    const one = this.app.store.get().objects.get(met.object);
+    return TEXT.walk.ahead(describe(met.state).name, one && TEXT.objects.name(TEXT.classes[one.class_id] ?? "", one.id));
+  }
+
+  private tell(): void {
+    for (const call of this.listeners) call();
+  }
+}
+
+const walkings = new WeakMap<App, Walking>();
+
+export function walkingOf(app: App): Walking {
+  const old = walkings.get(app) ?? new Walking(app);
+  walkings.set(app, old);
+  return old;
+}
+
+export function registerWalk(): void {
+  registerMode("walk", {
+    enter: (app) => walkingOf(app).enter(),
+    leave: (app) => walkingOf(app).leave(),
+  });
+  registerPanel({ id: "walk", title: TEXT.walk.title, place: "right", modes: ["walk"], order: 5, mount: mountChoice });
+  registerStagePart({ id: "walking", mount: mountOver });
+}
+
+function mountChoice(host: HTMLElement, app: App): void {
+  const walking = walkingOf(app);
+  const ground = segment<Ground>(
+    TEXT.walk.through,
+    () => (["blocks", "voxels"] as const).map((value) => ({ value, label: TEXT.walk.grounds[value] })),
+    (value) => walking.choose(value),
+  );
+  const keys = TEXT.walk.keys.map(([key, what]) => h("li", {}, h("kbd", { class: "key" }, key), h("span", {}, what)));
+  host.append(ground.node, h("ul", { class: "walk-keys" }, ...keys));
+  walking.watch(() => ground.set(walking.ground));
+  ground.set(walking.ground);
+}
+
+/** Cross hairs, and what they point at. */
+function mountOver(host: HTMLElement, app: App): void {
+  const walking = walkingOf(app);
+  const ahead = h("div", { class: "walk-ahead" });
+  const hint = h("div", { class: "walk-hint" }, TEXT.walk.hint);
+  const over = h("div", { class: "walk-over", hidden: true }, h("div", { class: "walk-cross" }), ahead, hint);
+  host.append(over);
+  app.store.watch(["mode"], ({ mode }) => (over.hidden = mode !== "walk"));
+  walking.watch(() => {
+    if (!walking.isOn) return;
+    fill(ahead, walking.ahead());
+    hint.hidden = document.pointerLockElement === app.canvas;
+  });
+}
