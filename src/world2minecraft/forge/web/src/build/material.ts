@@ -27,7 +27,7 @@ void main() {
   gl_Position = hidden ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   at = uv;
   layer = kind.x;
-  vec3 lit = ambient + skyLight * shine(light.x) + lampLight * shine(light.y);
+  vec3 lit = ambient + max(skyLight * shine(light.x), lampLight * shine(light.y));
   lit *= colour.a * (1.0 - corner * light.z * (255.0 / 80.0));
   tint = colour.rgb * max(lit, vec3(light.w * 1.12));
 }
@@ -87,7 +87,7 @@ export class BlockMaterial {
     const texture = new THREE.DataArrayTexture(texels, side, side, layers);
     texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
     texture.magFilter = THREE.NearestFilter;
-    texture.minFilter = THREE.NearestMipmapLinearFilter; // Sharp near, calm far.
+    texture.minFilter = THREE.NearestMipmapNearestFilter; // Sharp near, calm far, cheap by software.
     texture.generateMipmaps = true;
     texture.needsUpdate = true;
     this.uniforms.textures.value?.dispose();
