@@ -2,7 +2,7 @@
 
 import { Store } from "../src/store";
 import { SceneView } from "../src/view/view";
-import { readBlock } from "../src/view/volume";
+import { parseVolume } from "../src/volume";
 import type { Scene } from "../src/wire";
 
 import { drawEach } from "./each";
@@ -12,18 +12,18 @@ async function main(): Promise<void> {
   const store = new Store();
   const [scene, block] = await Promise.all([
     fetch("api/scene").then((answer) => answer.json() as Promise<Scene>),
-    fetch("api/volume?what=labels").then(async (answer) => readBlock(await answer.arrayBuffer())),
+    fetch("api/volume?what=labels").then(async (answer) => parseVolume(await answer.arrayBuffer())),
   ]);
   const each = new URLSearchParams(location.search).get("each");
   if (each) {
-    drawEach(canvas, scene, block.data as Uint8Array, each);
+    drawEach(canvas, scene, block.cells as Uint8Array, each);
     return;
   }
   const view = new SceneView(canvas, store);
   view.onFrame.push(() => {
     performance.getEntriesByName("first").length || performance.mark("first");
   });
-  store.set({ scene, labels: block.data as Uint8Array });
+  store.set({ scene, labels: block.cells as Uint8Array });
   Object.assign(window, { __forge: { store, view, idle: () => view.idle() } });
   await view.idle();
   performance.mark("whole");

@@ -6,6 +6,7 @@ const CLASS_WORDS = [
 ]; // prettier-ignore
 
 export const TEXT = {
+  compass: ["Right", "Back", "Top", "Left", "Front", "Bottom"], // sides +x +y +z -x -y -z
   app: "SceneForge",
   classes: CLASS_WORDS,
   groups: {

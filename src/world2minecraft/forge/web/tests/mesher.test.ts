@@ -39,14 +39,14 @@ interface Quad {
   corners: Vec3[];
 }
 
-function quadsOf({ words, starts }: ChunkMesh, low: Vec3): Quad[] {
+function quadsOf({ words, starts }: ChunkMesh, low: Vec3, style: Style): Quad[] {
   const quads: Quad[] = [];
   for (let quad = 0; quad < words.length / 8; quad++) {
     const corners = [0, 1, 2, 3].map((corner): Vec3 => {
       const word = words[quad * 8 + corner * 2]!;
       const bits = (word >>> 27) & 7;
       const cell = [word & 255, (word >>> 8) & 255, (word >>> 16) & 255];
-      return cell.map((c, i) => low[i]! + c + ((bits >> i) & 1)) as Vec3;
+      return cell.map((c, i) => low[i]! + c + (style === "cubes" ? (bits >> i) & 1 : 0)) as Vec3;
     });
     const face = (words[quad * 8]! >>> 24) & 7;
     expect(quad).toBeGreaterThanOrEqual(starts[face]!);
@@ -61,7 +61,7 @@ function meshAll(labels: Uint8Array, shape: Vec3, step = 1, style: Style = "gree
   for (let x = 0; x < shape[0]; x += CHUNK)
     for (let y = 0; y < shape[1]; y += CHUNK)
       for (let z = 0; z < shape[2]; z += CHUNK)
-        quads.push(...quadsOf(meshChunk(labels, shape, [x, y, z], step, style), [x, y, z]));
+        quads.push(...quadsOf(meshChunk(labels, shape, [x, y, z], step, style), [x, y, z], style));
   return quads;
 }
 
@@ -105,6 +105,20 @@ describe("greedy mesh", () => {
     for (const style of ["greedy", "cubes"] as const) {
       for (const { face, corners } of meshAll(labels, shape, 1, style)) {
         expect(normalOf(corners).map(Math.sign).map((v) => v + 0)).toEqual(AHEAD[face]!.map((v) => v + 0));
+      }
+    }
+  });
+
+  it("tells of each corner on which side of its quad it lies", () => {
+    const shape: Vec3 = [20, 21, 22];
+    const { words } = meshChunk(someScene(shape, 8), shape, [0, 0, 0]);
+    for (let quad = 0; quad < words.length; quad += 8) {
+      const four = [0, 2, 4, 6].map((at) => words[quad + at]!);
+      const axis = ((four[0]! >>> 24) & 7) % 3;
+      for (const side of [0, 1, 2].filter((other) => other !== axis)) {
+        const places = four.map((word) => (word >>> (8 * side)) & 255);
+        const high = four.map((word) => ((word >>> (27 + side)) & 1) === 1);
+        expect(high).toEqual(places.map((place) => place === Math.max(...places)));
       }
     }
   });

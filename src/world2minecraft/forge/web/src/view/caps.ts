@@ -42,7 +42,7 @@ function capSide(out: number[], labels: Uint8Array, shape: Vec3, low: Vec3, high
       at[axis] = plane;
       at[u] = low[u]! + a + p * across;
       at[v] = low[v]! + b + q * down;
-      out.push(...at, face, label, 1, 0, 0);
+      out.push(...at, face | (p << (3 + u)) | (q << (3 + v)), label, 1, 0, 0);
     };
     corner(0, 0);
     if (face < 3) corner(1, 0);

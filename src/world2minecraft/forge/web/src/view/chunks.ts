@@ -29,6 +29,8 @@ export class Chunks {
   readonly group = new THREE.Group();
   /** Whether the last frame showed all that it should. */
   settled = true;
+  /** How many meshes were made. */
+  made = 0;
   private chunks: Chunk[] = [];
   private counts: Vec3 = [0, 0, 0];
   private labels: Uint8Array = new Uint8Array(0);
@@ -159,6 +161,7 @@ export class Chunks {
 
   private put(chunk: Chunk, step: Step, made: ChunkMesh, style: Style): void {
     chunk.drop(step);
+    this.made += 1;
     const quads = made.starts[FACES]!;
     let mesh: THREE.Mesh | null = null;
     if (quads) {

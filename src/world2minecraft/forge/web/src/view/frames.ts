@@ -4,11 +4,11 @@
 import type { Fineness, Quality } from "./quality";
 
 const REST_MS = 160; // without a change, until all is drawn in full
-const WARM = 3; // first frames compile shaders: they tell nothing about speed
 
 export interface Painted {
   again: boolean; // the next frame shows something else: a flight goes on
   settled: boolean; // nothing is missing in it
+  usual: boolean; // it did no more than frames do: no shader was compiled, no mesh made
 }
 
 export class Frames {
@@ -17,8 +17,7 @@ export class Frames {
   private timer = 0;
   private wanted = false;
   private began = 0;
-  private count = 0;
-  private settled = false;
+  private usual = false;
   private waiting: (() => void)[] = [];
 
   constructor(
@@ -53,8 +52,10 @@ export class Frames {
   private tick(now: number): void {
     this.asked = 0;
     if (this.began) {
-      this.lastMs = performance.now() - this.began;
-      if (++this.count > WARM && this.settled) this.quality.took(this.lastMs);
+      if (this.usual) {
+        this.lastMs = performance.now() - this.began;
+        this.quality.took(this.lastMs);
+      }
       this.began = 0;
     }
     if (this.wanted) this.draw(now);
@@ -63,8 +64,8 @@ export class Frames {
   private draw(now: number): void {
     this.wanted = false;
     this.began = performance.now();
-    const { again, settled } = this.paint(this.quality.moving, now);
-    this.settled = settled;
+    const { again, settled, usual } = this.paint(this.quality.moving, now);
+    this.usual = usual;
     this.wanted = again;
     this.ask(); // Also where nothing is to be drawn: to see when this frame was done.
     if (again || !settled) return;
@@ -73,6 +74,7 @@ export class Frames {
 
   private drawFull(): void {
     if (this.wanted) return;
+    this.usual = false; // The time that is being taken has this in it.
     const { again, settled } = this.paint(this.quality.still, performance.now());
     if (again) this.invalidate();
     else if (settled) for (const resolve of this.waiting.splice(0)) resolve();

@@ -7,16 +7,29 @@ import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
 import type { State } from "../store";
+import { seenOf } from "./seen";
 import type { Placed, SceneObject, Vec3 } from "../wire";
 
 const ACCENT = { dark: 0xffffff, light: 0x14171c };
+const RIM = 0x14171c;
 const ALWAYS = { depthTest: false, depthWrite: false, transparent: true };
 
+interface Ball {
+  center: Vec3;
+  radius: number;
+  colour: THREE.Color;
+  edge: THREE.Color;
+  chosen: boolean;
+}
+
 /** What of objects a mode shows. */
-export function shownObjects({ objects, view, mode }: Readonly<State>): SceneObject[] {
-  if (mode !== "inspect" && mode !== "objects") return [];
-  const hidden = (id: number) => (view.solo === null ? view.hidden.has(id) : id !== view.solo);
-  return [...objects.values()].filter(({ class_id }) => !hidden(class_id));
+export function shownObjects({ objects, view, mode, scene }: Readonly<State>): SceneObject[] {
+  if (!scene || (mode !== "inspect" && mode !== "objects")) return [];
+  const { visible, low, high } = seenOf(view, scene.shape);
+  return [...objects.values()].filter(({ class_id, center_m }) => {
+    const cell = center_m.map((value, axis) => (value - scene.origin_m[axis]!) / scene.voxel_m);
+    return visible[class_id] && cell.every((at, axis) => at >= low[axis]! && at <= high[axis]!);
+  });
 }
 
 /** The twelve edges of a box that is turned about z, as pairs of points. */
@@ -49,6 +62,8 @@ export class Markers {
   readonly group = new THREE.Group();
   private readonly ball = new THREE.SphereGeometry(1, 20, 14);
   private readonly lines: LineMaterial[] = [];
+  private shown: Ball[] = [];
+  private parts: { ball: THREE.InstancedMesh; rim: THREE.InstancedMesh; arrow: THREE.Mesh } | null = null;
 
   take(state: Readonly<State>): void {
     this.clear();
@@ -76,34 +91,50 @@ export class Markers {
     this.ball.dispose();
   }
 
-  private balls(shown: SceneObject[], state: Readonly<State>, colourOf: (id: number) => THREE.Color): void {
-    if (!shown.length) return;
-    const radius = state.view.centerSize / 2;
-    const rim = new THREE.Color(ACCENT[state.theme]);
-    const inner = this.instanced(shown.length, 3);
-    const outer = this.instanced(shown.length, 2);
-    const arrows: number[] = [];
-    const tints: number[] = [];
-    shown.forEach(({ id, center_m, class_id, yaw_deg }, i) => {
-      const chosen = state.selectedObjects.has(id);
-      const matrix = new THREE.Matrix4().makeTranslation(...center_m);
-      inner.setMatrixAt(i, matrix.clone().scale(new THREE.Vector3().setScalar(radius)));
-      outer.setMatrixAt(i, matrix.scale(new THREE.Vector3().setScalar(radius * (chosen ? 1.42 : 1.2))));
-      inner.setColorAt(i, colourOf(class_id));
-      outer.setColorAt(i, chosen ? rim : new THREE.Color(0x14171c));
-      for (const corner of arrowCorners(center_m, (yaw_deg * Math.PI) / 180, radius)) {
-        arrows.push(...corner);
-        tints.push(...(chosen ? rim : colourOf(class_id)).toArray());
+  /** Draw those small and faint whose centre is covered by something else. */
+  dim(isCovered: (center: Vec3) => boolean): void {
+    const { ball, rim, arrow } = this.parts ?? {};
+    if (!ball || !rim || !arrow) return;
+    const colours = arrow.geometry.getAttribute("color");
+    this.shown.forEach(({ center, radius, colour, edge, chosen }, i) => {
+      const faint = !chosen && isCovered(center);
+      const size = faint ? radius * 0.55 : radius;
+      const at = new THREE.Matrix4().makeTranslation(...center);
+      ball.setMatrixAt(i, at.clone().scale(new THREE.Vector3().setScalar(size)));
+      rim.setMatrixAt(i, at.scale(new THREE.Vector3().setScalar(size * (chosen ? 1.42 : 1.22))));
+      ball.setColorAt(i, colour);
+      rim.setColorAt(i, edge);
+      const alpha = faint ? 0 : 1;
+      for (let corner = 0; corner < 3; corner++) {
+        colours.setXYZW(3 * i + corner, ...((chosen ? edge : colour).toArray() as Vec3), alpha);
       }
     });
+    for (const mesh of [ball, rim]) {
+      mesh.instanceMatrix.needsUpdate = true;
+      if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+    }
+    colours.needsUpdate = true;
+  }
+
+  private balls(shown: SceneObject[], state: Readonly<State>, colourOf: (id: number) => THREE.Color): void {
+    this.parts = null;
+    if (!shown.length) return;
+    const radius = state.view.centerSize / 2;
+    this.shown = shown.map(({ id, center_m, class_id }) => {
+      const chosen = state.selectedObjects.has(id);
+      const edge = new THREE.Color(chosen ? ACCENT[state.theme] : RIM);
+      return { center: center_m, radius, colour: colourOf(class_id), edge, chosen };
+    });
+    const corners = shown.flatMap((one) => arrowCorners(one.center_m, (one.yaw_deg * Math.PI) / 180, radius));
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.Float32BufferAttribute(arrows, 3));
-    geometry.setAttribute("color", new THREE.Float32BufferAttribute(tints, 3));
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(corners.flat(), 3));
+    geometry.setAttribute("color", new THREE.Float32BufferAttribute(new Float32Array(corners.length * 4), 4));
     const material = new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.DoubleSide, ...ALWAYS });
-    const heads = new THREE.Mesh(geometry, material);
-    heads.renderOrder = 2;
-    heads.frustumCulled = false;
-    this.group.add(heads);
+    const arrow = new THREE.Mesh(geometry, material);
+    arrow.renderOrder = 2;
+    arrow.frustumCulled = false;
+    this.group.add(arrow);
+    this.parts = { ball: this.instanced(shown.length, 3), rim: this.instanced(shown.length, 2), arrow };
   }
 
   private instanced(count: number, order: number): THREE.InstancedMesh {
@@ -140,5 +171,6 @@ export class Markers {
       if (mesh instanceof THREE.InstancedMesh) mesh.dispose();
     }
     this.lines.length = 0;
+    this.parts = null;
   }
 }

@@ -14,10 +14,11 @@ export class VoxelMaterial {
     boxLow: { value: new THREE.Vector3() },
     boxHigh: { value: new THREE.Vector3(1, 1, 1) },
     shrink: { value: 1 },
+    overlap: { value: new THREE.Vector2() },
     solid: { value: null as THREE.Data3DTexture | null },
     field: { value: null as THREE.Data3DTexture | null },
     shape: { value: new THREE.Vector3(1, 1, 1) },
-    edges: { value: 0.3 },
+    edges: { value: 0.2 },
     opacity: { value: 1 },
   };
 
@@ -43,6 +44,11 @@ export class VoxelMaterial {
   setBox(low: Vec3, high: Vec3): void {
     this.uniforms.boxLow.value.set(...low);
     this.uniforms.boxHigh.value.set(...high);
+  }
+
+  /** How far quads overlap, in cells: everywhere, or at a metre from the eye and more beyond. */
+  setOverlap(cells: number, everywhere: boolean): void {
+    this.uniforms.overlap.value.set(everywhere ? 0 : cells, everywhere ? cells : 0);
   }
 
   /** Colours 0..255 and whether each class is drawn, by class id. */

@@ -3,7 +3,8 @@
 // and tests import it.
 //
 // A vertex is two uint32: x | y << 8 | z << 16 | face << 24 | corner << 27, label | step << 8.
-// x y z count cells from the chunk's low corner. Faces are ordered so that the three that a
+// x y z count cells from the chunk's low corner; corner has a bit for each axis on whose high side
+// of the quad, or in cubes of the cell x y z, the vertex lies. Faces are ordered so that the three that a
 // camera can see are mostly neighbours in the buffer.
 
 import { UNKNOWN } from "./volume";
@@ -202,12 +203,13 @@ function emitQuad(
   const a1 = ((a + wide) * step) << SHIFT[u]!;
   const b0 = (b * step) << SHIFT[v]!;
   const b1 = ((b + high) * step) << SHIFT[v]!;
-  const second = face < 3 ? fixed | a1 | b0 : fixed | a0 | b1;
-  const fourth = face < 3 ? fixed | a0 | b1 : fixed | a1 | b0;
+  const [onU, onV] = [1 << (27 + u), 1 << (27 + v)];
+  const second = face < 3 ? a1 | b0 | onU : a0 | b1 | onV;
+  const fourth = face < 3 ? a0 | b1 | onV : a1 | b0 | onU;
   out[used] = fixed | a0 | b0;
-  out[used + 2] = second;
-  out[used + 4] = fixed | a1 | b1;
-  out[used + 6] = fourth;
+  out[used + 2] = fixed | second;
+  out[used + 4] = fixed | a1 | b1 | onU | onV;
+  out[used + 6] = fixed | fourth;
   for (let i = 1; i < QUAD; i += 2) out[used + i] = kind;
   used += QUAD;
 }

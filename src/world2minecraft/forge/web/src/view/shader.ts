@@ -10,6 +10,7 @@ uniform vec3 origin; // metres
 uniform float voxel; // metres
 uniform vec3 boxLow, boxHigh; // cells; what the slices leave
 uniform float shrink; // side of a drawn cube, share of a cell
+uniform vec2 overlap; // of neighbouring quads, in cells: a unit of depth, and everywhere
 in vec4 place, kind;
 out vec3 cell;
 out vec2 across; // along the face, in cells
@@ -34,6 +35,10 @@ void main() {
   at += 0.5 + (side - 0.5) * shrink;
   hidden = hidden || any(lessThan(owner, boxLow)) || any(greaterThanEqual(owner, boxHigh));
 #else
+  // Quads whose sides meet other corners leave pinholes between them, unless they overlap a little.
+  vec3 side = vec3(corner & 1, (corner >> 1) & 1, corner >> 2) * 2.0 - 1.0;
+  float deep = -(viewMatrix * vec4(origin + at * voxel, 1.0)).z;
+  at += side * (1.0 - abs(n)) * (overlap.x * max(deep, 0.0) + overlap.y);
   float plane = dot(at, abs(n)), low = dot(boxLow, abs(n)), high = dot(boxHigh, abs(n));
   hidden = hidden || (face < 3 ? plane <= low || plane > high : plane < low || plane >= high);
   at = clamp(at, boxLow, boxHigh);
@@ -64,8 +69,8 @@ flat in float span, light;
 out vec4 colour;
 
 vec3 ramp(float t) {
-  const vec3 STOPS[5] = vec3[5](vec3(0.99, 0.86, 0.42), vec3(0.96, 0.55, 0.35), vec3(0.77, 0.31, 0.45),
-    vec3(0.45, 0.27, 0.55), vec3(0.22, 0.27, 0.50));
+  const vec3 STOPS[5] = vec3[5](vec3(0.99, 0.87, 0.44), vec3(0.97, 0.62, 0.38), vec3(0.84, 0.43, 0.48),
+    vec3(0.57, 0.41, 0.62), vec3(0.34, 0.45, 0.69));
   float at = clamp(t, 0.0, 1.0) * 3.999;
   int stop = int(at);
   return mix(STOPS[stop], STOPS[stop + 1], fract(at));
@@ -76,7 +81,8 @@ vec3 base() {
 #if defined(BY_CONFIDENCE)
   return ramp(texelFetch(field, owner, 0).r);
 #elif defined(BY_COLOUR)
-  return texelFetch(field, owner, 0).rgb;
+  vec3 seen = texelFetch(field, owner, 0).rgb; // black: no photo saw it
+  return seen == vec3(0.0) ? mix(vec3(dot(tint, vec3(0.3, 0.6, 0.1))), tint, 0.35) : seen;
 #elif defined(BY_DIFFERENCE)
   float code = texelFetch(field, owner, 0).r * 255.0;
   vec3 same = mix(vec3(dot(tint, vec3(0.3, 0.6, 0.1))), vec3(0.62), 0.7);

@@ -8,6 +8,7 @@ import type { Run, Vec3 } from "../wire";
 import { fitted, type Orbit } from "./camera";
 import { Caps } from "./caps";
 import { Chunks } from "./chunks";
+import { Compass } from "./compass";
 import { Controls } from "./controls";
 import { Fields, type Difference } from "./fields";
 import { Frames, type Painted } from "./frames";
@@ -16,24 +17,23 @@ import { Look } from "./look";
 import { Markers } from "./markers";
 import { VoxelMaterial } from "./material";
 import { Overlays } from "./overlay";
-import { pickCell, type Hit } from "./pick";
 import { Quality, type Fineness } from "./quality";
-import { cellsInPolygon, type DepthLimit, type Point } from "./regions";
+import { Reach, type Picked, type Ray } from "./reach";
+import type { DepthLimit, Point } from "./regions";
 import { Sight, type Pose } from "./sight";
+import "./view.css";
 
+export type { Picked } from "./reach";
 export type { Difference } from "./fields";
 export type { DepthLimit } from "./regions";
 export type { Pose } from "./sight";
 
-export interface Picked extends Hit {
-  object?: number;
-}
-
+const OVERLAP_PX = 0.12; // of quads: under what is seen
 const GROUND = { dark: 0x16181d, light: 0xf1f2f4 };
 const START: Orbit = {
   target: [0, 0, 0],
   azimuth: (-125 * Math.PI) / 180,
-  elevation: (42 * Math.PI) / 180,
+  elevation: (50 * Math.PI) / 180,
   distance: 8,
   ortho: false,
 };
@@ -44,8 +44,6 @@ export class SceneView {
   readonly controls: Controls;
   readonly scene = new THREE.Scene(); // in metres of the room, z up; others may add to it
   readonly renderer: THREE.WebGLRenderer;
-  /** Finds what a ray in metres meets where something else than the voxels is drawn. */
-  picker: ((ray: { from: Vec3; direction: Vec3 }) => Picked | null) | null = null;
   private readonly material = new VoxelMaterial();
   private readonly chunks = new Chunks(this.material, () => this.invalidate());
   private readonly look = new Look(
@@ -58,9 +56,12 @@ export class SceneView {
   private readonly ground = new Ground();
   private readonly overlays = new Overlays();
   private readonly sight = new Sight(START);
+  private readonly reach: Reach;
+  private readonly compass: Compass;
   private readonly frames: Frames;
   private copy: Uint8Array = new Uint8Array(0);
   private place = "";
+  private work = ""; // that the last frame had done: programs, meshes, size
   private drawn: Fineness = { scale: 1, coarse: 0 };
   private readonly ends: (() => void)[];
 
@@ -71,6 +72,8 @@ export class SceneView {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false });
     this.frames = new Frames(new Quality(), (fineness, now) => this.paint(fineness, now));
     this.scene.add(this.ground.lines, this.chunks.group, this.overlays.group, this.markers.group);
+    this.reach = new Reach(store, this.sight, () => this.look.seen);
+    this.compass = new Compass(canvas, (side) => this.lookFrom(side));
     this.controls = new Controls(canvas, this);
     this.controls.claims = () => store.get().tool !== "navigate";
     const size = new ResizeObserver(() => this.invalidate());
@@ -108,41 +111,32 @@ export class SceneView {
     this.invalidate();
   }
 
+  /** Finds what a ray in metres meets where something else than the voxels is drawn. */
+  set picker(find: ((ray: Ray) => Picked | null) | null) {
+    this.reach.picker = find;
+  }
+
   /** The first drawn cell under a pixel of the canvas, from its top left. */
   pick(x: number, y: number): Picked | null {
-    const { scene, instance } = this.store.get();
-    if (!scene || !this.copy.length) return null;
     this.measure();
-    const { from, direction } = this.sight.ray(x, y);
-    if (this.picker) return this.picker({ from, direction });
-    const ray = direction.map((d) => d / scene.voxel_m) as Vec3;
-    const hit = pickCell({ labels: this.copy, shape: scene.shape }, this.look.seen, this.inCells(from), ray);
-    if (!hit) return null;
-    const object = instance[hit.flat];
-    return object ? { ...hit, object } : hit;
+    return this.reach.pick(x, y);
   }
 
   /** The point of the scene under a pixel, in metres. */
   pointAt(x: number, y: number): Vec3 | null {
-    const hit = this.pick(x, y);
-    if (!hit) return null;
-    const { from, direction } = this.sight.ray(x, y);
-    return from.map((value, i) => value + hit.t * direction[i]!) as Vec3;
+    this.measure();
+    return this.reach.pointAt(x, y);
   }
 
   /** Where a point in metres is on the canvas, in pixels; null: behind the camera. */
   project(point: Vec3): [number, number] | null {
-    this.measure();
-    return this.sight.project(point);
+    return this.measure().project(point);
   }
 
   /** Where the ray through a pixel meets the plane `axis` = `at` metres; null: it does not. */
   toRoom(x: number, y: number, plane: { axis: 0 | 1 | 2; at: number }): Vec3 | null {
     this.measure();
-    const { from, direction } = this.sight.ray(x, y);
-    const t = (plane.at - from[plane.axis]) / direction[plane.axis];
-    if (!Number.isFinite(t) || t < 0) return null;
-    return from.map((value, i) => value + t * direction[i]!) as Vec3;
+    return this.reach.toRoom(x, y, plane);
   }
 
   /** Flat numbers of the drawn cells behind a rectangle of the canvas. */
@@ -152,18 +146,8 @@ export class SceneView {
 
   /** Flat numbers of the drawn cells behind a polygon of the canvas. */
   lasso(polygon: readonly Point[], limit: DepthLimit = "surface"): number[] {
-    const { scene } = this.store.get();
-    if (!scene || !this.copy.length || polygon.length < 3) return [];
     this.measure();
-    const { origin_m: origin, voxel_m: voxel, shape } = scene;
-    const eye = this.inCells(this.sight.eye);
-    const { back } = this.sight.axes;
-    const project = (cell: Vec3) => this.sight.project(cell.map((c, i) => origin[i]! + c * voxel) as Vec3);
-    const rayTo = (cell: Vec3) => {
-      const from = this.sight.isParallel ? (cell.map((c, i) => c + back[i]! * 1e4) as Vec3) : eye;
-      return { from, direction: cell.map((c, i) => c - from[i]!) as Vec3 };
-    };
-    return cellsInPolygon({ labels: this.copy, shape }, this.look.seen, polygon, limit, project, rayTo);
+    return this.reach.lasso(polygon, limit);
   }
 
   /** Light up cells under a name, or no longer (null). */
@@ -209,6 +193,14 @@ export class SceneView {
     this.flyTo({ ...this.sight.goal, azimuth, elevation });
   }
 
+  /** Look from a side, 0..5: +x +y +z -x -y -z; from the other where it is seen from there. */
+  lookFrom(side: number): void {
+    const axis = (side % 3) as 0 | 1 | 2;
+    const back = axis === 2 ? side > 2 : side < 3;
+    const ahead = Math.abs(this.sight.axes.back[axis]) > 0.999;
+    this.lookAlong(axis, ahead ? !back : back);
+  }
+
   flyTo(to: Orbit): void {
     const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.sight.fly(to, performance.now(), calm);
@@ -232,7 +224,7 @@ export class SceneView {
 
   dispose(): void {
     for (const end of this.ends) end();
-    for (const part of [this.frames, this.markers, this.ground, this.controls, this.chunks, this.material, this.renderer]) part.dispose();
+    for (const part of [this.frames, this.compass, this.markers, this.ground, this.controls, this.chunks, this.material, this.renderer]) part.dispose();
   }
 
   private box(): { low: Vec3; high: Vec3 } | null {
@@ -240,11 +232,6 @@ export class SceneView {
     if (!scene) return null;
     const high = scene.origin_m.map((o, i) => o + scene.shape[i]! * scene.voxel_m) as Vec3;
     return { low: scene.origin_m, high };
-  }
-
-  private inCells(point: Vec3): Vec3 {
-    const { origin_m, voxel_m } = this.store.get().scene!;
-    return point.map((value, i) => (value - origin_m[i]!) / voxel_m) as Vec3;
   }
 
   private takeVolume({ scene, labels }: Readonly<State>): void {
@@ -259,7 +246,7 @@ export class SceneView {
       return;
     }
     this.place = place;
-    this.copy = labels.slice();
+    this.copy = this.reach.labels = labels.slice();
     this.material.setPlace(voxel_m, origin_m, shape);
     this.overlays.setPlace(voxel_m, origin_m);
     this.overlays.clear();
@@ -291,16 +278,22 @@ export class SceneView {
     this.resize(fineness.scale);
     const camera = this.sight.camera();
     if (this.copy.length) this.aim(camera, fineness.coarse);
+    this.markers.dim((center) => this.reach.isCovered(center));
+    this.compass.turn(this.sight.pose || !this.copy.length ? null : this.sight.axes);
     this.renderer.render(this.scene, camera);
+    const work = [this.renderer.info.programs?.length, this.chunks.made, fineness.scale].join();
+    const usual = work === this.work;
+    this.work = work;
     for (const call of [...this.onFrame]) call(this.frames.lastMs);
-    return { again: this.sight.flying, settled: this.chunks.settled };
+    return { again: this.sight.flying, settled: this.chunks.settled, usual };
   }
 
   private aim(camera: THREE.Camera, coarse: number): void {
     const { voxel_m } = this.store.get().scene!;
     const matrix = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+    this.material.setOverlap(OVERLAP_PX / this.sight.pixels(1) / voxel_m, this.sight.isParallel);
     this.chunks.aim({
-      eye: this.sight.isParallel ? null : this.inCells(this.sight.eye),
+      eye: this.sight.isParallel ? null : this.reach.inCells(this.sight.eye),
       direction: this.sight.axes.back.map((b) => -b) as Vec3,
       frustum: new THREE.Frustum().setFromProjectionMatrix(matrix.multiply(this.chunks.group.matrix)),
       pixels: (distance) => this.sight.pixels(distance * voxel_m) * voxel_m,
