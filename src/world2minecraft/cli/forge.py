@@ -48,13 +48,12 @@ def run(
         InputError: there is no room in the source.
     """
     from world2minecraft.errors import UsageError
-    from world2minecraft.forge.demo import demo_room
     from world2minecraft.forge.editor import Editor
     from world2minecraft.forge.serve import ForgeServer
 
     if demo and source is not None:
         raise UsageError("--demo is a room of its own; leave out the file, or --demo")
-    editor = Editor(demo_room()) if demo else Editor.open(source) if source else None
+    editor = Editor.open(source) if demo or source else None
     server = ForgeServer(editor, host=host, port=port)
     if server.is_open:
         print(

@@ -59,7 +59,7 @@ class HeldScene:
         """Copy the scene of an editor; to be called in the editor's turn."""
         objects = tuple(editor.draft.objects.values())
         grid = editor.draft.grid()
-        return cls(editor.rev, editor.name, editor.opened.folder, grid, objects)
+        return cls(editor.rev, editor.name, editor.opened.source, grid, objects)
 
 
 @dataclass(frozen=True, eq=False)

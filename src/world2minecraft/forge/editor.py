@@ -18,22 +18,12 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from world2minecraft.edit.scene import (
-    Command,
-    MemoryLog,
-    SceneDraft,
-    SceneHistory,
-    instances_of,
-    parse_command,
-    placements_of,
-)
-from world2minecraft.errors import UsageError
-from world2minecraft.exchange.objects import write_objects, write_placements
-from world2minecraft.exchange.paper import write_centers_json, write_occ_json
-from world2minecraft.exchange.room import write_room
+from world2minecraft.edit.scene import Command, SceneDraft, parse_command
+from world2minecraft.forge.document import Document
 from world2minecraft.forge.queries import parse_query
-from world2minecraft.forge.sources import Opened, read_source
+from world2minecraft.forge.sources import Opened
 from world2minecraft.forge.tools import tools_of
+from world2minecraft.forge.unkept import Unkept
 from world2minecraft.forge.wire import PROTOCOL, classes_json, counts_json, objects_json
 from world2minecraft.types import Operation
 
@@ -45,39 +35,72 @@ MAX_IDS = 1 << 16
 class Editor:
     """One scene that is edited. All methods may be called from any thread; one runs at a time.
 
-    ``draft`` is the scene, to be read only. ``rev`` counts the steps so far, undo and redo too;
-    ``saved_rev`` is its value when the scene was last saved. ``read_only`` says why the scene
-    cannot be edited, empty where it can. ``cells_of`` int64 [65536] counts each object's cells.
+    ``document`` is its folder, with ``notes`` for the user. ``cells_of`` int64 [65536] counts
+    each object's cells. ``has`` is what there is beside the scene, for the page.
     """
 
-    def __init__(self, opened: Opened, clock: Callable[[], float] = time.time):
-        """Take a scene that was read; ``open`` is the usual way."""
-        self.opened, self.name, self.clock = opened, opened.name, clock
-        self.draft = SceneDraft(opened.grid, opened.objects)
-        self.tools = tools_of(opened.rooms)
-        self.rev = self.saved_rev = 0
-        self.read_only = ""
+    def __init__(self, document: Unkept | Opened, clock: Callable[[], float] = time.time):
+        """Take an open document, or a scene to be edited in memory alone; see ``Editor.open``."""
+        self.document = Unkept(document, clock) if isinstance(document, Opened) else document
+        self.name = self.document.opened.name
+        self.tools = tools_of(self.opened.rooms)
+        self.has: dict[str, Any] = {"photos": 0, "truth": False}
         self.cells_of = np.bincount(self.draft.instance.ravel(), minlength=MAX_IDS)
-        self._history = SceneHistory(self.draft, MemoryLog())
         self._listeners: list[Listener] = []
         self._lock = threading.RLock()
 
     @classmethod
     def open(
-        cls, source: Path, *, out: Path | None = None, clock: Callable[[], float] = time.time
+        cls,
+        source: Path | None,
+        *,
+        out: Path | None = None,
+        clock: Callable[[], float] = time.time,
     ) -> "Editor":
-        """Open a run's folder or an occupancy file.
+        """Open a scene where it was left; edits that were not saved are still there.
+
+        Where another process edits it, it is opened to be read only; ``read_only`` says why.
 
         Args:
-            source: what ``w2m reconstruct`` wrote, or any file that holds an occupancy grid.
+            source: a run's folder, any occupancy file, a ``.forge`` folder; None is the demo room.
             out: the folder that ``save`` writes, where it is not the source's own.
             clock: gives the time in seconds since 1970.
 
         Raises:
-            InputError: it cannot be read.
+            InputError: it cannot be read. OutputError: its ``.forge`` folder cannot be made.
+            ConflictError: the source changed since, and there are edits that were not saved.
         """
-        opened = read_source(source)
-        return cls(replace(opened, folder=out or opened.folder), clock)
+        return cls(Document.open(source, out=out, clock=clock))
+
+    @property
+    def draft(self) -> SceneDraft:
+        """The scene as it is now, to be read only."""
+        return self.document.draft
+
+    @property
+    def opened(self) -> Opened:
+        """The scene as it was opened first, and what it was read from."""
+        return self.document.opened
+
+    @property
+    def rev(self) -> int:
+        """How many steps led here, those of undo and redo too."""
+        return self.document.rev
+
+    @property
+    def saved_rev(self) -> int:
+        """The revision that was saved last."""
+        return self.document.saved_rev
+
+    @property
+    def read_only(self) -> str:
+        """Why the scene cannot be edited; empty where it can."""
+        return self.document.read_only
+
+    @property
+    def notes(self) -> list[str]:
+        """Sentences for the user: what was recovered, what could not be written."""
+        return self.document.notes
 
     def do(self, op: str | Command | Operation, *, actor: str = "", **fields: Any) -> Operation:
         """Do a command and return what it did.
@@ -93,10 +116,9 @@ class Editor:
             ConflictError: the scene changed since the operation was planned.
         """
         with self._lock:
-            self._check_writable()
             planned = op if isinstance(op, Operation) else self.preview(op, **fields)
-            told = replace(planned, actor=actor or planned.actor, time_s=self.clock())
-            return self._step("do", self._history.do(told))
+            who, now = actor or planned.actor, self.document.clock()
+            return self._tell("do", self.document.do(replace(planned, actor=who, time_s=now)))
 
     def undo(self, *, actor: str = "") -> Operation:
         """Take the last operation back; return the operation that did so, its inverse.
@@ -105,8 +127,7 @@ class Editor:
             UsageError: there is nothing to undo.
         """
         with self._lock:
-            self._check_writable()
-            return self._step("undo", self._history.undo())
+            return self._tell("undo", self.document.undo(actor))
 
     def redo(self, *, actor: str = "") -> Operation:
         """Do again what was last undone; return it.
@@ -115,8 +136,7 @@ class Editor:
             UsageError: nothing was undone since the last edit.
         """
         with self._lock:
-            self._check_writable()
-            return self._step("redo", self._history.redo())
+            return self._tell("redo", self.document.redo(actor))
 
     def preview(self, op: str | Command, **fields: Any) -> Operation:
         """Return what a command would do, without doing it. Raises what ``do`` raises."""
@@ -152,18 +172,18 @@ class Editor:
                 "undo": self.undo_kind,
                 "redo": self.redo_kind,
                 "is_demo": self.opened.is_demo,
-                "has": {"photos": 0, "truth": False},
+                "has": dict(self.has),
             }
 
     @property
     def undo_kind(self) -> str:
         """The kind of what ``undo`` would take back; empty where there is nothing."""
-        return self._history.line.undo_kind
+        return self.document.history.line.undo_kind
 
     @property
     def redo_kind(self) -> str:
         """The kind of what ``redo`` would do again; empty where there is nothing."""
-        return self._history.line.redo_kind
+        return self.document.history.line.redo_kind
 
     def read(self, look: Callable[[], Value]) -> Value:
         """Return what ``look`` returns; no step is done meanwhile."""
@@ -179,34 +199,27 @@ class Editor:
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
+    def active(self, actor: str = "") -> None:
+        """Note that a person is at work, so that the effort log knows time from idle time."""
+        with self._lock:
+            self.document.active(actor)
+
     def save(self) -> Path:
         """Write the scene to the files that the other verbs read; return their folder.
 
         Raises:
-            OutputError: the folder cannot be written.
+            OutputError: the folder cannot be written. ConflictError: a file there was changed by
+            another program; nothing is written.
         """
         with self._lock:
-            self._check_writable()
-            folder, grid = self.opened.folder, self.draft.grid()
-            objects = self.draft.objects.values()
-            instances = instances_of(objects, grid.instance)
-            write_room(folder / "room.npz", grid, self.opened.scan_to_room)
-            write_objects(folder / "objects.json", instances)
-            write_placements(folder / "placements.json", placements_of(objects))
-            write_occ_json(folder / "occ.json", grid)
-            write_centers_json(folder / "centers.json", instances)
-            self.saved_rev = self.rev
-            return folder
+            return self.document.save()
 
     def close(self) -> None:
-        """Let go of the scene; what was not saved stays in its journal."""
+        """Let go of the scene; what was not saved stays in its ``.forge`` folder."""
+        with self._lock:
+            self.document.close()
 
-    def _check_writable(self) -> None:
-        if self.read_only:
-            raise UsageError(f"{self.name} is open to be read only: {self.read_only}")
-
-    def _step(self, step: str, operation: Operation) -> Operation:
-        self.rev += 1
+    def _tell(self, step: str, operation: Operation) -> Operation:
         self.cells_of -= np.bincount(operation.before.instance, minlength=MAX_IDS)
         self.cells_of += np.bincount(operation.after.instance, minlength=MAX_IDS)
         for listener in tuple(self._listeners):

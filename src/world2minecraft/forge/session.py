@@ -150,6 +150,8 @@ class Session:
 
     def active(self) -> None:
         """Note that a person is at work: effort is measured without idling."""
+        if self.editor is not None:
+            self.editor.active()
 
     def hello(self) -> dict[str, Any]:
         """Return what a tab is told first, and again where it is to begin anew."""

@@ -72,7 +72,7 @@ def test_an_empty_history_has_nothing_to_undo():
 
 def test_a_log_that_cannot_be_written_leaves_the_scene_as_it_is():
     class Full(MemoryLog):
-        def do(self, operation):
+        def do(self, *_):
             raise OutputError("j", "cannot be written: No space left on device")
 
         undo = redo = do

@@ -21,12 +21,12 @@ class Log(Protocol):
         """Keep an operation that is done; return its number."""
         ...
 
-    def undo(self, number: int) -> None:
-        """Keep that an operation was taken back."""
+    def undo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
+        """Keep that an operation was taken back, by whom and when."""
         ...
 
-    def redo(self, number: int) -> None:
-        """Keep that an operation was done again."""
+    def redo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
+        """Keep that an operation was done again, by whom and when."""
         ...
 
     def operation(self, number: int) -> Operation:
@@ -45,6 +45,10 @@ class Line(NamedTuple):
         """Return the line after an edit: what was undone is out of reach."""
         kept = self.done
         return Line((*self.numbers[:kept], number), (*self.kinds[:kept], kind), kept + 1)
+
+    def within(self, first: int, last: int) -> "Line":
+        """Return the line of the operations at places ``first`` to before ``last`` alone."""
+        return Line(self.numbers[first:last], self.kinds[first:last], self.done - first)
 
     def moved(self, steps: int) -> "Line":
         """Return the line with one more (1) or fewer (-1) operations done."""
@@ -76,8 +80,12 @@ class SceneHistory:
         self.line = self.line.with_new(number, operation.kind)
         return operation
 
-    def undo(self) -> Operation:
+    def undo(self, actor: str = "", time_s: float = 0.0) -> Operation:
         """Take the last operation back; return what was done to the scene, its inverse.
+
+        Args:
+            actor: who does so; only recorded.
+            time_s: when, in seconds since 1970; only recorded.
 
         Raises:
             UsageError: nothing is done.
@@ -87,13 +95,17 @@ class SceneHistory:
         number = self.line.numbers[self.line.done - 1]
         inverse = self.log.operation(number).inverse()
         self.draft.check(inverse)
-        self.log.undo(number)
+        self.log.undo(number, actor, time_s)
         self.draft.apply(inverse)
         self.line = self.line.moved(-1)
         return inverse
 
-    def redo(self) -> Operation:
+    def redo(self, actor: str = "", time_s: float = 0.0) -> Operation:
         """Do again what was last undone; return it.
+
+        Args:
+            actor: who does so; only recorded.
+            time_s: when, in seconds since 1970; only recorded.
 
         Raises:
             UsageError: nothing was undone since the last edit.
@@ -103,7 +115,7 @@ class SceneHistory:
         number = self.line.numbers[self.line.done]
         operation = self.log.operation(number)
         self.draft.check(operation)
-        self.log.redo(number)
+        self.log.redo(number, actor, time_s)
         self.draft.apply(operation)
         self.line = self.line.moved(1)
         return operation
@@ -120,10 +132,10 @@ class MemoryLog:
         self.operations.append(operation)
         return len(self.operations) - 1
 
-    def undo(self, number: int) -> None:
+    def undo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
         """Keep nothing."""
 
-    def redo(self, number: int) -> None:
+    def redo(self, number: int, actor: str = "", time_s: float = 0.0) -> None:
         """Keep nothing."""
 
     def operation(self, number: int) -> Operation:

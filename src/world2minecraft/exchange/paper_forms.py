@@ -1,0 +1,230 @@
+"""``occ.json`` and ``centers.json`` of any make: the paper prints no schema for either.
+
+Read as voxels, whatever holds them (an object's first list of the names in ``_HOLDERS``):
+
+- ``[[x, y, z, class], ...]``; ``[{"x", "y", "z", "class"}, ...]``; ``[{"position": [x, y, z],
+  "class"}, ...]``; two lists of the same length, of places and of classes;
+- a list of places for each class: ``{"chair": [[x, y, z], ...], ...}`` or ``{"5": ...}``;
+- a class for each cell: ``[[[...]]]``, by x, y and z.
+
+Classes are numbers of 0 to 11, 255, or names. Places are cells where all are whole numbers, else
+metres: their middles. Further keys are ``voxel_m``, ``origin_m`` and ``shape`` or their kin; what
+is missing is 0.08 m (of metres: the smallest step) and just large enough. Centres are read alike.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.exchange.occupancy import DEFAULT_VOXEL_M, labels_grid
+from world2minecraft.exchange.paper import MAX_CELLS, read_occ_json
+from world2minecraft.files import read_json
+from world2minecraft.types import OccupancyGrid
+
+CELLS, METRES = "cells", "metres"
+_HOLDERS = (
+    "voxels", "occupancy", "occ", "centers", "centres", "center_points", "cells", "points",
+    "grid", "data", "objects", "instances",
+)  # fmt: skip
+_PLACES = (
+    "position_m", "center_m", "position", "center", "centre", "coords", "coord", "coordinates",
+    "positions", "location", "point", "xyz", "indices", "index", "points",
+)  # fmt: skip
+_CLASSES = (
+    "class_id", "class", "label", "category", "category_id", "semantic", "type", "cls",
+    "labels", "classes", "categories", "value", "name",
+)  # fmt: skip
+_SIDES = ("voxel_m", "voxel_size", "voxelSize", "resolution", "voxel", "cell_size")
+_ORIGINS = ("origin_m", "origin", "min_bound", "offset", "min")
+_SHAPES = ("shape", "dims", "dimensions", "grid_size", "gridSize", "size")
+_OTHER_NAMES = {"furniture": 10, "objects": 11, "object": 11, "tv": 9, "none": 0, "free": 0}
+
+
+class Center(NamedTuple):
+    """The middle of an object, float64 [3], in the room frame, and its class."""
+
+    position_m: np.ndarray
+    class_id: int
+
+
+def read_any_occ(path: str | Path) -> tuple[OccupancyGrid, str]:
+    """Read a grid, and whether its places were ``cells`` or ``metres``.
+
+    Raises:
+        DamagedFileError: it holds voxels in none of the forms above. LimitError: it asks for too
+        many cells.
+    """
+    value = read_json(path)
+    if isinstance(value, dict) and value.get("format") == "world2minecraft/occ":
+        return read_occ_json(path), CELLS
+    told = value if isinstance(value, dict) else {}
+    try:
+        held = _held(value)
+        if (labels := _dense(held)) is not None:
+            unit, origin = CELLS, _told(told, _ORIGINS, [0.0] * 3)
+            voxel_m = float(_told(told, _SIDES, DEFAULT_VOXEL_M))
+        else:
+            points, classes = _points(held)
+            unit = CELLS if np.array_equal(points, np.round(points)) else METRES
+            voxel_m = float(
+                _told(told, _SIDES, _step(points) if unit == METRES else DEFAULT_VOXEL_M)
+            )
+            cells, origin = _cells(points, unit, voxel_m, _told(told, _ORIGINS, None))
+            labels = _filled(path, cells, classes, _told(told, _SHAPES, None))
+        low = np.array(origin, np.float64)
+        return labels_grid(labels, path, voxel_m, np.round(low / voxel_m) * voxel_m), unit
+    except (KeyError, TypeError, ValueError, OverflowError, IndexError, RecursionError) as error:
+        raise DamagedFileError(path, f"holds voxels in no known form ({error})") from error
+
+
+def read_any_centers(path: str | Path, grid: OccupancyGrid, unit: str) -> tuple[Center, ...]:
+    """Read the centres of objects.
+
+    Args:
+        path: of ``centers.json``.
+        grid: the cells that they are of.
+        unit: of ``occ.json``; centres are in the same, but for keys that end with ``_m``.
+
+    Raises:
+        DamagedFileError: it holds centres in none of the forms above.
+    """
+    value = read_json(path)
+    try:
+        held = _held(value)
+        rows = held if isinstance(held, list) else []
+        in_metres = unit == METRES or _is_said(rows, ("position_m", "center_m"))
+        points, classes = _points(held)
+        if not in_metres:
+            points = grid.origin_m + (points + 0.5) * grid.voxel_m
+        return tuple(map(Center, points, map(int, classes)))
+    except (KeyError, TypeError, ValueError, OverflowError, IndexError, RecursionError) as error:
+        raise DamagedFileError(path, f"holds centres in no known form ({error})") from error
+
+
+def _held(value: Any) -> Any:
+    """Return what holds the voxels: the value itself, or a part of it under a known name."""
+    for name in _HOLDERS:
+        if isinstance(value, dict) and isinstance(value.get(name), list | dict):
+            names = (*_CLASSES, *_PLACES)
+            has_twin = any(isinstance(value.get(other), list) for other in names if other != name)
+            if name in _PLACES and has_twin and _is_flat(value, name):
+                return value
+            return _held(value[name]) if isinstance(value[name], dict) else value[name]
+    return value
+
+
+def _is_flat(value: Mapping[str, Any], name: str) -> bool:
+    """Whether a list of places has its classes in a list beside it."""
+    return any(
+        isinstance(value.get(other), list) and len(value[other]) == len(value[name])
+        for other in _CLASSES
+    )
+
+
+def _dense(held: Any) -> np.ndarray | None:
+    """Return labels [X, Y, Z] where there is a class for each cell, else None."""
+    try:
+        is_deep = isinstance(held, list) and isinstance(held[0][0], list)
+    except (IndexError, KeyError, TypeError):
+        return None
+    if not is_deep:
+        return None
+    labels = np.array(held)
+    if labels.ndim != 3:
+        raise ValueError("its rows have different lengths")
+    return labels
+
+
+def _points(held: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return places float64 [N, 3] and classes int [N]."""
+    pairs = list(_pairs(held))
+    points = np.array([place for place, _ in pairs], np.float64).reshape(-1, 3)
+    if not np.isfinite(points).all():
+        raise ValueError("a place is no number")
+    return points, np.array([_class(name) for _, name in pairs], np.int64)
+
+
+def _pairs(held: Any) -> Iterator[tuple[Iterable[float], Any]]:
+    if isinstance(held, dict):
+        places, classes = _told(held, _PLACES, None), _told(held, _CLASSES, None)
+        if isinstance(places, list) and isinstance(classes, list):
+            yield from zip(places, classes, strict=True)
+            return
+        for name, places in held.items():
+            if not isinstance(places, list):
+                continue
+            for row in places:
+                yield _place(row), name
+        return
+    for row in held:
+        yield _place(row), row[3] if isinstance(row, list) else _told(row, _CLASSES, None)
+
+
+def _place(row: Any) -> list[float]:
+    if isinstance(row, list):
+        return [float(value) for value in row[:3]]
+    if "x" in row:
+        return [float(row[axis]) for axis in "xyz"]
+    place = _told(row, _PLACES, None)
+    return [float(place[axis]) for axis in "xyz"] if isinstance(place, dict) else place[:3]
+
+
+def _class(name: Any) -> int:
+    """Return the class id of a number, a number in a text, or a name."""
+    word = str(name).strip().lower()
+    if word in CLASS_NAMES:
+        return CLASS_NAMES.index(word)
+    number = _OTHER_NAMES.get(word)
+    number = float(word) if number is None else number
+    if number != int(number) or not (0 <= number <= 11 or number == 255):
+        raise ValueError(f"{name!r} is no class; they are 0 to 11, 255 or their names")
+    return int(number)
+
+
+def _told(row: Mapping[str, Any], names: Iterable[str], default: Any) -> Any:
+    return next((row[name] for name in names if name in row), default)
+
+
+def _is_said(rows: Iterable[Any], names: Iterable[str]) -> bool:
+    return any(name in row for row in rows if isinstance(row, dict) for name in names)
+
+
+def _step(points: np.ndarray) -> float:
+    """Return the smallest step between places, which is the side of a cell."""
+    steps = [np.diff(np.unique(np.round(axis, 4))) for axis in points.T]
+    found = [float(step.min()) for step in steps if len(step)]
+    return round(min(found), 4) if found else DEFAULT_VOXEL_M
+
+
+def _cells(
+    points: np.ndarray, unit: str, voxel_m: float, origin: Any
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cells int64 [N, 3] of places, from 0 up, and the origin in metres."""
+    if not (math.isfinite(voxel_m) and voxel_m > 0):
+        raise ValueError(f"the side of a cell must be above 0, not {voxel_m}")
+    first = points.min(axis=0) if len(points) else np.zeros(3)
+    if unit == CELLS:
+        shift = np.minimum(first, 0)
+        low = np.zeros(3) if origin is None else np.array(origin, np.float64)
+        return (points - shift).astype(np.int64), low + shift * voxel_m
+    low = first - voxel_m / 2 if origin is None else np.array(origin, np.float64)
+    return np.floor((points - low) / voxel_m + 1e-6).astype(np.int64), low
+
+
+def _filled(path: str | Path, cells: np.ndarray, classes: np.ndarray, shape: Any) -> np.ndarray:
+    if not len(cells) and shape is None:
+        raise ValueError("there is no voxel, and no shape")
+    least = cells.max(axis=0) + 1 if len(cells) else np.ones(3, np.int64)
+    sides = least if shape is None else np.maximum(np.array(shape, np.int64).reshape(3), least)
+    if (cells < 0).any():
+        raise ValueError("a voxel lies before the origin")
+    if np.prod(sides.astype(np.float64)) > MAX_CELLS:
+        raise LimitError(path, f"takes a grid of {sides.tolist()}; at most {MAX_CELLS:,} cells")
+    labels = np.zeros(tuple(sides), np.uint8)
+    labels[tuple(cells.T)] = classes
+    return labels

@@ -1,0 +1,105 @@
+"""The effort log of a document, ``effort.jsonl``: a line for each step, and for signs of life.
+
+The journal is what edits are recovered from; this file only says how much work they were. What
+it lacks after a kill is written anew from the journal.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.errors import InputError
+from world2minecraft.files import read_bytes
+from world2minecraft.types import Operation
+
+EFFORT_FILE = "effort.jsonl"
+MAX_EFFORT_BYTES = 256 << 20  # About two million lines.
+ACTIVE_EVERY_S = 1.0  # Signs of life between two steps are kept this far apart.
+STEPS = ("open", "do", "undo", "redo", "active")
+
+
+class EffortLog:
+    """The end of the log: lines are added. ``last_rev`` is the last revision that it tells of.
+
+    ``fault`` is why the last line could not be written, empty where it could.
+    """
+
+    def __init__(self, folder: Path):
+        """Look where the log ends; a line that was cut off is taken away with the next one."""
+        self.path = folder / EFFORT_FILE
+        self.fault = ""
+        self.last_rev, self._active_s = 0, float("-inf")
+        self._end = 0
+        if self.path.exists():
+            data = read_bytes(self.path, MAX_EFFORT_BYTES)
+            self._end = data.rfind(b"\n") + 1
+            self.last_rev = max((e.get("rev", 0) for e in _events(data[: self._end])), default=0)
+
+    def opened(self, time_s: float) -> None:
+        """Note that a session begins."""
+        self._add({"step": "open", "time_s": time_s})
+
+    def step(self, rev: int, step: str, operation: Operation, actor: str, time_s: float) -> None:
+        """Note a step; ``operation`` is what was done to the scene."""
+        self.last_rev = max(self.last_rev, rev)
+        self._active_s = time_s
+        self._add(
+            {
+                "rev": rev,
+                "step": step,
+                "kind": operation.kind,
+                "counts_as": operation.counts_as,
+                "cells": len(operation.cells),
+                "objects": len({o.id for o in operation.objects_before + operation.objects_after}),
+                "class_id": operation.class_id,
+                "actor": actor,
+                "time_s": time_s,
+            }
+        )
+
+    def active(self, time_s: float, actor: str = "") -> None:
+        """Note that someone is at work, at most once in ``ACTIVE_EVERY_S``."""
+        if not 0 <= time_s - self._active_s < ACTIVE_EVERY_S:
+            self._active_s = time_s
+            self._add({"step": "active", "actor": actor, "time_s": time_s})
+
+    def _add(self, event: dict[str, Any]) -> None:
+        line = json.dumps(event, sort_keys=True).encode() + b"\n"
+        try:
+            with open(self.path, "r+b" if self.path.exists() else "x+b") as stream:
+                stream.truncate(self._end)
+                stream.seek(self._end)
+                stream.write(line)
+            self._end += len(line)
+            self.fault = ""
+        except OSError as error:  # The edit itself is safe in the journal.
+            self.fault = f"{self.path}: cannot be written: {error.strerror or error}"
+
+
+def read_effort(folder: Path) -> list[dict[str, Any]]:
+    """Return the events of a document's log, in order; lines that are damaged are left out.
+
+    Raises:
+        InputError: the document has none. LimitError: it is too large.
+    """
+    path = folder / EFFORT_FILE
+    if not path.is_file():
+        raise InputError(folder, "holds no effort log; give a NAME.forge folder or its scene")
+    return _events(read_bytes(path, MAX_EFFORT_BYTES))
+
+
+def _events(data: bytes) -> list[dict[str, Any]]:
+    events = []
+    for line in data.split(b"\n"):
+        try:
+            event = json.loads(line)
+            if event["step"] not in STEPS:
+                continue
+            event["time_s"] = float(event["time_s"])
+            if event["step"] in ("do", "undo", "redo"):
+                event["cells"], event["rev"] = int(event["cells"]), int(event["rev"])
+                event["kind"], event["counts_as"] = str(event["kind"]), str(event["counts_as"])
+            events.append(event)
+        except (ValueError, TypeError, KeyError, RecursionError):
+            continue
+    return events

@@ -1,0 +1,125 @@
+"""How much work a scene was: operations by kind, active time, and the paper's table of both.
+
+An event is what ``effort.jsonl`` of a document holds in a line: ``step`` (``open``, ``do``,
+``undo``, ``redo`` or ``active``, a person at work without an edit), ``time_s``; and of steps
+``kind``, ``counts_as``, ``cells``, ``class_id`` and ``actor``.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from world2minecraft.types.edit import COUNTED
+
+IDLE_AFTER_S = 10.0  # Who does nothing for so long has stopped to work.
+# The paper's table, means of 15 scenes: from nothing, and from its reconstruction.
+PAPER_SCRATCH = {
+    "total_s": 482.0, "automatic_s": None, "manual_s": 482.0,
+    "operations": 340.0, "add": 319.3, "delete": None, "orient": 20.7,
+}  # fmt: skip
+PAPER_REFINED = {
+    "total_s": 70.38, "automatic_s": 5.88, "manual_s": 64.5,
+    "operations": 24.5, "add": 9.7, "delete": 7.6, "orient": 7.2,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What one scene took.
+
+    ``operations`` are all that were done, also those taken back later; ``counted`` says what they
+    count as; ``undone`` and ``redone`` are steps back and forth, which are no operations.
+    ``automatic_s`` is None where it is not known. ``by_class`` and ``by_kind`` count operations.
+    """
+
+    name: str
+    operations: int
+    counted: Mapping[str, int]
+    undone: int
+    redone: int
+    cells: int
+    active_s: float
+    automatic_s: float | None = None
+    by_kind: Mapping[str, int] | None = None
+    by_class: Mapping[int, int] | None = None
+
+    @property
+    def total_s(self) -> float:
+        """The time in all, in seconds."""
+        return self.active_s + (self.automatic_s or 0.0)
+
+
+def active_s(events: Iterable[Mapping[str, Any]], idle_after_s: float = IDLE_AFTER_S) -> float:
+    """Return for how long someone was at work, in seconds.
+
+    It is the sum of the gaps between events, each at most ``idle_after_s``; from one session
+    (``open``) to the next there is none. A clock that was set back counts as no time.
+    """
+    total, last = 0.0, None
+    for event in events:
+        now = float(event["time_s"])
+        if last is not None and event["step"] != "open":
+            total += min(max(now - last, 0.0), idle_after_s)
+        last = now
+    return total
+
+
+def effort_of(
+    name: str, events: Sequence[Mapping[str, Any]], automatic_s: float | None = None
+) -> Effort:
+    """Return what a scene took, from its events in order.
+
+    Args:
+        name: of the scene.
+        events: as ``effort.jsonl`` holds them.
+        automatic_s: how long the reconstruction took before, in seconds.
+    """
+    done = [event for event in events if event["step"] == "do"]
+    steps = Counter(event["step"] for event in events)
+    counted = Counter(event["counts_as"] for event in done)
+    return Effort(
+        name=name,
+        operations=len(done),
+        counted={kind: counted[kind] for kind in COUNTED},
+        undone=steps["undo"],
+        redone=steps["redo"],
+        cells=sum(int(event["cells"]) for event in done),
+        active_s=active_s(events),
+        automatic_s=automatic_s,
+        by_kind=dict(sorted(Counter(event["kind"] for event in done).items())),
+        by_class=dict(sorted(_by_class(done).items())),
+    )
+
+
+def mean_row(efforts: Sequence[Effort]) -> dict[str, float | None]:
+    """Return the means over scenes by the names of the paper's rows; None for what no scene has.
+
+    The automatic time is the mean of the scenes that have one.
+    """
+    if not efforts:
+        return dict.fromkeys((*PAPER_REFINED, "move", "relabel", "other", "undone"))
+    automatic = [e.automatic_s for e in efforts if e.automatic_s is not None]
+    automatic_mean = _mean(automatic) if automatic else None
+    manual = _mean([e.active_s for e in efforts])
+    row: dict[str, float | None] = {
+        "total_s": manual + (automatic_mean or 0.0),
+        "automatic_s": automatic_mean,
+        "manual_s": manual,
+        "operations": _mean([e.operations for e in efforts]),
+    }
+    row |= {kind: _mean([e.counted[kind] for e in efforts]) for kind in COUNTED}
+    return row | {"undone": _mean([e.undone for e in efforts])}
+
+
+def improvement(scratch: float | None, ours: float | None) -> float | None:
+    """Return how many times less ours is; None where either is missing or ours is nothing."""
+    return scratch / ours if scratch and ours else None
+
+
+def _by_class(done: Iterable[Mapping[str, Any]]) -> Counter[int]:
+    return Counter(int(e["class_id"]) for e in done if e.get("class_id") is not None)
+
+
+def _mean(values: Sequence[float]) -> float:
+    return sum(values) / len(values)
