@@ -64,6 +64,11 @@ class Hub:
         self._count = 0
         self._loop: asyncio.AbstractEventLoop | None = None  # Known once a tab is open.
 
+    @property
+    def count(self) -> int:
+        """How many tabs are open."""
+        return len(self._tabs)
+
     def open(self) -> Tab | None:
         """Return a new tab, None where there are too many."""
         if len(self._tabs) >= MAX_TABS:
