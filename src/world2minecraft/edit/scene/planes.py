@@ -26,7 +26,7 @@ WALL_M2 = 0.5  # As the smallest wall that stage 4 calls one.
 # A cell is flat where most of so large a square around it, in cells, is of the sheet.
 FLAT_WALL, FLAT_LEVEL = 9, 13  # A pillar is a wall; a strip of a sloped ceiling is no ceiling.
 DOORWAY_M = 1.2  # No wider gap lies within one wall, or between it and the wall that it meets.
-REACH_M = 0.5  # A wall that ends this near to a floor or a ceiling is meant to meet it.
+REACH_M = 2.2  # A wall that ends this near to a floor or a ceiling goes on: behind a wardrobe.
 WALL_CLASSES = (SemanticClass.WALL, SemanticClass.WINDOW)
 
 
@@ -178,13 +178,14 @@ def _meeting(wall: Plane, planes: list[Plane], voxel_m: float) -> Plane:
         (_nearest(wall.low[0] - 1, across, -reach), _nearest(wall.high[0], across, reach)),
         (_nearest(wall.low[1] - 1, floors, -level), _nearest(wall.high[1], ceilings, level)),
     ]
+    (left, right), (bottom, top) = ends
     low = [
-        min(old, old if end[0] is None else end[0] + 1)
-        for old, end in zip(wall.low, ends, strict=True)
+        wall.low[0] if left is None else min(wall.low[0], left + 1),
+        wall.low[1] if bottom is None else bottom + 1,
     ]
     high = [
-        max(old, old if end[1] is None else end[1])
-        for old, end in zip(wall.high, ends, strict=True)
+        wall.high[0] if right is None else max(wall.high[0], right),
+        wall.high[1] if top is None else top,
     ]
     meets = [(end[0] is not None, end[1] is not None) for end in ends]
     return replace(wall, low=(low[0], low[1]), high=(high[0], high[1]), meets=(meets[0], meets[1]))
