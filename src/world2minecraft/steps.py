@@ -25,7 +25,7 @@ from world2minecraft.exchange.occupancy import inner_corner_m
 from world2minecraft.exchange.paper import write_centers_json, write_occ_json
 from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.exchange.rooms import read_rooms
-from world2minecraft.exchange.scan import read_room_size, read_scene_name
+from world2minecraft.exchange.scan import read_depth_kind, read_room_size, read_scene_name
 from world2minecraft.files import write_json
 from world2minecraft.find import find_objects
 from world2minecraft.furnish import furnish
@@ -36,7 +36,12 @@ from world2minecraft.fuse import (
     read_out,
     remove_floaters,
 )
-from world2minecraft.label import find_structure, labeller
+from world2minecraft.label import (
+    find_structure,
+    labeller,
+    with_whole_walls,
+    without_wall_guesses,
+)
 from world2minecraft.minecraft.formats import WriteOptions
 from world2minecraft.parameters import Parameters
 from world2minecraft.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
@@ -46,8 +51,15 @@ def label_stage(folder: Path, chosen: Parameters) -> None:
     """``evidence.npz`` -> ``room.npz``, what each cell is, cleaned; ``layout.json``, the rooms."""
     evidence = read_evidence(folder / "evidence.npz")
     grid = remove_floaters(read_out(evidence), chosen.clean)
-    write_layouts(folder / "layout.json", find_structure(grid, evidence))
-    write_room(folder / "room.npz", labelled(grid, evidence, chosen), evidence.scan_to_room)
+    rooms = find_structure(grid, evidence)
+    write_layouts(folder / "layout.json", rooms)
+    from_photos = read_depth_kind(folder / "scan.json") == "stereo"
+    if from_photos:
+        grid = without_wall_guesses(grid, rooms)
+    grid = labelled(grid, evidence, chosen)
+    if from_photos:
+        grid = with_whole_walls(grid, rooms)
+    write_room(folder / "room.npz", grid, evidence.scan_to_room)
 
 
 def labelled(grid: OccupancyGrid, evidence: FusedEvidence, chosen: Parameters) -> OccupancyGrid:

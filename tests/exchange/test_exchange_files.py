@@ -1,6 +1,7 @@
 """The program's own files: what is written is read back, and damage is said in one line."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from world2minecraft.exchange.objects import (
 from world2minecraft.exchange.occupancy import inner_corner_m, read_occupancy
 from world2minecraft.exchange.paper import read_occ_json, write_centers_json, write_occ_json
 from world2minecraft.exchange.room import GRID_ARRAYS, read_room, write_room
-from world2minecraft.exchange.scan import read_room_size, write_scan
+from world2minecraft.exchange.scan import read_depth_kind, read_room_size, write_scan
 from world2minecraft.types import (
     Alternative,
     FusedEvidence,
@@ -120,6 +121,10 @@ def test_scan_and_centres(tmp_path):
     scan = Scan([], np.eye(4), np.array([3.2, 4.0, 2.5]), ("a",), (("b", "lost"),), notes=("n",))
     write_scan(tmp_path / "scan.json", scan)
     assert read_room_size(tmp_path / "scan.json").tolist() == [3.2, 4.0, 2.5]
+    assert read_depth_kind(tmp_path / "scan.json") == "sensor"
+    assert read_depth_kind(tmp_path / "none.json") == "sensor"
+    write_scan(tmp_path / "scan.json", replace(scan, depth_kind="stereo"))
+    assert read_depth_kind(tmp_path / "scan.json") == "stereo"
     assert json.loads((tmp_path / "scan.json").read_text())["frames_skipped"] == [
         {"frame": "b", "reason": "lost"}
     ]

@@ -27,6 +27,7 @@ def write_scan(path: str | Path, scan: Scan, registration: Mapping[str, Any] | N
             "frames_skipped": [{"frame": n, "reason": r} for n, r in scan.frames_skipped],
             "scale": scan.scale,
             "scale_sigma": scan.scale_sigma,
+            "depth_kind": scan.depth_kind,
             "notes": list(scan.notes),
             "registration": dict(registration or {}),
         },
@@ -56,6 +57,20 @@ def read_scene_name(path: str | Path) -> str:
         raise DamagedFileError(path, "is no scan.json")
     name = found.get("name", "")
     return name[:MOST_NAME] if isinstance(name, str) and name.isprintable() else ""
+
+
+def read_depth_kind(path: str | Path) -> str:
+    """Return what made the depth, of a ``scan.json``; ``sensor`` where none says so.
+
+    Raises:
+        DamagedFileError: it is no ``scan.json``.
+    """
+    if not Path(path).is_file():
+        return "sensor"
+    found = read_json(path)
+    if not isinstance(found, dict):
+        raise DamagedFileError(path, "is no scan.json")
+    return str(found.get("depth_kind", "sensor"))
 
 
 def placed_as_written(scan: Scan, path: str | Path) -> Scan:

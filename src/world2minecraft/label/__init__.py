@@ -9,11 +9,19 @@ others join through the entry point group ``world2minecraft.labeller``.
 
 from typing import Protocol
 
+from world2minecraft.label.bare_walls import with_whole_walls, without_wall_guesses
 from world2minecraft.label.layouts import find_structure
 from world2minecraft.registry import Registry
 from world2minecraft.types import FusedEvidence, OccupancyGrid
 
-__all__ = ["LABELLERS", "Labeller", "find_structure", "labeller"]
+__all__ = [
+    "LABELLERS",
+    "Labeller",
+    "find_structure",
+    "labeller",
+    "with_whole_walls",
+    "without_wall_guesses",
+]
 
 LABELLERS = Registry(
     "labeller",

@@ -1,0 +1,231 @@
+"""Walls that nothing could be matched on: what depth from photos makes of them is put right.
+
+On a bare wall stereo guesses: layers of its colour hang before it, and scraps lie behind it. The
+wall itself is known all the same, by its edges, posters, windows and the rims of what stands
+before it. So where a wall was seen, nothing occupied lies behind it, what hangs close before it
+in its own colour is the wall, and the parts of it that nobody saw are as flat as the rest.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy import ndimage
+from scipy.spatial import cKDTree
+
+from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.coordinates import cell_centers_m
+from world2minecraft.types import COMPLETED, UNSEEN, Layout, OccupancyGrid
+
+THICK_M = 0.16  # Behind its face a wall may be occupied so deep.
+FACE_M = 0.1  # Cells so near to the face are the wall's.
+BEFORE_M = 0.4  # Guesses of stereo hang so far before it; from there on nearly all is true.
+ALIKE = 12  # Levels of 255 between colours that are the same paint; guesses differ by 8.
+AROUND = 12  # Cells of the wall that tell its colour at a place.
+SEEN_SHARE = 0.5  # Of a wall's columns: one less seen may be an opening, or a guess itself.
+HOLE_CELLS = 4  # Half the width of what was carved; a door is wider.
+CONFIDENCE = 0.3  # Of what is completed.
+
+
+class WallEdge(NamedTuple):
+    """One side of a room's outline, square to an axis; lengths in metres."""
+
+    axis: int  # It is square to: 0 for x, 1 for y.
+    at_m: float
+    inward: float  # 1 where the room lies on the larger side, else -1.
+    from_m: float
+    to_m: float
+    bottom_m: float
+    top_m: float
+
+    def depth_m(self, points_m: np.ndarray) -> np.ndarray:
+        """Return how far before the wall's face points [N, 3] lie; less than 0 behind it."""
+        return (points_m[:, self.axis] - self.at_m) * self.inward
+
+    def spans(self, points_m: np.ndarray) -> np.ndarray:
+        """Whether points [N, 3] lie before or behind the wall, rather than beside it."""
+        along, height = points_m[:, 1 - self.axis], points_m[:, 2]
+        beside = (along < self.from_m) | (along > self.to_m)
+        return ~beside & (height > self.bottom_m) & (height < self.top_m)
+
+
+def without_wall_guesses(grid: OccupancyGrid, rooms: Sequence[Layout]) -> OccupancyGrid:
+    """Return a grid without what stereo guessed before and behind the walls of its rooms.
+
+    Args:
+        grid: the cleaned read-out; only what is occupied counts.
+        rooms: of the place, in the room frame.
+    """
+    cells = np.argwhere(grid.source != UNSEEN)
+    points_m = cell_centers_m(cells, grid.origin_m, grid.voxel_m)
+    occupied, colour = grid.occupied[tuple(cells.T)], grid.colour[tuple(cells.T)].astype(np.float32)
+    hidden, guessed = _outside(rooms, points_m), np.zeros(len(cells), bool)
+    for room in rooms:
+        for edge in wall_edges(room):
+            spanned, depth_m = edge.spans(points_m), edge.depth_m(points_m)
+            face = occupied & spanned & (np.abs(depth_m) < FACE_M)
+            if _seen_share(edge, points_m[face], grid.voxel_m) < SEEN_SHARE:
+                hidden &= ~(spanned & (depth_m < 0))
+                continue
+            hidden &= ~(_opened(room, edge, points_m) & (depth_m < 0))
+            before = occupied & spanned & (depth_m > FACE_M) & (depth_m < BEFORE_M)
+            paint = (points_m[face], colour[face])
+            guessed[before] |= _alike(edge, *paint, points_m[before], colour[before])
+    return _emptied(grid, cells[hidden], cells[guessed & ~hidden])
+
+
+def with_whole_walls(grid: OccupancyGrid, rooms: Sequence[Layout]) -> OccupancyGrid:
+    """Return a labelled grid whose unseen parts of seen walls, floors and ceilings are completed.
+
+    Free cells of a wall are completed too where the wall goes on all around them: a guess behind
+    the wall had carved them.
+
+    Args:
+        grid: the labels.
+        rooms: of the place, in the room frame.
+    """
+    classes = np.zeros(grid.shape, np.uint8)
+    for room in rooms:
+        _mark_levels(classes, grid, room)
+        for edge in wall_edges(room):
+            _mark_wall(classes, grid, room, edge)
+    labels, source = np.array(grid.labels), np.array(grid.source)
+    confidence = np.array(grid.confidence)
+    found = (classes > 0) & ~grid.occupied
+    labels[found], source[found], confidence[found] = classes[found], COMPLETED, CONFIDENCE
+    labels[_flat_on_walls(grid, rooms)] = SemanticClass.WALL
+    return replace(grid, labels=labels, source=source, confidence=confidence)
+
+
+def _flat_on_walls(grid: OccupancyGrid, rooms: Sequence[Layout]) -> np.ndarray:
+    """Return bool [X, Y, Z]: objects too flat on a wall for stereo to tell them from it."""
+    objects = (grid.labels >= SemanticClass.CHAIR) & (grid.labels <= SemanticClass.OBJS)
+    cells = np.argwhere(objects)
+    points_m = cell_centers_m(cells, grid.origin_m, grid.voxel_m)
+    flat = np.zeros(len(cells), bool)
+    for room in rooms:
+        for edge in wall_edges(room):
+            flat |= edge.spans(points_m) & (np.abs(edge.depth_m(points_m)) < FACE_M)
+    found = np.zeros(grid.shape, bool)
+    found[tuple(cells[flat].T)] = True
+    return found
+
+
+def _mark_levels(classes: np.ndarray, grid: OccupancyGrid, room: Layout) -> None:
+    """Mark the unseen cells of the layer under a room's floor and, where one was seen, over it."""
+    columns = np.argwhere(np.ones(grid.shape[:2], bool))
+    plan_m = grid.origin_m[:2] + (columns + 0.5) * grid.voxel_m
+    inside = _inside(room, plan_m).reshape(grid.shape[:2])
+    half, floor_m = grid.voxel_m / 2, room.floor_z_m
+    levels = [(floor_m - half, SemanticClass.FLOOR)]
+    if (grid.labels == SemanticClass.CEILING).any():
+        levels.append((floor_m + room.wall_height_m + half, SemanticClass.CEILING))
+    for z_m, class_id in levels:
+        layer = int(np.floor((z_m - grid.origin_m[2]) / grid.voxel_m))
+        if 0 <= layer < grid.shape[2]:
+            classes[:, :, layer][inside & (grid.source[:, :, layer] == UNSEEN)] = class_id
+
+
+def _mark_wall(classes: np.ndarray, grid: OccupancyGrid, room: Layout, edge: WallEdge) -> None:
+    """Mark the cells of a wall, where enough of it was seen."""
+    middle_m = edge.at_m - edge.inward * grid.voxel_m / 2
+    layer = int(np.floor((middle_m - grid.origin_m[edge.axis]) / grid.voxel_m))
+    if not 0 <= layer < grid.shape[edge.axis]:
+        return
+    at = [slice(None)] * 3
+    at[edge.axis] = layer  # type: ignore[call-overload]
+    cells = np.argwhere(np.ones(grid.labels[tuple(at)].shape, bool))
+    cells = np.insert(cells, edge.axis, layer, axis=1)
+    points_m = cell_centers_m(cells, grid.origin_m, grid.voxel_m)
+    seen = grid.occupied[tuple(cells.T)] & edge.spans(points_m)
+    if _seen_share(edge, points_m[seen], grid.voxel_m) < SEEN_SHARE:
+        return
+    wall = edge.spans(points_m) & ~_opened(room, edge, points_m)
+    shape = classes[tuple(at)].shape
+    around = ndimage.binary_closing(np.pad(seen.reshape(shape), HOLE_CELLS), iterations=HOLE_CELLS)
+    around = around[HOLE_CELLS:-HOLE_CELLS, HOLE_CELLS:-HOLE_CELLS].reshape(-1)
+    unseen = grid.source[tuple(cells.T)] == UNSEEN
+    classes[tuple(cells[wall & (unseen | around)].T)] = SemanticClass.WALL
+
+
+def wall_edges(room: Layout) -> list[WallEdge]:
+    """Return the sides of a room that are square to an axis."""
+    corners = room.floor_polygon_m
+    edges = []
+    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        run = np.abs(end - start)
+        if run.min() > 1e-6 or run.max() < 1e-6:
+            continue
+        axis = int(np.argmin(run))
+        # The outline runs counter-clockwise: the room lies to the left of each side.
+        inward = -(end - start)[1] if axis == 0 else (end - start)[0]
+        low, high = sorted((start[1 - axis], end[1 - axis]))
+        bottom = room.floor_z_m
+        span_m = (float(low), float(high), bottom, bottom + room.wall_height_m)
+        edges.append(WallEdge(axis, float(start[axis]), float(np.sign(inward)), *span_m))
+    return edges
+
+
+def _outside(rooms: Sequence[Layout], points_m: np.ndarray) -> np.ndarray:
+    """Whether points [N, 3] lie farther outside all rooms than walls and floors are thick."""
+    outside = np.ones(len(points_m), bool)
+    sides = np.array([[x, y] for x in (-THICK_M, THICK_M) for y in (-THICK_M, THICK_M)])
+    for room in rooms:
+        top_m = room.floor_z_m + room.wall_height_m + THICK_M
+        within = (points_m[:, 2] > room.floor_z_m - THICK_M) & (points_m[:, 2] < top_m)
+        for side in sides:
+            outside &= ~(within & _inside(room, points_m[:, :2] + side))
+    return outside if rooms else np.zeros(len(points_m), bool)
+
+
+def _inside(room: Layout, plan_m: np.ndarray) -> np.ndarray:
+    """Whether points [N, 2] lie in a room's outline, by how often a ray to +x crosses it."""
+    inside = np.zeros(len(plan_m), bool)
+    corners = room.floor_polygon_m
+    x, y = plan_m.T
+    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if ay != by:
+            crossed = (y >= min(ay, by)) & (y < max(ay, by))
+            inside ^= crossed & (x < ax + (y - ay) * (bx - ax) / (by - ay))
+    return inside
+
+
+def _seen_share(edge: WallEdge, face_m: np.ndarray, voxel_m: float) -> float:
+    """Return the share of a wall's columns in which something of its face was seen."""
+    columns = np.floor((face_m[:, 1 - edge.axis] - edge.from_m) / voxel_m)
+    return len(np.unique(columns)) / max(1.0, (edge.to_m - edge.from_m) / voxel_m)
+
+
+def _opened(room: Layout, edge: WallEdge, points_m: np.ndarray) -> np.ndarray:
+    """Whether points lie before or behind an opening of a wall that one can see through."""
+    opened = np.zeros(len(points_m), bool)
+    for one in room.openings:
+        if np.abs(np.array([one.start_m, one.end_m])[:, edge.axis] - edge.at_m).max() > FACE_M:
+            continue
+        low, high = sorted((one.start_m[1 - edge.axis], one.end_m[1 - edge.axis]))
+        along, height = points_m[:, 1 - edge.axis], points_m[:, 2] - room.floor_z_m
+        opened |= (along > low) & (along < high) & (height > one.sill_m) & (height < one.head_m)
+    return opened
+
+
+def _alike(
+    edge: WallEdge, face_m: np.ndarray, face: np.ndarray, at_m: np.ndarray, colour: np.ndarray
+) -> np.ndarray:
+    """Whether the colours of places are those of the wall behind them."""
+    if len(face_m) < AROUND or not len(at_m):
+        return np.zeros(len(at_m), bool)
+    plane = [1 - edge.axis, 2]
+    _, nearest = cKDTree(face_m[:, plane]).query(at_m[:, plane], k=AROUND)
+    behind = np.median(face[nearest], axis=1)
+    return np.abs(behind - colour).max(axis=1) < ALIKE
+
+
+def _emptied(grid: OccupancyGrid, hidden: np.ndarray, guessed: np.ndarray) -> OccupancyGrid:
+    """Return a grid with some cells unseen and others free."""
+    labels, source = np.array(grid.labels), np.array(grid.source)
+    confidence = np.array(grid.confidence)
+    at = tuple(hidden.T)
+    labels[at], source[at], confidence[at] = UNKNOWN, UNSEEN, 0
+    labels[tuple(guessed.T)] = SemanticClass.EMPTY
+    return replace(grid, labels=labels, source=source, confidence=confidence)
