@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy import ndimage
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from world2minecraft.classes import UNKNOWN, SemanticClass
 from world2minecraft.coordinates import cell_centers_m
@@ -216,7 +216,7 @@ def _alike(
     if len(face_m) < AROUND or not len(at_m):
         return np.zeros(len(at_m), bool)
     plane = [1 - edge.axis, 2]
-    _, nearest = cKDTree(face_m[:, plane]).query(at_m[:, plane], k=AROUND)
+    _, nearest = KDTree(face_m[:, plane]).query(at_m[:, plane], k=AROUND)
     behind = np.median(face[nearest], axis=1)
     return np.abs(behind - colour).max(axis=1) < ALIKE
 
