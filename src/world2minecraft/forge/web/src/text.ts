@@ -225,7 +225,7 @@ export const TEXT = {
     title: "Holes by plane",
     note: "What floor, walls and ceiling miss.",
     find: "Find holes",
-    found: (count: number): string => (count ? "A press fills a plane." : "No holes left."),
+    found: (count: number): string => (count ? "Press a row to fill it." : "No holes left."),
     plane: (name: string): string =>
       name.startsWith("wall:") ? `wall ${Number(name.slice(5)) + 1}` : name,
     share: (share: number): string => `${(share * 100).toFixed(1)} %`,

@@ -72,6 +72,7 @@ export class ToolManager {
     canvas.addEventListener("pointerup", (event) => this.up(event));
     canvas.addEventListener("pointercancel", () => this.cancel());
     canvas.addEventListener("pointerleave", () => this.hover(null));
+    canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     window.addEventListener("keydown", (event) => this.key(event), true);
   }
 
@@ -106,6 +107,15 @@ export class ToolManager {
     } else if (event.button === 0 && this.gesture && !this.gesture.sticks) this.finish(at);
   }
 
+  /** Ctrl and the wheel size the brush; the wheel alone always zooms. */
+  private wheel(event: WheelEvent): void {
+    const sized = this.chosen?.id === "brush" || this.chosen?.id === "erase";
+    if (!event.ctrlKey || !sized || !event.deltaY) return;
+    event.preventDefault();
+    this.app.actions.run(event.deltaY < 0 ? "brush.larger" : "brush.smaller");
+    this.hover(this.pressOf(event));
+  }
+
   private finish(at: Press): void {
     const gesture = this.gesture;
     this.gesture = null;
@@ -130,7 +140,7 @@ export class ToolManager {
     event.stopImmediatePropagation();
   }
 
-  private pressOf(event: PointerEvent): Press {
+  private pressOf(event: MouseEvent): Press {
     const box = this.app.canvas.getBoundingClientRect();
     const { shiftKey, ctrlKey, metaKey, altKey } = event;
     return { x: event.clientX - box.left, y: event.clientY - box.top, shiftKey, ctrlKey, metaKey, altKey };

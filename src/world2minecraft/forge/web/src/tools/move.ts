@@ -80,12 +80,18 @@ export function moveTool(desk: Desk): Tool {
       const one = id === undefined || others.length ? null : app.store.get().objects.get(id);
       if (!one) return;
       const held = grab(desk, one, null);
-      const back = (): void => app.store.set({ tool: "navigate" });
+      const back = (): void => {
+        if (app.store.get().tool === "move") app.store.set({ tool: "navigate" });
+      };
       desk.begin({
         ...held,
         sticks: true,
         end: (at) => {
           held.end(at);
+          back();
+        },
+        cancel: () => {
+          held.cancel();
           back();
         },
       });

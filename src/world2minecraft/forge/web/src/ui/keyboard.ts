@@ -25,7 +25,8 @@ function usesItself(event: KeyboardEvent): boolean {
   const target = event.target;
   if (!(target instanceof HTMLElement) || target instanceof HTMLCanvasElement) return false;
   if (event.key === "Enter") return target.closest("button, a, select, summary, [role=treeitem]") !== null;
-  if (event.key.startsWith("Arrow") || event.key.startsWith("Page")) {
+  if (event.key.startsWith("Page")) return target.closest("input, select") !== null;
+  if (event.key.startsWith("Arrow")) {
     return target.closest("input, select, [role=treeitem], [role=tablist]") !== null;
   }
   return target instanceof HTMLSelectElement && event.key.length === 1 && !event.ctrlKey;

@@ -27,6 +27,7 @@ export function mountStatusLine(host: HTMLElement, app: App): { show(under: Unde
     shown = performance.now();
     speed.textContent = TEXT.status.frame(milliseconds);
   });
+  parts[0]!.textContent = TEXT.status.none;
   return { show: (under) => parts.forEach((node, at) => (node.textContent = words(app.store, under)[at] ?? "")) };
 }
 

@@ -1,0 +1,176 @@
+"""Objects: chosen, moved, turned, added, split and merged through mouse and keys alone."""
+
+import pytest
+
+SOFA, TABLE = 2, 3
+
+
+@pytest.fixture
+def objects(forge):
+    """The room from above in Objects mode."""
+    forge.key("Shift+Digit3")
+    forge.until("s.mode", "objects")
+    forge.page.evaluate("window.__forge.view.lookAlong(2)")
+    forge.idle()
+    return forge
+
+
+def centre(forge, number=SOFA) -> list[float]:
+    return forge.state(f"s.objects.get({number}).center_m")
+
+
+def chosen(forge, number=SOFA) -> None:
+    forge.page.mouse.click(*forge.object_at(number))
+    forge.until("s.selectedObjects", [number])
+
+
+def test_a_click_chooses_and_a_dragged_centre_moves_by_whole_cells(objects, shot):
+    forge = objects
+    chosen(forge)
+    before = centre(forge)
+    shot(forge, "object")
+    x, y = forge.object_at(SOFA)
+    forge.drag((x, y), (x + 60, y + 30), up=False)
+    shot(forge, "object_dragged")
+    assert centre(forge) == before, "it moved before it was let go"
+    forge.page.mouse.up()
+    forge.until("s.scene.rev", 1)
+    steps = [(now - then) / 0.08 for now, then in zip(centre(forge), before, strict=True)]
+    assert steps[0] > 1 and steps[1] < -1 and abs(steps[2]) < 1e-6
+    assert all(abs(step - round(step)) < 1e-6 for step in steps)
+    forge.drag(forge.object_at(SOFA), (x, y), up=False)
+    forge.key("Escape")
+    forge.page.mouse.up()
+    assert forge.rev() == 1
+    forge.key("Control+z")
+    forge.until(f"s.objects.get({SOFA}).center_m", before)
+
+
+def test_the_arrow_keys_move_what_g_took_hold_of(objects):
+    forge = objects
+    chosen(forge, TABLE)
+    before = centre(forge, TABLE)
+    forge.key("g", "ArrowRight", "ArrowRight", "ArrowUp", "Enter")
+    forge.until("s.scene.rev", 1)
+    now = centre(forge, TABLE)
+    assert [round((a - b) / 0.08) for a, b in zip(now, before, strict=True)] == [2, 1, 0]
+    forge.key("g", "ArrowLeft", "Escape")
+    forge.until("s.tool", "navigate")
+    assert forge.rev() == 1
+
+
+def test_a_right_click_on_a_centre_deletes_and_a_right_drag_turns_the_view(objects):
+    forge = objects
+    x, y = forge.object_at(TABLE)
+    forge.drag((x, y), (x + 40, y + 40), button="right")
+    forge.idle()
+    assert forge.rev() == 0 and forge.page.locator(".menu").count() == 0
+    forge.page.mouse.click(*forge.object_at(TABLE), button="right")
+    forge.until(f"s.objects.has({TABLE})", False)
+    forge.key("Control+z")
+    forge.until(f"s.objects.has({TABLE})", True)
+
+
+def test_turns_duplicates_and_deletes_by_keys(objects):
+    forge = objects
+    chosen(forge)
+    count, yaw = forge.state("s.objects.size"), forge.state(f"s.objects.get({SOFA}).yaw_deg")
+    forge.key("Shift+R")
+    forge.until("s.scene.rev", 1)
+    turned = (forge.state(f"s.objects.get({SOFA}).yaw_deg") - yaw) % 360
+    assert turned == 270
+    forge.key("Control+z")
+    forge.until("s.scene.rev", 2)
+    chosen(forge, TABLE)
+    forge.key("d")
+    forge.until("s.objects.size", count + 1)
+    forge.key("Delete")
+    forge.until("s.objects.size", count)
+    assert not forge.state(f"s.objects.has({TABLE})")
+
+
+def test_objects_are_added_where_one_clicks(objects):
+    forge = objects
+    count = forge.state("s.objects.size")
+    forge.key("2", "n")
+    x, y = forge.object_at(SOFA)
+    forge.page.mouse.click(x, y + 190)
+    assert "Choose a class of objects" in forge.page.locator(".toast").last.inner_text()
+    forge.key("5")
+    forge.page.mouse.click(x, y + 190)
+    forge.until("s.objects.size", count + 1)
+    assert max(forge.state("[...s.objects.values()].map((o) => o.class_id * 1000 + o.id)")) > 5000
+
+
+def test_split_merge_snap_and_match_again(objects):
+    forge = objects
+    count = forge.state("s.objects.size")
+    chosen(forge)
+    forge.key("s")
+    forge.until("s.objects.size", count + 1)
+    new = forge.state("Math.max(...s.objects.keys())")
+    forge.page.locator(f".tree [data-object='{new}']").click(modifiers=["Shift"])
+    forge.until("s.selectedObjects.size", 2)
+    forge.key("m")
+    forge.until("s.objects.size", count)
+    forge.key("Shift+C")
+    forge.key("Control+a")
+    forge.until("s.selectedObjects.size", count)
+    assert forge.page.locator(".panel[data-panel=inspector] strong").inner_text().startswith("1")
+    forge.key("Escape")
+    forge.until("s.selectedObjects.size", 0)
+
+
+def test_the_inspector_changes_class_furniture_and_turn(objects, shot):
+    forge, page = objects, objects.page
+    chosen(forge)
+    rows = page.locator(".template")
+    rows.nth(1).wait_for()
+    shot(forge, "inspector")
+    other = rows.nth(1).get_attribute("data-template")
+    rows.nth(1).click()
+    forge.until(f"s.objects.get({SOFA}).placements[0].template", other)
+    forge.page.locator("canvas.canvas").focus()
+    rev = forge.rev()
+    forge.key("t")
+    forge.until("s.scene.rev", rev + 1)
+    assert forge.state(f"s.objects.get({SOFA}).placements[0].template") != other
+    now = round(forge.state(f"s.objects.get({SOFA}).yaw_deg") / 90) % 4
+    page.locator(f".segment [data-turn='{(now + 2) % 4}']").click()
+    forge.until(f"Math.round(s.objects.get({SOFA}).yaw_deg / 90 + 4) % 4", (now + 2) % 4)
+    page.locator("select[data-field=class]").select_option("6")
+    forge.until(f"s.objects.get({SOFA}).class_id", 6)
+
+
+def test_clusters_are_previewed_live_and_doubtful_places_visited(objects, shot):
+    forge, page = objects, objects.page
+    page.locator(".panel[data-panel=recluster] .panel-title").click()
+    forge.slide("density_threshold", 0.3)
+    page.wait_for_selector(".centre-preview i")
+    shot(forge, "recluster")
+    assert forge.rev() == 0
+    page.get_by_role("button", name="Find anew").click()
+    forge.until("s.scene.rev", 1)
+    assert page.locator(".centre-preview i").count() == 0
+    forge.key("Shift+Digit1", ".")
+    page.wait_for_selector("[data-doubt='0']", state="attached")
+    assert forge.state("s.status") != ""
+    shot(forge, "doubtful")
+
+
+def test_two_tabs_stay_in_step_and_saving_writes_the_files(forge, open_tab, tmp_path):
+    other = open_tab()
+    forge.key("Shift+Digit3", "ArrowRight", "Shift+Digit2", "b")
+    other.key("Shift+Digit3", "ArrowRight", "Delete")
+    forge.until("s.scene.rev", 1)
+    assert forge.state("s.objects.size") == other.state("s.objects.size")
+    assert forge.state("s.mode") == "voxels", "a tab follows the mode of another"
+    assert forge.state("s.scene.counts") == other.state("s.scene.counts")
+    forge.key("Control+z")
+    other.until("s.scene.rev", 2)
+    assert other.page.locator(".saved").inner_text() == "Unsaved changes"
+    other.key("Control+s")
+    forge.until("s.scene.saved_rev", 2)
+    assert forge.page.locator(".saved").inner_text() == "Saved"
+    assert (tmp_path / "room.npz").is_file() and (tmp_path / "centers.json").is_file()
+    assert other.mistakes == []
