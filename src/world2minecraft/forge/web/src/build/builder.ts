@@ -51,6 +51,7 @@ export class Builder {
     this.whole = whole;
     if (on) this.loader.refresh(true);
     this.click(null);
+    this.outline();
     this.swap();
     this.hide();
   }
@@ -146,7 +147,7 @@ export class Builder {
   private outline(): void {
     const { mesh } = this.blocks;
     const { selectedObjects } = this.app.store.get();
-    const boxes = mesh ? [...selectedObjects].flatMap((id) => mesh.boxOf(id) ?? []) : [];
+    const boxes = mesh && !this.whole ? [...selectedObjects].flatMap((id) => mesh.boxOf(id) ?? []) : [];
     this.blocks.outline("object", boxes);
     this.view.invalidate();
   }

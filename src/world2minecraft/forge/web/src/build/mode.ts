@@ -63,8 +63,8 @@ function mountWishes(host: HTMLElement, app: App): void {
   const open = check(words.cutOpen, "cut-open", (on) => builder.setCutOpen(on));
   const facts = h("p", { class: "note", data: { build: "facts" } });
   const group = (title: string, node: HTMLElement): HTMLElement[] => [h("h3", { class: "sub" }, title), node];
-  host.append(...group(words.size, size.node), ...group(words.style, style.node), ...group(words.light, lamp.node));
-  host.append(open.node, facts);
+  const rows = [group(words.size, size.node), group(words.style, style.node), group(words.light, lamp.node)].flat();
+  host.append(h("div", { class: "wishes" }, ...rows, open.node, facts));
   const show = (): void => {
     size.set(String(loader.wish.size));
     style.set(loader.wish.style as (typeof STYLES)[number]);

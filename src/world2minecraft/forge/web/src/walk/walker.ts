@@ -54,17 +54,17 @@ export class Walker {
     this.pitchDeg = Math.min(Math.max(this.pitchDeg + down, -STEEPEST), STEEPEST);
   }
 
-  /** Let time go by; whether anything moved. */
+  /** Let time go by; whether the eyes are elsewhere than before. */
   pass(milliseconds: number): boolean {
+    const still = this.isStill;
     this.rest = Math.min(this.rest + milliseconds, MOST_TICKS * TICK_MS);
-    const from = this.body;
     while (this.rest >= TICK_MS) {
       this.rest -= TICK_MS;
       this.before = this.body;
       this.body = step(this.world, this.body, this.keys, this.yawDeg, this.scale);
       if (this.start[1] - this.body.position[1] > DEEPEST) this.body = this.before = bodyAt(this.start);
     }
-    return from !== this.body || this.before.position.some((v, i) => v !== this.body.position[i]);
+    return !still || !this.isStill;
   }
 
   /** Stand where another walker stands, in metres of the room: the world was made anew. */
@@ -72,6 +72,11 @@ export class Walker {
     const at = new THREE.Vector3(...feet).applyMatrix4(this.toRoom.clone().invert()).toArray();
     this.body = this.before = bodyAt(at);
     [this.yawDeg, this.pitchDeg] = [other.yawDeg, other.pitchDeg];
+  }
+
+  private get isStill(): boolean {
+    const { before, body } = this;
+    return before.crouched === body.crouched && before.position.every((v, i) => v === body.position[i]);
   }
 
   get feet(): Vec3 {
