@@ -14,8 +14,8 @@ export function drawEach(canvas: HTMLCanvasElement, scene: Scene, labels: Uint8A
   let orbit = fitted(start, scene.origin_m, high, innerWidth / innerHeight);
   const draw = how === "svg" ? svgDrawer(canvas, scene, labels, cells) : boxDrawer(canvas, scene, labels, cells);
   draw(orbit);
-  performance.mark("first");
-  performance.mark("whole");
+  performance.mark("scene-first");
+  performance.mark("scene-whole");
   const turn = () => {
     orbit = { ...orbit, azimuth: orbit.azimuth + 0.05 };
     draw(orbit);
@@ -81,6 +81,7 @@ function boxDrawer(canvas: HTMLCanvasElement, scene: Scene, labels: Uint8Array, 
     camera.position.set(...eyeOf(orbit));
     camera.lookAt(...orbit.target);
     renderer.render(world, camera);
-    renderer.getContext().finish();
+    const gl = renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits for the picture
   };
 }

@@ -39,5 +39,6 @@ describe("size of drawn blocks", () => {
   it("grows as cells get smaller than pixels, sooner where frames are to be quick", () => {
     expect([5, 1, 0.5, 0.1].map((pixels) => stepFor(pixels, 0))).toEqual([1, 2, 4, 4]);
     expect([0, 1, 2, 3].map((coarse) => stepFor(3, coarse))).toEqual([1, 1, 2, 4]);
+    expect([0, 1, 2, 3].map((coarse) => stepFor(12, coarse))).toEqual([1, 1, 1, 1]);
   });
 });

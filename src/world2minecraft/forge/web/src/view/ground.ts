@@ -3,13 +3,14 @@
 import * as THREE from "three";
 
 import type { Vec3 } from "../wire";
+import { flatMaterial } from "./plain";
 
 const AROUND_M = 2.5;
 
 export class Ground {
   readonly lines = new THREE.LineSegments(
     new THREE.BufferGeometry(),
-    new THREE.LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }),
+    flatMaterial("#ffffff", 1, { colours: true }),
   );
 
   private of = "";

@@ -1,5 +1,5 @@
-// Objects over the voxels: a ball at each centre with an arrow to its front, a box round each
-// selected one, and the boxes of the furniture that stands for it.
+// Objects over the voxels: their centres, a box round each selected one, and the boxes of the
+// furniture that stands for it.
 
 import * as THREE from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
@@ -7,20 +7,13 @@ import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
 import type { State } from "../store";
+import { Balls, type Ball } from "./balls";
 import { seenOf } from "./seen";
 import type { Placed, SceneObject, Vec3 } from "../wire";
 
-const ACCENT = { dark: 0xffffff, light: 0x14171c };
-const RIM = 0x14171c;
+const RIM: Vec3 = [0.08, 0.09, 0.11];
+const ACCENT: Record<State["theme"], Vec3> = { dark: [1, 1, 1], light: RIM };
 const ALWAYS = { depthTest: false, depthWrite: false, transparent: true };
-
-interface Ball {
-  center: Vec3;
-  radius: number;
-  colour: THREE.Color;
-  edge: THREE.Color;
-  chosen: boolean;
-}
 
 /** What of objects a mode shows. */
 export function shownObjects({ objects, view, mode, scene }: Readonly<State>): SceneObject[] {
@@ -48,37 +41,35 @@ export function boxEdges(center: Vec3, size: Vec3, yaw: number): number[] {
   return edges;
 }
 
-/** An arrow head on the floor plane of a ball, beyond it on the side that its front looks to. */
-export function arrowCorners(center: Vec3, yaw: number, radius: number): Vec3[] {
-  const at = (along: number, aside: number): Vec3 => [
-    center[0] + along * Math.cos(yaw) - aside * Math.sin(yaw),
-    center[1] + along * Math.sin(yaw) + aside * Math.cos(yaw),
-    center[2],
-  ];
-  return [at(radius * 3.1, 0), at(radius * 1.35, radius * 0.95), at(radius * 1.35, -radius * 0.95)];
-}
-
 export class Markers {
   readonly group = new THREE.Group();
-  private readonly ball = new THREE.SphereGeometry(1, 20, 14);
+  private readonly outlines = new THREE.Group();
+  private readonly balls = new Balls();
   private readonly lines: LineMaterial[] = [];
-  private shown: Ball[] = [];
-  private parts: { ball: THREE.InstancedMesh; rim: THREE.InstancedMesh; arrow: THREE.Mesh } | null = null;
+
+  constructor() {
+    this.group.add(this.outlines, this.balls.group);
+  }
 
   take(state: Readonly<State>): void {
     this.clear();
-    const { scene, selectedObjects, theme } = state;
+    const { scene, selectedObjects, theme, view } = state;
     if (!scene) return;
     const shown = shownObjects(state);
-    const colourOf = (id: number) => new THREE.Color().setRGB(
-      ...(scene.classes[id]?.colour.map((c) => c / 255) as Vec3), THREE.SRGBColorSpace);
-    const chosen = shown.filter(({ id }) => selectedObjects.has(id));
+    const colourOf = (id: number) => (scene.classes[id]?.colour ?? [255, 255, 255]).map((c) => c / 255) as Vec3;
     if (state.mode === "objects") {
       for (const one of shown) this.boxes(one.placements, colourOf(one.class_id), selectedObjects.has(one.id));
     }
-    const edges = chosen.flatMap((one) => boxEdges(one.center_m, one.size_m, (one.yaw_deg * Math.PI) / 180));
-    this.outline(edges, new THREE.Color(ACCENT[theme]), 2, 0.95);
-    this.balls(shown, state, colourOf);
+    const chosen = shown.filter(({ id }) => selectedObjects.has(id));
+    const edges = chosen.flatMap((one) => boxEdges(one.center_m, one.size_m, radians(one.yaw_deg)));
+    this.outline(edges, ACCENT[theme], 2, 0.95);
+    this.balls.set(
+      shown.map((one): Ball => {
+        const edge = selectedObjects.has(one.id) ? ACCENT[theme] : RIM;
+        const place = { center: one.center_m, yaw: radians(one.yaw_deg), radius: view.centerSize / 2 };
+        return { ...place, colour: colourOf(one.class_id), edge, chosen: selectedObjects.has(one.id) };
+      }),
+    );
   }
 
   /** Lines are so many pixels wide whatever the size of the canvas. */
@@ -88,89 +79,42 @@ export class Markers {
 
   dispose(): void {
     this.clear();
-    this.ball.dispose();
+    this.balls.dispose();
   }
 
-  /** Draw those small and faint whose centre is covered by something else. */
+  /** Draw those small whose centre is covered by something else. */
   dim(isCovered: (center: Vec3) => boolean): void {
-    const { ball, rim, arrow } = this.parts ?? {};
-    if (!ball || !rim || !arrow) return;
-    const colours = arrow.geometry.getAttribute("color");
-    this.shown.forEach(({ center, radius, colour, edge, chosen }, i) => {
-      const faint = !chosen && isCovered(center);
-      const size = faint ? radius * 0.55 : radius;
-      const at = new THREE.Matrix4().makeTranslation(...center);
-      ball.setMatrixAt(i, at.clone().scale(new THREE.Vector3().setScalar(size)));
-      rim.setMatrixAt(i, at.scale(new THREE.Vector3().setScalar(size * (chosen ? 1.42 : 1.22))));
-      ball.setColorAt(i, colour);
-      rim.setColorAt(i, edge);
-      const alpha = faint ? 0 : 1;
-      for (let corner = 0; corner < 3; corner++) {
-        colours.setXYZW(3 * i + corner, ...((chosen ? edge : colour).toArray() as Vec3), alpha);
-      }
-    });
-    for (const mesh of [ball, rim]) {
-      mesh.instanceMatrix.needsUpdate = true;
-      if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
-    }
-    colours.needsUpdate = true;
+    this.balls.dim(isCovered);
   }
 
-  private balls(shown: SceneObject[], state: Readonly<State>, colourOf: (id: number) => THREE.Color): void {
-    this.parts = null;
-    if (!shown.length) return;
-    const radius = state.view.centerSize / 2;
-    this.shown = shown.map(({ id, center_m, class_id }) => {
-      const chosen = state.selectedObjects.has(id);
-      const edge = new THREE.Color(chosen ? ACCENT[state.theme] : RIM);
-      return { center: center_m, radius, colour: colourOf(class_id), edge, chosen };
-    });
-    const corners = shown.flatMap((one) => arrowCorners(one.center_m, (one.yaw_deg * Math.PI) / 180, radius));
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.Float32BufferAttribute(corners.flat(), 3));
-    geometry.setAttribute("color", new THREE.Float32BufferAttribute(new Float32Array(corners.length * 4), 4));
-    const material = new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.DoubleSide, ...ALWAYS });
-    const arrow = new THREE.Mesh(geometry, material);
-    arrow.renderOrder = 2;
-    arrow.frustumCulled = false;
-    this.group.add(arrow);
-    this.parts = { ball: this.instanced(shown.length, 3), rim: this.instanced(shown.length, 2), arrow };
-  }
-
-  private instanced(count: number, order: number): THREE.InstancedMesh {
-    const mesh = new THREE.InstancedMesh(this.ball, new THREE.MeshBasicMaterial(ALWAYS), count);
-    mesh.renderOrder = order;
-    mesh.frustumCulled = false;
-    this.group.add(mesh);
-    return mesh;
-  }
-
-  private boxes(placements: readonly Placed[], colour: THREE.Color, chosen: boolean): void {
+  private boxes(placements: readonly Placed[], colour: Vec3, chosen: boolean): void {
     const edges = placements.flatMap(({ center_m, size_m, quarter_turns }) =>
       boxEdges(center_m, size_m, (quarter_turns * Math.PI) / 2),
     );
     this.outline(edges, colour, chosen ? 2 : 1.25, chosen ? 0.9 : 0.55);
   }
 
-  private outline(edges: number[], colour: THREE.Color, width: number, opacity: number): void {
+  private outline(edges: number[], colour: Vec3, width: number, opacity: number): void {
     if (!edges.length) return;
-    const material = new LineMaterial({ color: colour.getHex(), linewidth: width, opacity, ...ALWAYS });
+    const material = new LineMaterial({ linewidth: width, opacity, ...ALWAYS });
+    material.color.setRGB(...colour, THREE.SRGBColorSpace);
     this.lines.push(material);
     const lines = new LineSegments2(new LineSegmentsGeometry().setPositions(edges), material);
     lines.renderOrder = 1;
     lines.frustumCulled = false;
-    this.group.add(lines);
+    this.outlines.add(lines);
   }
 
   private clear(): void {
-    for (const child of [...this.group.children]) {
-      const mesh = child as THREE.Mesh;
+    for (const child of [...this.outlines.children] as LineSegments2[]) {
       child.removeFromParent();
-      if (mesh.geometry !== this.ball) mesh.geometry.dispose();
-      (mesh.material as THREE.Material).dispose();
-      if (mesh instanceof THREE.InstancedMesh) mesh.dispose();
+      child.geometry.dispose();
+      child.material.dispose();
     }
     this.lines.length = 0;
-    this.parts = null;
   }
+}
+
+function radians(degrees: number): number {
+  return (degrees * Math.PI) / 180;
 }

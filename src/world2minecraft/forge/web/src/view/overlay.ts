@@ -3,6 +3,7 @@
 import * as THREE from "three";
 
 import { quadIndex } from "./chunk";
+import { flatMaterial } from "./plain";
 import { cellOf } from "./volume";
 import type { Run, Vec3 } from "../wire";
 
@@ -70,7 +71,7 @@ export class Overlays {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(corners, 3));
     geometry.setIndex(quadIndex(corners.length / 12));
-    const material = new THREE.MeshBasicMaterial({ color: colour, transparent: true, opacity, depthWrite: false });
+    const material = flatMaterial(colour, opacity);
     const mesh = new THREE.Mesh(geometry, material);
     mesh.renderOrder = 1;
     this.shown.set(name, mesh);

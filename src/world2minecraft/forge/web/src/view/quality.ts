@@ -47,7 +47,7 @@ export class Quality {
   }
 }
 
-const ENOUGH_PX = [1.1, 2.2, 4, 7]; // by `coarse`: a cell of fewer pixels is drawn in a block
+const ENOUGH_PX = [1.1, 2.5, 6, 12]; // by `coarse`: a cell of fewer pixels is drawn in a block
 
 /** Cells a side, 1, 2 or 4, that a chunk is drawn in whose cells are so many pixels large. */
 export function stepFor(pixels: number, coarse: number): 1 | 2 | 4 {

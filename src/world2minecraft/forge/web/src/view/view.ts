@@ -7,6 +7,7 @@ import type { State, Store } from "../store";
 import type { Run, Vec3 } from "../wire";
 import { fitted, type Orbit } from "./camera";
 import { Caps } from "./caps";
+import { meshOf, quadIndex } from "./chunk";
 import { Chunks } from "./chunks";
 import { Compass } from "./compass";
 import { Controls } from "./controls";
@@ -61,6 +62,7 @@ export class SceneView {
   private readonly frames: Frames;
   private copy: Uint8Array = new Uint8Array(0);
   private place = "";
+  private size = "";
   private work = ""; // that the last frame had done: programs, meshes, size
   private drawn: Fineness = { scale: 1, coarse: 0 };
   private readonly ends: (() => void)[];
@@ -70,12 +72,14 @@ export class SceneView {
     readonly store: Store,
   ) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false });
+    this.renderer.debug.checkShaderErrors = import.meta.env.DEV; // It waits for the compiler.
     this.frames = new Frames(new Quality(), (fineness, now) => this.paint(fineness, now));
     this.scene.add(this.ground.lines, this.chunks.group, this.overlays.group, this.markers.group);
     this.reach = new Reach(store, this.sight, () => this.look.seen);
     this.compass = new Compass(canvas, (side) => this.lookFrom(side));
     this.controls = new Controls(canvas, this);
     this.controls.claims = () => store.get().tool !== "navigate";
+    this.warm();
     const size = new ResizeObserver(() => this.invalidate());
     size.observe(canvas);
     this.ends = [
@@ -256,6 +260,16 @@ export class SceneView {
     this.sight.orbit = fitted(START, low, high, this.measure().aspect);
   }
 
+  /** Have the shader compiled while the scene is still on its way: a quad that covers no pixel. */
+  private warm(): void {
+    this.material.setParts({ edges: true, shadows: true, opacity: 1, by: "class" });
+    const quad = meshOf([0, 0, 0], { words: new Uint32Array(8), starts: [] }, quadIndex(1), this.material.greedy);
+    quad.geometry.addGroup(0, 6, 0);
+    quad.frustumCulled = false;
+    this.renderer.render(new THREE.Scene().add(quad), this.sight.camera());
+    quad.geometry.dispose();
+  }
+
   private refresh(): void {
     this.look.take(this.store.get(), this.copy);
     this.invalidate();
@@ -284,6 +298,8 @@ export class SceneView {
     const work = [this.renderer.info.programs?.length, this.chunks.made, fineness.scale].join();
     const usual = work === this.work;
     this.work = work;
+    if (this.copy.length) markOnce("scene-first");
+    if (this.copy.length && this.chunks.settled) markOnce("scene-whole");
     for (const call of [...this.onFrame]) call(this.frames.lastMs);
     return { again: this.sight.flying, settled: this.chunks.settled, usual };
   }
@@ -304,13 +320,18 @@ export class SceneView {
   private resize(scale: number): void {
     const { clientWidth: wide, clientHeight: tall } = this.canvas;
     this.measure();
-    const size = this.renderer.getSize(new THREE.Vector2());
     const ratio = Math.min(devicePixelRatio * scale, Math.max(devicePixelRatio, 2));
-    if (size.x === wide && size.y === tall && this.renderer.getPixelRatio() === ratio) return;
-    this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(wide, tall, false);
+    const size = [wide, tall, ratio].join();
+    if (size === this.size) return;
+    this.size = size;
+    this.renderer.setDrawingBufferSize(wide, tall, ratio); // Once: each change waits for the GPU.
     this.markers.resize(wide, tall);
   }
+}
+
+/** For whoever measures: when a picture was first there. */
+function markOnce(name: string): void {
+  if (!performance.getEntriesByName(name).length) performance.mark(name);
 }
 
 /** Flat numbers of the cells that differ; `into` is made equal. */
