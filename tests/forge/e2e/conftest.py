@@ -67,7 +67,7 @@ def open_tab(browser, server) -> Iterator[Callable[..., Driver]]:
 
 
 @pytest.fixture
-def forge(open_tab) -> Driver:
+def forge(open_tab) -> Iterator[Driver]:
     """One tab, the room in it, hints closed. A mistake that the page reports fails the test."""
     driver = open_tab()
     yield driver

@@ -153,7 +153,8 @@ export const TEXT = {
   centimetres: (metres: number): string => `${Math.round(metres * 100)} cm`,
   metres: (sides: readonly number[]): string => `${sides.map((side) => side.toFixed(2)).join(" × ")} m`,
   cells: (count: number): string => `${count.toLocaleString("en")} ${count === 1 ? "cell" : "cells"}`,
-  templateName: (name: string): string => name.replaceAll("_", " "),
+  templateName: (name: string): string =>
+    name === "cells" ? "its own cells" : name.replaceAll("_", " "),
   legend: {
     title: "Classes",
     choose: (word: string, key: string): string => `Choose ${word} for tools (${key})`,
@@ -237,16 +238,6 @@ export const TEXT = {
     note: "Places to look at first. The . key goes to the next.",
     none: "No doubtful places left.",
     at: (at: number, count: number): string => (at ? `${at} of ${count}` : `${count} to look at`),
-    reasons: {
-      outside: "reaches out of the room",
-      collision: "collides with another",
-      floater: "floats alone",
-      no_template: "no furniture stands for it",
-      low_iou: "the furniture fits badly",
-      low_confidence: "its class is unsure",
-      unsure_cells: "unsure cells",
-    } as Record<string, string>,
-    why: (reason: string, id: number): string => (id ? `object ${id}: ${reason}` : reason),
     next: "Next",
     previous: "Previous",
   },
@@ -356,6 +347,12 @@ export const TEXT = {
     title: "Keys and gestures",
     note: "On a Mac, Cmd stands for Ctrl.",
     close: "Close the help (Esc)",
+  },
+  keysPage: {
+    title: "# Keys and gestures of SceneForge",
+    note: "Made from the page's own table of keys (`web/src/keys.ts`); `?` shows the same in the editor. On a Mac, Cmd stands for Ctrl. Letters count as they are printed on the keys, digits and brackets by their place on the board. With the focus in a field, its own keys come first.",
+    head: ["Keys", "What they do", "Where"],
+    everywhere: "everywhere",
   },
   palette: {
     title: "All commands",

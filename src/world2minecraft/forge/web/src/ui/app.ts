@@ -138,6 +138,7 @@ function changeModes(app: App): void {
     if (last) for (const hooks of slots.hooks(last)) hooks.leave?.(app);
     last = mode;
     document.body.dataset.mode = mode;
+    app.store.set({ status: "" });
     for (const hooks of slots.hooks(mode)) hooks.enter?.(app);
   });
 }

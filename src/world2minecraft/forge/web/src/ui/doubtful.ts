@@ -10,7 +10,7 @@ import type { App } from "./slots";
 
 interface Doubt {
   at_m: Vec3;
-  why: string;
+  why: string; // a sentence
   object_id?: number | null;
 }
 
@@ -32,7 +32,7 @@ export function mountDoubtful(host: HTMLElement, app: App): void {
     draw();
     if (!place) return;
     visit(app, place);
-    app.store.set({ status: words(place) });
+    app.store.set({ status: place.why });
   };
   const step = async (by: number): Promise<void> => {
     const rev = app.store.get().scene?.rev ?? 0;
@@ -57,14 +57,10 @@ export function mountDoubtful(host: HTMLElement, app: App): void {
 
 function rowOf(one: Doubt, at: number, chosen: boolean, go: (at: number) => void): HTMLElement {
   const node = h("button", { type: "button", class: "found", data: { doubt: String(at) } });
-  node.append(h("span", { class: "found-at" }, at + 1), h("span", { class: "tree-word" }, words(one)));
+  node.append(h("span", { class: "found-at" }, at + 1), h("span", { class: "found-why" }, one.why));
   node.setAttribute("aria-pressed", String(chosen));
   node.addEventListener("click", () => go(at));
   return node;
-}
-
-function words({ why, object_id }: Doubt): string {
-  return TEXT.doubtful.why(TEXT.doubtful.reasons[why] ?? why, object_id ?? 0);
 }
 
 function visit({ store, view }: App, place: Doubt): void {

@@ -22,7 +22,11 @@ export function mountStatusLine(host: HTMLElement, app: App): { show(under: Unde
     said.title = status;
   });
   let shown = 0;
+  let timer = 0;
+  // Told only while something moves: of a still picture it would mean nothing.
   app.view.onFrame.push((milliseconds) => {
+    clearTimeout(timer);
+    timer = window.setTimeout(() => (speed.textContent = ""), 1500);
     if (performance.now() - shown < 500) return;
     shown = performance.now();
     speed.textContent = TEXT.status.frame(milliseconds);
