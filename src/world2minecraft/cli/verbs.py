@@ -23,6 +23,7 @@ VERBS: dict[str, str] = {
     "reconstruct": "Turn a capture into a Minecraft world, with a report.",
     "build": "Build a room: a world of its own, in yours, on a server.",
     "forge": "See every stage of a room in the browser, and mend it.",
+    "forge stats": "Tell how much work edited rooms were.",
     "join": "Join finished runs of single rooms into one home.",
     "rooms generate": "Generate a furnished room or a house, with exact truth.",
     "rooms scan": "Scan a generated room or house with a virtual depth camera.",
@@ -97,6 +98,10 @@ class VerbGroup(TyperGroup):
         Raises:
             UnknownNameError: there is none; the message suggests the nearest.
         """
+        both = " ".join(args[:2])
+        if len(args) > 1 and both in VERBS:
+            # Its first word may be a verb of its own, which would take the second for a file.
+            return both, load(both), args[2:]
         if self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
             from world2minecraft.errors import UnknownNameError
 

@@ -153,6 +153,8 @@ def _pairs(held: Any) -> Iterator[tuple[Iterable[float], Any]]:
     if isinstance(held, dict):
         places, classes = _told(held, _PLACES, None), _told(held, _CLASSES, None)
         if isinstance(places, list) and isinstance(classes, list):
+            if len(places) != len(classes):
+                raise ValueError(f"{len(places)} places have {len(classes)} classes")
             yield from zip(places, classes, strict=True)
             return
         for name, places in held.items():
@@ -161,7 +163,11 @@ def _pairs(held: Any) -> Iterator[tuple[Iterable[float], Any]]:
             for row in places:
                 yield _place(row), name
         return
+    if not isinstance(held, list):
+        raise ValueError("there is no list of them")
     for row in held:
+        if isinstance(row, list) and len(row) < 4:
+            raise ValueError(f"{row} is not x, y, z and a class")
         yield _place(row), row[3] if isinstance(row, list) else _told(row, _CLASSES, None)
 
 
@@ -179,9 +185,11 @@ def _class(name: Any) -> int:
     word = str(name).strip().lower()
     if word in CLASS_NAMES:
         return CLASS_NAMES.index(word)
-    number = _OTHER_NAMES.get(word)
-    number = float(word) if number is None else number
-    if number != int(number) or not (0 <= number <= 11 or number == 255):
+    try:
+        number = float(_OTHER_NAMES.get(word, word))
+    except ValueError:
+        number = -1.0
+    if not (number in range(12) or number == 255):
         raise ValueError(f"{name!r} is no class; they are 0 to 11, 255 or their names")
     return int(number)
 
