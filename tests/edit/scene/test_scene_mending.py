@@ -194,6 +194,20 @@ def test_what_furniture_hides_is_a_hole_of_any_size():
     assert (draft.labels[1:8, 10:40, 1:27] == 255).all()
 
 
+def test_behind_a_slope_a_plane_ends():
+    labels = box_room()
+    labels[WINDOW] = 3
+    for x in range(20):  # A roof from a knee wall of 13 cells up to the ceiling; nothing behind.
+        labels[x, 1:44, 14 + x :] = 255
+        labels[x, 1:44, 13 + x] = 1
+    draft = box_draft(labels)
+    rows = {one.name: plane_gaps(draft, one) for one in find_planes(draft)}
+    assert {"ceiling", "wall:1", "wall:2"} <= set(rows)
+    assert all(not one.holes.any() for one in rows.values())
+    draft.labels[:20, 1:44][draft.labels[:20, 1:44] == 1] = 10  # Were it a wardrobe, it would not.
+    assert plane_gaps(draft, find_planes(draft)[1]).holes.sum() > 400
+
+
 def test_unseen_glass_beside_the_air_of_the_room_stays_open():
     labels = box_room()
     labels[WINDOW] = 255
@@ -337,3 +351,36 @@ def test_what_cannot_be_mended_is_said(fields, text):
     with pytest.raises((UsageError, UnknownNameError)) as refusal:
         parse_command(fields).plan(box_draft(box_room()), TOOLS)
     assert str(refusal.value) == text
+
+
+HUGE = 10**30
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"op": "set_cells", "cells": [[HUGE, 1]], "class_id": 5},
+        {"op": "set_cells", "cells": [[0, HUGE]], "class_id": 5},
+        {"op": "fill_box", "low": [HUGE, 0, 0], "high": [HUGE, 0, 0], "class_id": 5},
+        {"op": "fill_box", "low": [-HUGE, 0, 0], "high": [-1, HUGE, 0], "class_id": 5},
+        {"op": "delete_component", "cell": [HUGE, -HUGE, 0]},
+        {"op": "delete_component", "cell": [-1, 0, 0]},
+        {"op": "paste", "cells": [[0, 9]], "by": [HUGE, -HUGE, 0]},
+        {"op": "remove_floaters", "max_cells": HUGE, "keep": [HUGE]},
+        {"op": "fill_holes", "plane": "floor", "cell": [HUGE, 0, 0]},
+        {"op": "fill_holes", "plane": "object:" + "9" * 30},
+        {"op": "fill_holes", "plane": "object:²"},
+        {"op": "smooth", "runs": [[HUGE, HUGE]]},
+    ],
+)
+def test_huge_numbers_are_refused_like_any_other(fields):
+    with pytest.raises(UsageError) as refusal:
+        parse_command(fields).plan(box_draft(box_room()), TOOLS)
+    assert "\n" not in str(refusal.value)
+
+
+def test_a_huge_box_is_cut_at_the_sides_of_the_grid():
+    draft = box_draft(box_room())
+    fields = {"low": [-HUGE, 5, 5], "high": [HUGE, 5, 5], "class_id": 10}
+    operation = done(draft, parse_command({"op": "fill_box", **fields}))
+    assert len(operation.cells) == 50

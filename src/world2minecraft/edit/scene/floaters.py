@@ -16,8 +16,8 @@ from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.planes import WALL_M2
 from world2minecraft.geometry.parts import connected_parts
 
-# A football. In nine tuning rooms only ten pieces floated, nine of them things that are there but
-# had lost their hold: so one looks before deleting, and does not begin with large ones.
+# A football. In ten tuning rooms 13 pieces floated, 12 of them things that are truly there and had
+# lost their hold: so one looks before deleting, and does not begin with large ones.
 MAX_CELLS = 30
 
 

@@ -3,7 +3,8 @@
 A gap is where a plane has no cell, nothing else stands in its layer, and structure bounds it to
 three of the four sides in the plane. In a floor or a ceiling something was seen over or under it
 too; where nothing was, it is bounded to all four sides and has at most four square metres, as the
-floor under a wardrobe. What of a gap is a hole:
+floor under a wardrobe. Behind a slope or another wall a wall or a ceiling ends. What of a gap is
+a hole:
 
 ==================================  =============================================================
 hidden: neither the cell nor one    a hole: the wall behind a wardrobe, the floor under a bed
@@ -54,6 +55,7 @@ def plane_gaps(draft: SceneDraft, plane: Plane, *, hole_m2: float = HOLE_M2) -> 
     wanted = WALL_CLASSES if plane.axis != 2 else (plane.class_id,)
     own = np.asarray(np.isin(near, wanted).any(axis=0))
     gap = _bounded(draft, plane, near, own) & ~own & (near[1] % UNKNOWN == 0)
+    gap &= ~_behind_structure(draft, plane)
     unseen = near[1] == UNKNOWN
     aired = (near[0] == 0) | (near[2] == 0)
     if plane.axis == 2:
@@ -106,6 +108,32 @@ def _bounded(draft: SceneDraft, plane: Plane, near: np.ndarray, own: np.ndarray)
     seen = (room != UNKNOWN).any(axis=2)
     unseen = _up_to(~pillars & ~own & ~seen & (sides == 4), HIDDEN_M2 / draft.voxel_m**2)
     return (~pillars & seen & (sides >= 3)) | unseen
+
+
+def _behind_structure(draft: SceneDraft, plane: Plane) -> np.ndarray:
+    """Where a plane would lie behind a slope or another wall, bool [A, B]: there it is no more.
+
+    That is where the first known cell on one side is structure, and on the other too, or nothing.
+    A floor lies under all of them.
+    """
+    if plane.class_id == SemanticClass.FLOOR:
+        return np.zeros(np.delete(draft.shape, plane.axis), bool)
+    layers = np.moveaxis(draft.labels, plane.axis, 0)
+    above = _first_known(layers[plane.layer + 1 :])
+    below = _first_known(layers[: plane.layer][::-1])
+    walls = WALL_CLASSES if plane.axis != 2 else ()
+    hiding = (*walls, SemanticClass.CEILING)
+    hidden = [np.isin(one, hiding) for one in (above, below)]
+    nothing = [one == UNKNOWN for one in (above, below)]
+    return (hidden[0] & (hidden[1] | nothing[1])) | (nothing[0] & hidden[1])
+
+
+def _first_known(layers: np.ndarray) -> np.ndarray:
+    """The first label that is known along the first axis of [N, A, B]; 255 where none is."""
+    known = layers != UNKNOWN
+    if not len(layers):
+        return np.full(layers.shape[1:], UNKNOWN, np.uint8)
+    return np.take_along_axis(layers, known.argmax(axis=0)[None], axis=0)[0]
 
 
 def _sides(bounds: np.ndarray) -> np.ndarray:

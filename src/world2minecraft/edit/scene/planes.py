@@ -98,16 +98,16 @@ def _walls(draft: SceneDraft, levels: list[Plane]) -> list[Plane]:
     for axis in (0, 1):
         mask = np.moveaxis(np.isin(draft.labels, WALL_CLASSES), axis, 0)
         flat = mask & _is_flat(mask, FLAT_WALL) & _is_face(np.moveaxis(draft.labels, axis, 0))
-        while True:
-            sizes = flat.sum(axis=(1, 2))
-            if not sizes.size or sizes.max() < least:
-                break
+        sizes = flat.sum(axis=(1, 2))
+        while sizes.size and sizes.max() >= least:
             layer = int(sizes.argmax())
             regions = _joined(_regions(mask[layer], flat[layer], least), draft.voxel_m)
             for low, high, area in regions:
                 flat[max(layer - 1, 0) : layer + 2, low[0] : high[0], low[1] : high[1]] = False
                 found.append(Plane("", int(SemanticClass.WALL), axis, layer, low, high, area))
             flat[layer] = False
+            near = slice(max(layer - 1, 0), layer + 2)
+            sizes[near] = flat[near].sum(axis=(1, 2))
     found.sort(key=lambda one: (one.axis, one.layer, one.low))
     return [
         replace(_meeting(one, [*levels, *found], draft.voxel_m), name=f"wall:{number}")
