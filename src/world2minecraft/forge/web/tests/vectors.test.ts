@@ -4,8 +4,7 @@ import { describe, expect, it } from "vitest";
 
 import { writeRuns } from "../src/changes";
 import { component, runsOf as toolRuns } from "../src/tools/cells";
-import { cellOf, flatOf, runsOf } from "../src/view/volume";
-import { changedCells } from "../src/view/view";
+import { cellOf, changedCells, flatOf, runsOf } from "../src/view/volume";
 import type { HeldRun, Run, Vec3 } from "../src/wire";
 
 const files = import.meta.glob<{ default: { cases: unknown[] } }>("../../../../../tests/forge/vectors/*.json", {

@@ -22,6 +22,7 @@ export function viewActions(app: App): void {
     run: () => (view.orbit = { ...view.orbit, ortho: !view.orbit.ortho }),
     why: scene,
   });
+  cameraActions(view, on);
   on("view.unhide", () => store.setView({ hidden: new Set(), solo: null }));
   on("view.hide", () => toggleSeen(app, classInHand(app), false));
   on("view.solo", () => toggleSeen(app, classInHand(app), true));
@@ -32,6 +33,23 @@ export function viewActions(app: App): void {
   });
   on("slice.up", () => moveSlice(app, 1));
   on("slice.down", () => moveSlice(app, -1));
+}
+
+const TURN = Math.PI / 12; // radians a key
+const PAN = 0.12; // share of the view's height
+
+/** The camera by keys alone. */
+function cameraActions(view: App["view"], on: (id: string, run: () => void) => void): void {
+  on("camera.left", () => view.turn(-TURN, 0));
+  on("camera.right", () => view.turn(TURN, 0));
+  on("camera.up", () => view.turn(0, TURN));
+  on("camera.down", () => view.turn(0, -TURN));
+  on("camera.panLeft", () => view.pan(PAN, 0));
+  on("camera.panRight", () => view.pan(-PAN, 0));
+  on("camera.panUp", () => view.pan(0, -PAN));
+  on("camera.panDown", () => view.pan(0, PAN));
+  on("camera.closer", () => view.zoom(1 / 1.25));
+  on("camera.away", () => view.zoom(1.25));
 }
 
 /** The class of what is selected, else the chosen one. */

@@ -5,7 +5,7 @@ import * as THREE from "three";
 
 import type { State, Store } from "../store";
 import type { Run, Vec3 } from "../wire";
-import { fitted, type Orbit } from "./camera";
+import { fitted } from "./camera";
 import { Caps } from "./caps";
 import { meshOf, quadIndex } from "./chunk";
 import { Chunks } from "./chunks";
@@ -15,13 +15,14 @@ import { Fields, type Difference } from "./fields";
 import { Frames, type Painted } from "./frames";
 import { Ground } from "./ground";
 import { Look } from "./look";
+import { Looking, START } from "./looking";
 import { Markers } from "./markers";
 import { VoxelMaterial } from "./material";
 import { Overlays } from "./overlay";
 import { Quality, type Fineness } from "./quality";
 import { Reach, type Picked, type Ray } from "./reach";
 import type { DepthLimit, Point } from "./regions";
-import { Sight, type Pose } from "./sight";
+import { changedCells } from "./volume";
 import "./view.css";
 
 export type { Picked } from "./reach";
@@ -31,15 +32,8 @@ export type { Pose } from "./sight";
 
 const OVERLAP_PX = 0.12; // of quads: under what is seen
 const GROUND = { dark: 0x16181d, light: 0xf1f2f4 };
-const START: Orbit = {
-  target: [0, 0, 0],
-  azimuth: (-125 * Math.PI) / 180,
-  elevation: (50 * Math.PI) / 180,
-  distance: 8,
-  ortho: false,
-};
 
-export class SceneView {
+export class SceneView extends Looking {
   /** Called after each frame with how long frames take, in milliseconds. */
   readonly onFrame: ((ms: number) => void)[] = [];
   readonly controls: Controls;
@@ -56,7 +50,6 @@ export class SceneView {
   private readonly markers = new Markers();
   private readonly ground = new Ground();
   private readonly overlays = new Overlays();
-  private readonly sight = new Sight(START);
   private readonly reach: Reach;
   private readonly compass: Compass;
   private readonly frames: Frames;
@@ -71,6 +64,7 @@ export class SceneView {
     readonly canvas: HTMLCanvasElement,
     readonly store: Store,
   ) {
+    super();
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false });
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV; // It waits for the compiler.
     this.frames = new Frames(new Quality(), (fineness, now) => this.paint(fineness, now));
@@ -96,23 +90,8 @@ export class SceneView {
     ];
   }
 
-  get orbit(): Orbit {
-    return this.sight.orbit;
-  }
-
-  set orbit(orbit: Orbit) {
-    this.sight.orbit = orbit;
-    this.invalidate();
-  }
-
-  /** Stand where a photo was taken or someone walks; null: orbit again. */
-  get pose(): Pose | null {
-    return this.sight.pose;
-  }
-
-  set pose(pose: Pose | null) {
-    this.sight.pose = pose;
-    this.invalidate();
+  get picker(): ((ray: Ray) => Picked | null) | null {
+    return this.reach.picker;
   }
 
   /** Finds what a ray in metres meets where something else than the voxels is drawn. */
@@ -130,11 +109,6 @@ export class SceneView {
   pointAt(x: number, y: number): Vec3 | null {
     this.measure();
     return this.reach.pointAt(x, y);
-  }
-
-  /** Where a point in metres is on the canvas, in pixels; null: behind the camera. */
-  project(point: Vec3): [number, number] | null {
-    return this.measure().project(point);
   }
 
   /** Where the ray through a pixel meets the plane `axis` = `at` metres; null: it does not. */
@@ -175,42 +149,6 @@ export class SceneView {
     this.refresh();
   }
 
-  /** Fly to where the whole scene is in view. */
-  frame(): void {
-    const box = this.box();
-    if (box) this.flyTo(fitted({ ...this.sight.goal }, box.low, box.high, this.measure().aspect));
-  }
-
-  /** Fly to where a box, in metres, fills the view. */
-  focus(box: { low: Vec3; high: Vec3 }): void {
-    const room = box.low.map((l, i) => Math.max((box.high[i]! - l) * 0.35, 0.15));
-    const low = box.low.map((l, i) => l - room[i]!) as Vec3;
-    const high = box.high.map((h, i) => h + room[i]!) as Vec3;
-    this.flyTo(fitted(this.sight.goal, low, high, this.measure().aspect));
-  }
-
-  /** Look along an axis: 0 and 1 from -x and -y, 2 from the top; `back` from the other side. */
-  lookAlong(axis: 0 | 1 | 2, back = false): void {
-    const half = Math.PI / 2;
-    const azimuth = axis === 2 ? -half : axis === 0 ? (back ? 0 : Math.PI) : back ? half : -half;
-    const elevation = axis === 2 ? (back ? -1 : 1) * (half - 1e-4) : 0;
-    this.flyTo({ ...this.sight.goal, azimuth, elevation });
-  }
-
-  /** Look from a side, 0..5: +x +y +z -x -y -z; from the other where it is seen from there. */
-  lookFrom(side: number): void {
-    const axis = (side % 3) as 0 | 1 | 2;
-    const back = axis === 2 ? side > 2 : side < 3;
-    const ahead = Math.abs(this.sight.axes.back[axis]) > 0.999;
-    this.lookAlong(axis, ahead ? !back : back);
-  }
-
-  flyTo(to: Orbit): void {
-    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.sight.fly(to, performance.now(), calm);
-    this.invalidate();
-  }
-
   invalidate(): void {
     this.frames.invalidate();
   }
@@ -221,21 +159,14 @@ export class SceneView {
   }
 
   /** What the picture costs. */
-  stats(): { quads: number; bytes: number; ms: number; drawn: Fineness } {
-    const { quads, bytes } = this.chunks;
-    return { quads, bytes, ms: this.frames.lastMs, drawn: this.drawn };
+  stats(): { quads: number; bytes: number; made: number; ms: number; drawn: Fineness } {
+    const { quads, bytes, made } = this.chunks;
+    return { quads, bytes, made, ms: this.frames.lastMs, drawn: this.drawn };
   }
 
   dispose(): void {
     for (const end of this.ends) end();
     for (const part of [this.frames, this.compass, this.markers, this.ground, this.controls, this.chunks, this.material, this.renderer]) part.dispose();
-  }
-
-  private box(): { low: Vec3; high: Vec3 } | null {
-    const { scene } = this.store.get();
-    if (!scene) return null;
-    const high = scene.origin_m.map((o, i) => o + scene.shape[i]! * scene.voxel_m) as Vec3;
-    return { low: scene.origin_m, high };
   }
 
   private takeVolume({ scene, labels }: Readonly<State>): void {
@@ -279,11 +210,6 @@ export class SceneView {
     this.scene.background = new THREE.Color(GROUND[theme]);
     const box = this.box();
     if (box) this.ground.take(box.low, box.high, theme === "dark");
-  }
-
-  private measure(): Sight {
-    this.sight.resize(this.canvas.clientWidth, this.canvas.clientHeight);
-    return this.sight;
   }
 
   private paint(fineness: Fineness, now: number): Painted {
@@ -332,15 +258,4 @@ export class SceneView {
 /** For whoever measures: when a picture was first there. */
 function markOnce(name: string): void {
   if (!performance.getEntriesByName(name).length) performance.mark(name);
-}
-
-/** Flat numbers of the cells that differ; `into` is made equal. */
-export function changedCells(into: Uint8Array, now: Uint8Array): number[] {
-  const found: number[] = [];
-  for (let flat = 0; flat < now.length; flat++) {
-    if (into[flat] === now[flat]) continue;
-    found.push(flat);
-    into[flat] = now[flat]!;
-  }
-  return found;
 }

@@ -38,3 +38,14 @@ export function runsOf(flats: Iterable<number>): Run[] {
   }
   return runs;
 }
+
+/** Flat numbers of the cells that differ; `into` is made equal. */
+export function changedCells(into: Uint8Array, now: Uint8Array): number[] {
+  const found: number[] = [];
+  for (let flat = 0; flat < now.length; flat++) {
+    if (into[flat] === now[flat]) continue;
+    found.push(flat);
+    into[flat] = now[flat]!;
+  }
+  return found;
+}
