@@ -122,21 +122,21 @@ def test_sizes_and_styles_give_other_blocks(forge, shot):
 
 def test_a_click_tells_the_block_and_its_object_which_turns_there(forge, shot):
     build(forge)
-    sofa = forge.state("[...s.objects.values()].find(one => one.class_id === 7).id")
-    x, y = np.median(seen(forge)[sofa], axis=0)[:2]
+    chair = forge.state("[...s.objects.values()].find(one => one.class_id === 5).id")
+    x, y = np.median(seen(forge)[chair], axis=0)[:2]
     forge.page.locator("canvas.canvas").click(position={"x": float(x), "y": float(y)})
-    forge.until("s.selectedObjects", [sofa])
+    forge.until("s.selectedObjects", [chair])
     panel = forge.page.locator("[data-panel='block']")
-    assert panel.locator("[data-build='object']").inner_text() == f"Part of sofa {sofa}"
+    assert panel.locator("[data-build='object']").inner_text() == f"Part of chair {chair}"
     assert panel.locator("code").inner_text().startswith("minecraft:")
     forge.idle()
     shot(forge, "build-click")
-    before, rev = forge.state(f"s.objects.get({sofa}).yaw_deg"), forge.rev()
+    before, rev = forge.state(f"s.objects.get({chair}).yaw_deg"), forge.rev()
     forge.key("r")
     forge.until("s.scene.rev", rev + 1)
     made(forge)
     assert facts(forge, "rev") == rev + 1, "the blocks follow the edit"
-    assert forge.state(f"s.objects.get({sofa}).yaw_deg") != before
+    assert forge.state(f"s.objects.get({chair}).yaw_deg") != before
     forge.key("Control+z")
     forge.until("s.scene.rev", rev + 2)
     made(forge)
@@ -210,6 +210,8 @@ def test_voxels_are_walked_through_too(forge, shot):
     forge.page.locator("[data-panel='walk'] [data-value='voxels']").click()
     until(forge, "Math.abs(window.__forge.walk.walker.scale - 12.5) < 1e-6")
     assert not forge.page.evaluate(f"{BLOCKS}.group.visible")
+    until(forge, "window.__forge.walk.walker.body.onGround")
+    assert abs(forge.page.evaluate(FEET)[2]) < 0.3, "one stands where one stood"
     shot(forge, "walk-voxels")
     start = forge.page.evaluate(FEET)
     forge.page.keyboard.down("s")

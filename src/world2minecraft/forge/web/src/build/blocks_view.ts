@@ -7,8 +7,9 @@ import { BlockMaterial } from "./material";
 import type { BlockMesh, Hidden, Met } from "./mesh";
 
 const OUTLINE = { object: 0xffd23f, block: 0x000000 };
-const OVER = 0.006; // cells: a twentieth of a pixel of a room that is whole in view
 const GROWN = 0.004; // cells: outlines lie just outside what they are around
+
+const SIZE = new THREE.Vector2();
 
 export class BlocksView {
   readonly group = new THREE.Group();
@@ -34,6 +35,9 @@ export class BlocksView {
     this.drawn?.removeFromParent();
     this.drawn = new THREE.Mesh(geometryOf(mesh), [this.material.solid, this.material.clear]);
     this.drawn.frustumCulled = false;
+    this.drawn.onBeforeRender = (renderer) => {
+      this.material.uniforms.tall.value = renderer.getDrawingBufferSize(SIZE).y;
+    };
     this.group.add(this.drawn);
   }
 
@@ -72,11 +76,12 @@ export class BlocksView {
 
 function geometryOf(mesh: BlockMesh): THREE.BufferGeometry {
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(sealed(mesh), 3));
+  geometry.setAttribute("position", new THREE.BufferAttribute(mesh.position, 3));
   geometry.setAttribute("uv", new THREE.BufferAttribute(mesh.uv, 2));
   geometry.setAttribute("light", new THREE.BufferAttribute(mesh.light, 4, true));
   geometry.setAttribute("colour", new THREE.BufferAttribute(mesh.colour, 4, true));
   geometry.setAttribute("kind", new THREE.BufferAttribute(mesh.kind, 2));
+  geometry.setAttribute("outward", new THREE.BufferAttribute(outward(mesh), 4, true));
   const index = new Uint32Array(mesh.quads * 6);
   for (let quad = 0; quad < mesh.quads; quad++) {
     const [first, a, b, c] = corners(mesh, quad);
@@ -90,29 +95,29 @@ function geometryOf(mesh: BlockMesh): THREE.BufferGeometry {
 }
 
 /**
- * Positions in which long quads reach a little over their neighbours: where a long edge meets the
- * ends of short ones, rounding would leave pixels through which the background shines.
+ * Where each corner is pushed so that its quad grows, as signed bytes: by a tenth of a pixel in the
+ * shader. Where a long edge meets the ends of short ones, rounding would else leave pixels through
+ * which the background shines.
  */
-function sealed({ position, quads }: BlockMesh): Float32Array {
-  const moved = position.slice();
-  for (let first = 0; first < quads * 12; first += 12) {
-    for (const [one, other] of [[0, 3], [9, 6], [0, 9], [3, 6]] as const) {
-      const edge = [0, 1, 2].map((i) => position[first + other + i]! - position[first + one + i]!);
-      const length = Math.hypot(...edge);
-      if (!isLong(position, first)) continue;
-      edge.forEach((side, i) => {
-        moved[first + one + i]! -= (side / length) * OVER;
-        moved[first + other + i]! += (side / length) * OVER;
-      });
+function outward({ position, quads, facts }: BlockMesh): Int8Array {
+  const ways = new Int8Array(quads * 16);
+  for (let quad = 0; quad < facts.clear_from; quad++) {
+    const edge = (a: number, b: number): Vec3 => {
+      const side = [0, 1, 2].map((i) => position[quad * 12 + b * 3 + i]! - position[quad * 12 + a * 3 + i]!);
+      const length = Math.hypot(...side) || 1;
+      return side.map((v) => (v / length) * 63) as Vec3; // Two of them still fit into a byte.
+    };
+    const one = edge(0, 1);
+    const two = edge(0, 3);
+    for (let i = 0; i < 3; i++) {
+      const [a, b] = [one[i as 0], two[i as 0]];
+      ways.set([-a - b], quad * 16 + i);
+      ways.set([a - b], quad * 16 + 4 + i);
+      ways.set([a + b], quad * 16 + 8 + i);
+      ways.set([b - a], quad * 16 + 12 + i);
     }
   }
-  return moved;
-}
-
-function isLong(position: Float32Array, first: number): boolean {
-  const far = (a: number, b: number): number =>
-    Math.hypot(...[0, 1, 2].map((i) => position[first + a + i]! - position[first + b + i]!));
-  return far(0, 3) > 1.001 || far(0, 9) > 1.001;
+  return ways;
 }
 
 /** Split a quad along the diagonal whose ends are more alike in light, so that corners look round. */

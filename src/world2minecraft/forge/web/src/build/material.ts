@@ -14,6 +14,8 @@ uniform vec3 lampLight;
 uniform vec3 ambient;
 uniform float corner;
 uniform float curve;
+uniform float tall; // of the picture, in pixels
+in vec3 outward;
 out vec2 at;
 flat out float layer;
 out vec3 tint;
@@ -24,7 +26,12 @@ float shine(float level) {
 void main() {
   int facts = int(kind.y + 0.5);
   bool hidden = ((1 << (facts & 255)) & hiddenClasses) != 0 || ((facts >> 8) & hiddenCuts) != 0;
-  gl_Position = hidden ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  vec4 place = modelViewMatrix * vec4(position, 1.0);
+  float pixel = 2.0 * (projectionMatrix * place).w / (projectionMatrix[1][1] * tall);
+  vec3 away = mat3(modelViewMatrix) * outward;
+  float reach = length(away);
+  if (reach > 0.0) place.xyz += away * (max(pixel, 0.0) * 0.12 / reach);
+  gl_Position = hidden ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * place;
   at = uv;
   layer = kind.x;
   vec3 lit = ambient + max(skyLight * shine(light.x), lampLight * shine(light.y));
@@ -67,6 +74,7 @@ export class BlockMaterial {
     ambient: { value: new THREE.Vector3() },
     corner: { value: 0 },
     curve: { value: 0.525 },
+    tall: { value: 1000 },
   };
   readonly solid = this.made(false);
   readonly clear = this.made(true);

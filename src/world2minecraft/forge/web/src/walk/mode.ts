@@ -95,7 +95,7 @@ export class Walking {
     const data = await answer.arrayBuffer();
     if (asked !== this.asked || !this.isOn) return;
     const walker = new Walker(Packet.read(data, "W2MC"));
-    if (this.walker) walker.standAt(this.walker.feet, this.walker);
+    if (this.walker) walker.standAt(this.walker);
     this.walker = walker;
     this.tell();
   }

@@ -6,14 +6,16 @@ import * as THREE from "three";
 import type { Packet } from "../build/packet";
 import type { Pose } from "../view/view";
 import type { Vec3 } from "../wire";
-import { bodyAt, eyeHeight, NO_KEYS, TICKS_PER_S, type Body, type Keys } from "./body";
+import { bodyAt, bodyBox, eyeHeight, NO_KEYS, TICKS_PER_S, type Body, type Box, type Keys } from "./body";
 import { step } from "./physics";
+import { overlapsAny } from "./sweep";
 import { BlockWorld } from "./world";
 
 const TICK_MS = 1000 / TICKS_PER_S;
 const MOST_TICKS = 10; // at once: who slept half a second does not leap
 const FIELD = (70 * Math.PI) / 180; // the game's
 const STEEPEST = 89;
+const LIFTS_M = [0.02, 0.1, 0.25, 0.6, 1.2]; // tried where another world's ground is higher
 const DEEPEST = 200; // blocks a person falls before he is put back
 
 interface Told {
@@ -67,10 +69,13 @@ export class Walker {
     return !still || !this.isStill;
   }
 
-  /** Stand where another walker stands, in metres of the room: the world was made anew. */
-  standAt(feet: Vec3, other: Walker): void {
-    const at = new THREE.Vector3(...feet).applyMatrix4(this.toRoom.clone().invert()).toArray();
-    this.body = this.before = bodyAt(at);
+  /** Stand where another walker stands, or a little higher; at the start where that is taken. */
+  standAt(other: Walker): void {
+    const [x, y, z] = new THREE.Vector3(...other.feet).applyMatrix4(this.toRoom.clone().invert()).toArray();
+    const box = (lift: number): Box => bodyBox([x, y + lift * this.scale, z], this.scale, false);
+    const isFree = (b: Box): boolean => !overlapsAny(this.world.near([b[0], b[1], b[2]], [b[3], b[4], b[5]]), b);
+    const lift = LIFTS_M.find((one) => isFree(box(one)));
+    if (lift !== undefined) this.body = this.before = bodyAt([x, y + lift * this.scale, z]);
     [this.yawDeg, this.pitchDeg] = [other.yawDeg, other.pitchDeg];
   }
 
