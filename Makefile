@@ -22,7 +22,7 @@ ifneq ($(shell $(BIN)/python -c 'print("runs")' 2>/dev/null),runs)
 $(shell rm -f $(STAMP))
 endif
 
-.PHONY: help demo test test-live lint bench setup clean
+.PHONY: help demo forge test test-live lint bench setup clean
 .DEFAULT_GOAL := help
 
 help:  ## Show the targets.
@@ -50,6 +50,9 @@ $(STAMP): pyproject.toml constraints.txt
 
 demo: $(STAMP)  ## Scan the embedded room and build it as a Minecraft world in OUT/.
 	@$(BIN)/python -m world2minecraft.cli demo
+
+forge:  ## Build SceneForge's page from its TypeScript (needs Node 20 and npm).
+	@cd src/world2minecraft/forge/web && npm ci --no-audit --no-fund --silent && npm run --silent build
 
 test: $(STAMP)  ## Run the tests (TESTS=tests/fuse for a part).
 	@$(BIN)/python -m pytest $(TESTS)

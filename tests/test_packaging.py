@@ -4,6 +4,7 @@ import re
 import tomllib
 from importlib import metadata
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 
@@ -57,3 +58,16 @@ def test_every_pinned_package_that_is_installed_has_that_version():
             assert numbers(metadata.version(name)) == numbers(version), name
         except metadata.PackageNotFoundError:
             continue  # Some are for building, or for other systems.
+
+
+def test_the_wheel_holds_the_built_page_and_not_what_it_is_built_of(tmp_path, monkeypatch):
+    building = pytest.importorskip("hatchling.build", reason="hatchling is not installed")
+    monkeypatch.chdir(ROOT)
+    with ZipFile(tmp_path / building.build_wheel(str(tmp_path))) as wheel:
+        names = {name for name in wheel.namelist() if "/forge/" in name}
+    page = {name.partition("/static/")[2] for name in names if "/static/" in name}
+    assert {"index.html", "index.js"} <= page
+    static = ROOT / "src" / "world2minecraft" / "forge" / "static"
+    assert page == {str(one.relative_to(static)) for one in static.rglob("*") if one.is_file()}
+    assert "world2minecraft/forge/app.py" in names
+    assert not [name for name in names if "/web/" in name or "node_modules" in name]

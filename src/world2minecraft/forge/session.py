@@ -18,7 +18,7 @@ from world2minecraft.forge.changes import change_of, preview_of
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.hub import Hub
 from world2minecraft.forge.jobs import Jobs
-from world2minecraft.forge.volumes import volume_bytes
+from world2minecraft.forge.volumes import volume_of
 from world2minecraft.forge.wire import PROTOCOL
 from world2minecraft.types import Operation
 
@@ -148,10 +148,10 @@ class Session:
             self._volumes[what] = (rev, data)
         return rev, data
 
-    def active(self) -> None:
+    async def active(self, actor: str = "") -> None:
         """Note that a person is at work: effort is measured without idling."""
         if self.editor is not None:
-            self.editor.active()
+            await asyncio.to_thread(self.editor.active, actor)  # It waits where a question is on.
 
     def hello(self) -> dict[str, Any]:
         """Return what a tab is told first, and again where it is to begin anew."""
@@ -201,7 +201,8 @@ def _planned(document: Editor, command: Command) -> Operation:
 
 
 def _volume(document: Editor, what: str, zipped: bool) -> tuple[int, bytes]:
-    rev, raw = document.read(lambda: (document.rev, volume_bytes(document.draft, what)))
+    rev, volume = document.read(lambda: (document.rev, volume_of(document.draft, what)))
+    raw = volume.as_bytes()  # Only copying it holds up an edit.
     if not zipped:
         return rev, raw
     packer = zlib.compressobj(1, zlib.DEFLATED, 31)

@@ -73,7 +73,7 @@ async def _do(message: dict[str, Any], tab: Tab, session: Session) -> bool:
     """Do what a message says; return whether it is answered."""
     kind = message.get("type")
     if kind == "active":
-        session.active()
+        await session.active(tab.actor)
         return False
     if kind == "cancel":
         session.jobs.cancel(str(message.get("job")))

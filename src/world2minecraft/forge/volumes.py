@@ -6,6 +6,7 @@ little-endian. Flag 1 says that each cell has three bytes, its colour.
 """
 
 import struct
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,28 +21,39 @@ THREE_A_CELL = 1
 VOLUMES = ("labels", "instance", "confidence", "colour")
 
 
-def volume_bytes(draft: SceneDraft, what: str) -> bytes:
-    """Return the array named ``what``: labels, instance, confidence (0 to 255) or colour.
+@dataclass(frozen=True, eq=False)
+class Volume:
+    """A copy of one array of a scene, with what its header says."""
+
+    values: np.ndarray  # [X, Y, Z], or [X, Y, Z, 3] of a colour
+    voxel_m: float
+    origin_m: np.ndarray  # float64 [3]
+
+    def as_bytes(self) -> bytes:
+        """Return it as ``W2MV``; confidence is 0 to 255 then."""
+        is_share = self.values.dtype == np.float16
+        values = as_bytes(self.values) if is_share else self.values
+        kind = U16 if values.dtype == np.uint16 else U8
+        flags = THREE_A_CELL if values.ndim == 4 else 0
+        place = (*values.shape[:3], self.voxel_m, *map(float, self.origin_m))
+        head = HEADER.pack(MAGIC, VERSION, kind, flags, *place, CLASS_COUNT)
+        return head + values.astype(values.dtype.newbyteorder("<"), copy=False).tobytes()
+
+
+def volume_of(draft: SceneDraft, what: str) -> Volume:
+    """Return a copy of the array named ``what``: labels, instance, confidence or colour.
 
     Raises:
         UnknownNameError: there is no array of that name.
     """
     if what not in VOLUMES:
         raise UnknownNameError("volume", what, VOLUMES)
-    values = as_bytes(draft.confidence) if what == "confidence" else getattr(draft, what)
-    return _packed(draft, values, THREE_A_CELL if what == "colour" else 0)
+    return Volume(getattr(draft, what).copy(), draft.voxel_m, draft.origin_m)
 
 
 def labels_bytes(draft: SceneDraft, labels: np.ndarray) -> bytes:
-    """Return labels uint8 [X, Y, Z] that lie on a scene's cells."""
-    return _packed(draft, labels, 0)
-
-
-def _packed(draft: SceneDraft, values: np.ndarray, flags: int) -> bytes:
-    kind = U16 if values.dtype == np.uint16 else U8
-    corner = (float(value) for value in draft.origin_m)
-    head = (MAGIC, VERSION, kind, flags, *draft.shape, draft.voxel_m, *corner, CLASS_COUNT)
-    return HEADER.pack(*head) + values.astype(values.dtype.newbyteorder("<"), copy=False).tobytes()
+    """Return labels uint8 [X, Y, Z] that lie on a scene's cells, as ``W2MV``."""
+    return Volume(labels, draft.voxel_m, draft.origin_m).as_bytes()
 
 
 def as_bytes(confidence: np.ndarray) -> np.ndarray:
