@@ -70,7 +70,7 @@ def slowly_smoothed(labels):
     for cell in map(tuple, np.argwhere(labels < 255).tolist()):
         near = [label for _, label in around(labels, cell, AROUND) if 5 <= label < 255]
         faces = [there for there, label in around(labels, cell, FACES) if 0 < label < 255]
-        if labels[cell] == 0 and len(near) > 13:
+        if labels[cell] == 0 and len(near) >= 17:
             result[cell] = min(set(near), key=lambda one: (-near.count(one), one))
         if labels[cell] >= 5:
             near.append(int(labels[cell]))
@@ -93,6 +93,17 @@ def test_smoothing_is_a_majority_of_neighbours(seed):
     assert np.array_equal(result, slowly_smoothed(labels))
     kept = (labels == 3) | (labels == 255)
     assert (result[kept] == labels[kept]).all() and not ((result == 3) & ~kept).any()
+
+
+def test_smoothing_fills_pits_and_leaves_inner_edges():
+    labels = np.zeros((9, 9, 9), np.uint8)
+    labels[:, :, :3] = 7  # A seat
+    labels[:, :3, 3:] = 7  # and its back; between them nine cells touch fifteen.
+    labels[5, 6, 2] = 0
+    result = smoothed(labels)
+    assert result[5, 6, 2] == 7
+    result[5, 6, 2] = 0
+    assert np.array_equal(result, labels)
 
 
 def test_smoothing_takes_bumps_and_leaves_legs():
@@ -224,6 +235,25 @@ def test_a_named_gap_is_filled_alone_even_a_door():
     draft = box_draft(labels)
     filled(draft, "wall:3", cell=[25, 0, 10])
     assert (draft.labels[DOOR] == 3).all() and draft.labels[5, 0, 5] == 0
+
+
+def test_rooms_that_share_a_wall_have_planes_of_their_own_and_keep_their_doors():
+    labels = np.concatenate([box_room(), box_room()[1:]], axis=0)
+    labels[:, 44] = np.where(labels[:, 44] == 0, 3, labels[:, 44])
+    labels[49, 10:20, 1:27] = 0  # A door between them,
+    labels[49, 30:32, 5:9] = 0  # a hole in the wall that they share,
+    labels[70:73, 20:24, 0] = 0  # and one in the floor of the second.
+    draft = box_draft(labels)
+    planes = {one.name: one for one in find_planes(draft)}
+    assert [(one.axis, one.layer) for one in planes.values()] == [
+        (2, 0), (2, 33), (0, 0), (0, 49), (0, 98), (1, 0), (1, 44),
+    ]  # fmt: skip
+    assert (
+        filled(draft, "wall:2").cells.tolist()
+        == np.argwhere(np.pad(np.ones((1, 2, 4)), ((49, 49), (30, 13), (5, 25)))).tolist()
+    )
+    assert len(filled(draft, "floor").cells) == 12
+    assert (draft.labels[49, 10:20, 1:27] == 0).all()
 
 
 def test_a_wall_that_bends_is_filled_where_it_is():

@@ -2,8 +2,8 @@
 
 Each cell looks at the 26 around it. A cell of furniture takes the class of most furniture cells
 there, itself counted, where that is more than half of them. A cell that was seen to be empty is
-filled with that class where more than half of its neighbours are furniture. A bump goes: a cell
-that holds to one face alone, of a cell that holds to four others; ends of legs and rims stay.
+filled with that class where 17 of its neighbours are furniture: a pit in a surface. A bump goes: a
+cell that holds to one face alone, of a cell that holds to four others; ends of legs and rims stay.
 Walls, floors, ceilings, windows and unseen cells stay as they are.
 """
 
@@ -13,6 +13,7 @@ from scipy import ndimage
 from world2minecraft.classes import OBJECT_CLASSES
 
 FLAT_FACES = 4  # So many other faces has a cell within a sheet.
+PIT = 17  # Of 26: one below a flat surface. An inner edge, as of seat and back, has 15 and stays.
 
 
 def smoothed(labels: np.ndarray) -> np.ndarray:
@@ -25,7 +26,7 @@ def smoothed(labels: np.ndarray) -> np.ndarray:
     result = labels.copy()
     changes = furniture & (2 * most > total)
     result[changes] = commonest[changes]
-    filled = (labels == 0) & (total > 13)
+    filled = (labels == 0) & (total >= PIT)
     result[filled] = commonest[filled]
     result[furniture & _bumps((labels > 0) & (labels < 255))] = 0
     return result
