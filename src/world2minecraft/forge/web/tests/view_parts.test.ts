@@ -6,8 +6,10 @@ import { capQuads } from "../src/view/caps";
 import { arrowCorners } from "../src/view/balls";
 import { boxEdges } from "../src/view/markers";
 import { facesOfCells } from "../src/view/overlay";
+import { pickCell } from "../src/view/pick";
 import { cellsInPolygon, inPolygon, type Point } from "../src/view/regions";
 import { seenOf } from "../src/view/seen";
+import { Sight } from "../src/view/sight";
 import { cellOf, changedCells, flatOf, isOccupied, runsOf } from "../src/view/volume";
 import { writeRuns } from "../src/changes";
 import { Store } from "../src/store";
@@ -131,14 +133,35 @@ describe("regions of the screen", () => {
     for (const z of [0, 1, 2, 4, 5]) labels[flatOf(SHAPE, 3, 3, z)] = 5;
     const seen = seenOf(view(), SHAPE);
     const chosen = (limit: "surface" | "through" | number) =>
-      cellsInPolygon({ labels, shape: SHAPE }, seen, square, limit, ([x, y]) => [x, y], (cell) => ({
-        from: [cell[0], cell[1], 100],
+      cellsInPolygon({ labels, shape: SHAPE }, seen, square, limit, ([x, y]) => [x, y], (x, y) => ({
+        from: [x, y, 100],
         direction: [0, 0, -1],
       })).map((flat) => cellOf(SHAPE, flat)[2]);
     expect(chosen("surface")).toEqual([5]);
     expect(chosen(1)).toEqual([4, 5]);
     expect(chosen(2)).toEqual([2, 4, 5]);
     expect(chosen("through")).toEqual([0, 1, 2, 4, 5]);
+  });
+
+  it("of the surface are the cells that rays through their pixels meet", () => {
+    const sight = new Sight({ target: [5, 4, 4], azimuth: -2, elevation: 0.6, distance: 30, ortho: false });
+    sight.resize(400, 300);
+    const labels = someScene(SHAPE, 33, 0.02);
+    const seen = seenOf(view(), SHAPE);
+    const volume = { labels, shape: SHAPE };
+    const whole: Point[] = [[0, 0], [400, 0], [400, 300], [0, 300]];
+    const flats = cellsInPolygon(volume, seen, whole, "surface", sight.projector(), (x, y) => sight.ray(x, y));
+    const met = new Set<number>();
+    for (let y = 1; y < 300; y += 2)
+      for (let x = 1; x < 400; x += 2) {
+        const { from, direction } = sight.ray(x, y);
+        const hit = pickCell(volume, seen, from, direction);
+        if (hit) met.add(hit.flat);
+      }
+    expect(flats).toEqual([...met].sort((a, b) => a - b));
+    const through = cellsInPolygon(volume, seen, whole, "through", sight.projector(), (x, y) => sight.ray(x, y));
+    expect(through.length).toBe(labels.filter(isOccupied).length);
+    expect(flats.length).toBeLessThan(through.length);
   });
 
   it("leave out what is hidden or cut away", () => {

@@ -13,6 +13,7 @@ import type { Vec3 } from "../wire";
 
 const SYNCHRONOUS = 12; // Chunks meshed at once; more go to the workers.
 const MANY = 64; // Missing chunks from which on a rough picture comes first.
+const BITS = Math.log2(CHUNK);
 const SPHERE = (CHUNK / 2) * Math.sqrt(3);
 
 /** Where a frame is seen from, in cells. */
@@ -192,14 +193,22 @@ export class Chunks {
       found.add((x * ny + y) * nz + z);
     };
     for (const flat of flats) {
-      const cell = [Math.floor(flat / (Y * Z)), Math.floor(flat / Z) % Y, flat % Z];
-      const at = cell.map((value) => Math.floor(value / CHUNK)) as Vec3;
-      add(...at);
-      cell.forEach((value, axis) => {
-        const side = value % CHUNK === 0 ? -1 : value % CHUNK === CHUNK - 1 ? 1 : 0;
-        if (side) add(...(at.map((n, i) => (i === axis ? n + side : n)) as Vec3));
-      });
+      const z = flat % Z;
+      const row = (flat - z) / Z;
+      const y = row % Y;
+      const x = (row - y) / Y;
+      const [cx, cy, cz] = [x >> BITS, y >> BITS, z >> BITS];
+      add(cx, cy, cz);
+      if (sideOf(x)) add(cx + sideOf(x), cy, cz);
+      if (sideOf(y)) add(cx, cy + sideOf(y), cz);
+      if (sideOf(z)) add(cx, cy, cz + sideOf(z));
     }
     return found;
   }
+}
+
+/** -1 or 1 for the first and last cell of a chunk along an axis: the neighbour's mesh sees it. */
+function sideOf(at: number): -1 | 0 | 1 {
+  const within = at & (CHUNK - 1);
+  return within === 0 ? -1 : within === CHUNK - 1 ? 1 : 0;
 }

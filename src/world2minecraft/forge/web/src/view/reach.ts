@@ -62,14 +62,13 @@ export class Reach {
     const { scene } = this.store.get();
     if (!scene || !this.labels.length || polygon.length < 3) return [];
     const { origin_m: origin, voxel_m: voxel, shape } = scene;
-    const eye = this.inCells(this.sight.eye);
-    const { back } = this.sight.axes;
-    const project = (cell: Vec3) => this.sight.project(cell.map((c, i) => origin[i]! + c * voxel) as Vec3);
-    const rayTo = (cell: Vec3) => {
-      const from = this.sight.isParallel ? (cell.map((c, i) => c + back[i]! * 1e4) as Vec3) : eye;
-      return { from, direction: cell.map((c, i) => c - from[i]!) as Vec3 };
+    const toPixels = this.sight.projector();
+    const project = (cell: Vec3) => toPixels(cell.map((c, i) => origin[i]! + c * voxel) as Vec3);
+    const rayOf = (x: number, y: number) => {
+      const { from, direction } = this.sight.ray(x, y);
+      return { from: this.inCells(from), direction };
     };
-    return cellsInPolygon({ labels: this.labels, shape }, this.seen(), polygon, limit, project, rayTo);
+    return cellsInPolygon({ labels: this.labels, shape }, this.seen(), polygon, limit, project, rayOf);
   }
 
   /** Whether drawn cells of others than the object at a point, in metres, hide it. */

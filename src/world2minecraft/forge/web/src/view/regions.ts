@@ -1,6 +1,5 @@
 // Which cells lie behind a shape drawn on the screen.
 
-import { plus } from "./camera";
 import { walkRay, type Seen } from "./pick";
 import { isOccupied, type Volume } from "./volume";
 import type { Vec3 } from "../wire";
@@ -23,10 +22,10 @@ export function inPolygon([x, y]: Point, polygon: readonly Point[]): boolean {
 }
 
 /**
- * Flat numbers of the drawn cells whose middle the polygon covers.
+ * Flat numbers of the drawn cells that a polygon covers.
  *
- * "through" takes all of them. Otherwise a cell counts that can be seen from the camera, or that
- * has at most `limit` occupied cells between it and what is seen first: found by the ray to it.
+ * "through" takes all whose middle lies in it. Otherwise rays go through its pixels, and each takes
+ * the first cell that it meets and `limit` occupied cells more behind it.
  */
 export function cellsInPolygon(
   volume: Volume,
@@ -34,57 +33,50 @@ export function cellsInPolygon(
   polygon: readonly Point[],
   limit: DepthLimit,
   project: Project,
-  rayTo: (cell: Vec3) => { from: Vec3; direction: Vec3 },
+  rayOf: RayOf,
 ): number[] {
+  if (limit === "through") return cellsThrough(volume, seen, polygon, project);
   const { labels, shape } = volume;
+  const more = limit === "surface" ? 0 : limit;
+  const found = new Set<number>();
+  const [low, high] = boundsOf(polygon);
+  for (let y = low[1] + RAY_PX / 2; y < high[1]; y += RAY_PX)
+    for (let x = low[0] + RAY_PX / 2; x < high[0]; x += RAY_PX) {
+      if (!inPolygon([x, y], polygon)) continue;
+      const { from, direction } = rayOf(x, y);
+      let left = more;
+      walkRay(seen, from, direction, (cell) => {
+        const flat = (cell[0] * shape[1] + cell[1]) * shape[2] + cell[2];
+        const label = labels[flat]!;
+        if (!isOccupied(label) || !seen.visible[label]) return false;
+        found.add(flat);
+        return left-- <= 0;
+      });
+    }
+  return [...found].sort((a, b) => a - b);
+}
+
+const RAY_PX = 2; // between rays: what shows fewer pixels may be missed
+
+function cellsThrough(
+  { labels, shape }: Volume,
+  seen: Seen,
+  polygon: readonly Point[],
+  project: Project,
+): number[] {
   const found: number[] = [];
-  const bounds = boundsOf(polygon);
-  const behind = limit === "through" ? Infinity : limit === "surface" ? 0 : limit;
+  const [low, high] = boundsOf(polygon);
   for (let x = seen.low[0]; x < seen.high[0]; x++)
     for (let y = seen.low[1]; y < seen.high[1]; y++)
       for (let z = seen.low[2]; z < seen.high[2]; z++) {
         const flat = (x * shape[1] + y) * shape[2] + z;
         const label = labels[flat]!;
         if (!isOccupied(label) || !seen.visible[label]) continue;
-        const middle: Vec3 = [x + 0.5, y + 0.5, z + 0.5];
-        const at = project(middle);
-        if (!at || !within(at, bounds) || !inPolygon(at, polygon)) continue;
-        if (behind === Infinity || reached(volume, seen, flat, middle, behind, rayTo)) found.push(flat);
+        const at = project([x + 0.5, y + 0.5, z + 0.5]);
+        if (!at || at[0] < low[0] || at[1] < low[1] || at[0] > high[0] || at[1] > high[1]) continue;
+        if (inPolygon(at, polygon)) found.push(flat);
       }
   return found;
-}
-
-/** Surface cells are often seen only past a corner: rays go to the sides of the cell as well. */
-const AIMS: readonly Vec3[] = [
-  [0, 0, 0],
-  [0.45, 0, 0],
-  [-0.45, 0, 0],
-  [0, 0.45, 0],
-  [0, -0.45, 0],
-  [0, 0, 0.45],
-  [0, 0, -0.45],
-];
-
-function reached(
-  { labels, shape }: Volume,
-  seen: Seen,
-  flat: number,
-  middle: Vec3,
-  behind: number,
-  rayTo: (cell: Vec3) => { from: Vec3; direction: Vec3 },
-): boolean {
-  return AIMS.some((aim) => {
-    const { from, direction } = rayTo(plus(middle, aim, 1));
-    let passed = 0;
-    let there = false;
-    walkRay(seen, from, direction, (cell) => {
-      const at = (cell[0] * shape[1] + cell[1]) * shape[2] + cell[2];
-      if (at === flat) there = true;
-      else if (isOccupied(labels[at]!) && seen.visible[labels[at]!]) passed += 1;
-      return there || passed > behind;
-    });
-    return there;
-  });
 }
 
 function boundsOf(polygon: readonly Point[]): [Point, Point] {
@@ -94,8 +86,4 @@ function boundsOf(polygon: readonly Point[]): [Point, Point] {
     [Math.min(...xs), Math.min(...ys)],
     [Math.max(...xs), Math.max(...ys)],
   ];
-}
-
-function within([x, y]: Point, [low, high]: [Point, Point]): boolean {
-  return x >= low[0] && y >= low[1] && x <= high[0] && y <= high[1];
 }

@@ -3,7 +3,7 @@
 
 import * as THREE from "three";
 
-import { axesOf, between, dot, eyeOf, FIELD, halfHeight, plus, rayAt, type Orbit } from "./camera";
+import { axesOf, between, eyeOf, FIELD, halfHeight, plus, rayAt, type Orbit } from "./camera";
 import type { Vec3 } from "../wire";
 
 /** A camera that stands where it is told: of a photo, or of someone who walks. */
@@ -115,12 +115,22 @@ export class Sight {
 
   /** Where a point in metres is, in pixels from the top left; null: behind the camera. */
   project(point: Vec3): [number, number] | null {
+    return this.projector()(point);
+  }
+
+  /** As project, for many points. */
+  projector(): (point: Vec3) => [number, number] | null {
+    const { eye, isParallel, wide, tall } = this;
     const { back, right, up } = this.axes;
-    const from = plus(point, this.eye, -1);
-    const deep = -dot(from, back);
-    if (!this.isParallel && deep <= 1e-6) return null;
-    const scale = this.pixels(deep);
-    return [this.wide / 2 + dot(from, right) * scale, this.tall / 2 - dot(from, up) * scale];
+    const unit = this.pixels(1);
+    return (point) => {
+      const [x, y, z] = [point[0] - eye[0], point[1] - eye[1], point[2] - eye[2]];
+      const deep = -(x * back[0] + y * back[1] + z * back[2]);
+      if (!isParallel && deep <= 1e-6) return null;
+      const scale = isParallel ? unit : unit / deep;
+      const across = x * right[0] + y * right[1] + z * right[2];
+      return [wide / 2 + across * scale, tall / 2 - (x * up[0] + y * up[1] + z * up[2]) * scale];
+    };
   }
 
   /** three.js's camera, placed. */

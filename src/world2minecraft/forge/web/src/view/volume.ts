@@ -42,10 +42,18 @@ export function runsOf(flats: Iterable<number>): Run[] {
 /** Flat numbers of the cells that differ; `into` is made equal. */
 export function changedCells(into: Uint8Array, now: Uint8Array): number[] {
   const found: number[] = [];
-  for (let flat = 0; flat < now.length; flat++) {
-    if (into[flat] === now[flat]) continue;
-    found.push(flat);
-    into[flat] = now[flat]!;
+  const four = now.byteOffset % 4 === 0 && into.byteOffset % 4 === 0 ? now.length >> 2 : 0;
+  const [old, fresh] = [into, now].map((bytes) => new Uint32Array(bytes.buffer, four && bytes.byteOffset, four));
+  const compare = (from: number, to: number) => {
+    for (let flat = from; flat < to; flat++) {
+      if (into[flat] === now[flat]) continue;
+      found.push(flat);
+      into[flat] = now[flat]!;
+    }
+  };
+  for (let word = 0; word < four; word++) {
+    if (old![word] !== fresh![word]) compare(4 * word, 4 * word + 4);
   }
+  compare(4 * four, now.length);
   return found;
 }
