@@ -23,7 +23,8 @@ def labels_of_file(path: Path, draft: SceneDraft) -> np.ndarray:
     A cell takes the label at its centre, 255 where the file does not reach.
 
     Raises:
-        InputError: it is no occupancy file. UsageError: it lies beside the scene, or has larger cells.
+        InputError: it is no occupancy file.
+        UsageError: it lies beside the scene, or has larger cells.
     """
     return labels_in_cells(read_occupancy(path), draft)
 

@@ -81,7 +81,7 @@ async def _all(request: Request) -> Response:
             "scale": USUAL_SCALE,
             "styles": list(STYLES),
             "known": known,
-            "is_open": shop.session.editor is not None,
+            "wanted": shop.wanted,
         }
     )
 

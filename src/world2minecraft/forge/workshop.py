@@ -53,6 +53,7 @@ class Workshop:
         self._lock = threading.Lock()
         self.captures = Captures(home, most_bytes)
         self.jobs = session.jobs
+        self.wanted: str | None = None  # The capture that the start page shows first.
         self.working: dict[str, str] = {}  # The job of a capture, by the capture's id.
 
     @property

@@ -6,6 +6,8 @@ import "./style_stage.css";
 import "./style_panels.css";
 import "./style_build.css";
 import { builderOf, registerBuild } from "./build/mode";
+import "./style_start.css";
+import { registerStart } from "./start/page";
 import { Store } from "./store";
 import { startApp } from "./ui/app";
 import { h } from "./ui/dom";
@@ -21,6 +23,7 @@ registerEditing();
 registerHints();
 registerBuild();
 registerWalk();
+registerStart();
 
 void startApp(host, store, (canvas) => new SceneView(canvas, store)).then((app) => {
   const { view, connection } = app;

@@ -1,5 +1,7 @@
 // All that the page says, in one place, ready for another language.
 
+import { COMPARE_TEXT, EXPORT_TEXT, PHOTO_TEXT, START_TEXT } from "./text_start";
+
 const CLASS_WORDS = [
   "empty", "ceiling", "floor", "wall", "window", "chair",
   "bed", "sofa", "table", "tvs", "furn", "objs",
@@ -7,6 +9,10 @@ const CLASS_WORDS = [
 
 export const TEXT = {
   compass: ["Right", "Back", "Top", "Left", "Front", "Bottom"], // sides +x +y +z -x -y -z
+  start: START_TEXT,
+  photos: PHOTO_TEXT,
+  compare: COMPARE_TEXT,
+  exports: EXPORT_TEXT,
   app: "SceneForge",
   classes: CLASS_WORDS,
   groups: {

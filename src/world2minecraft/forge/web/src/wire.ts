@@ -113,6 +113,7 @@ export interface JobState {
   stage: string;
   done: number;
   total: number; // 0: unknown
+  share?: number | null; // of the whole job, 0 .. 1
   left_s: number | null;
   note: string;
   state: "running" | "done" | "failed" | "cancelled";

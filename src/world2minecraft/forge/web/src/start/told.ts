@@ -1,0 +1,49 @@
+// What the server tells the start page; forge/start.py says the same.
+
+export interface Doubt {
+  level: "ok" | "warn" | "stop";
+  text: string;
+  advice: string;
+}
+
+export interface Survey {
+  kind: "frames" | "plan";
+  called: string;
+  lines: [string, string][];
+  doubts: Doubt[];
+  can_start: boolean;
+  about_s: number;
+  has_scale: boolean;
+}
+
+export interface CaptureTold {
+  id: string;
+  title: string;
+  files: number;
+  bytes: number;
+  elsewhere: string;
+  complete: boolean;
+  has_room: boolean;
+  job: string | null;
+  survey: Survey | null;
+}
+
+export interface StartTold {
+  home: string;
+  captures: CaptureTold[];
+  recent: { id: string; name: string; folder: string }[];
+  demos: string[];
+  most_bytes: number;
+  chunk_bytes: number;
+  scales: number[];
+  scale: number;
+  styles: string[];
+  known: Record<string, [number, number]>;
+  wanted: string | null; // the capture that the server was started with
+}
+
+export interface Choice {
+  blocks_per_metre: number;
+  style: string;
+  known: [string, number] | null;
+}
