@@ -13,7 +13,7 @@ from starlette.staticfiles import StaticFiles
 
 from world2minecraft.edit.scene import COMMANDS
 from world2minecraft.errors import World2MinecraftError
-from world2minecraft.forge import compare_routes, photo_routes, start
+from world2minecraft.forge import compare_routes, export_routes, photo_routes, start
 from world2minecraft.forge.build_routes import build_routes
 from world2minecraft.forge.failures import explained
 from world2minecraft.forge.guard import Guard
@@ -44,6 +44,7 @@ def build_app(
             *start.routes(),
             *photo_routes.routes(),
             *compare_routes.routes(),
+            *export_routes.routes(),
             Mount("/", StaticFiles(directory=STATIC, html=True)),
         ],
         middleware=[guard, Middleware(BodyLimit)],

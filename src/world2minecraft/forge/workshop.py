@@ -1,7 +1,10 @@
 """What stands around the document: jobs, captures, and the rooms that were open before."""
 
 import asyncio
+import tempfile
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +15,7 @@ from world2minecraft.files import read_json, write_json
 from world2minecraft.forge.captures import MOST_UPLOAD_BYTES, CaptureFolder, Captures
 from world2minecraft.forge.comparing import truth_folder
 from world2minecraft.forge.editor import Editor
+from world2minecraft.forge.exports import snapshot
 from world2minecraft.forge.photos import RunPhotos, find_capture_of, read_photos
 from world2minecraft.forge.session import NO_ROOM, Session
 
@@ -51,6 +55,7 @@ class Workshop:
         self._capture = capture
         self._photos: tuple[Editor, RunPhotos] | None = None
         self._lock = threading.Lock()
+        self._exports: tempfile.TemporaryDirectory[str] | None = None
         self.captures = Captures(home, most_bytes)
         self.jobs = session.jobs
         self.wanted: str | None = None  # The capture that the start page shows first.
@@ -70,9 +75,26 @@ class Workshop:
     async def open(self, source: Path) -> None:
         """Open a room in the place of what is open; every tab begins anew."""
         editor = await asyncio.to_thread(Editor.open, source)
+        for one in self.captures.all():
+            if one.run == source:
+                editor.name = one.title
         self._capture, self._photos, self.compared = None, None, None
         await self.session.show(editor)
         self.remember(source)
+
+    @property
+    def exports(self) -> Path:
+        """The folder of what was exported; it goes with the server."""
+        if self._exports is None:
+            self._exports = tempfile.TemporaryDirectory(prefix="w2m-exports-")
+        return Path(self._exports.name)
+
+    @contextmanager
+    def snapshot(self, editor: Editor) -> Iterator[Path]:
+        """Give a folder with the scene as it is now; it is gone afterwards."""
+        with tempfile.TemporaryDirectory(prefix="w2m-scene-") as scratch:
+            snapshot(editor, Path(scratch))
+            yield Path(scratch)
 
     @property
     def run(self) -> Path:

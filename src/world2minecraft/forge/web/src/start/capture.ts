@@ -7,7 +7,7 @@ import { plainButton } from "../ui/fields";
 import type { JobState } from "../wire";
 import { forget, getJson, said, sendJson } from "./api";
 import { makeChoices } from "./choices";
-import { foundView } from "./found";
+import { foundBody, foundHead } from "./found";
 import type { CaptureTold, StartTold } from "./told";
 
 export interface Jobs {
@@ -16,13 +16,14 @@ export interface Jobs {
 }
 
 /** Show a capture in `host` until `leave` is called. Returns what ends it. */
-export function showCapture(host: HTMLElement, id: string, told: StartTold, jobs: Jobs, leave: () => void): () => void {
+export function showCapture(host: HTMLElement, id: string, told: StartTold, jobs: Jobs, leave: () => void, changed: () => void): () => void {
   const words = TEXT.start;
   const title = h("h2", {});
   const body = h("div", { class: "capture-body" });
   const trouble = h("p", { class: "trouble", role: "alert", hidden: true });
   const back = plainButton(words.back, leave, "button back");
   fill(host, h("div", { class: "capture-head" }, back, title), trouble, body);
+  let looked: CaptureTold | null = null; // Its picture stays in view while the room is made.
   let working: { id: string; line: ProgressLine; making: boolean } | null = null;
 
   const complain = (text: string): void => {
@@ -33,8 +34,9 @@ export function showCapture(host: HTMLElement, id: string, told: StartTold, jobs
   const watch = (job: string, name: string, making: boolean): void => {
     const line = progressLine(name, () => jobs.cancel(job));
     working = { id: job, line, making };
-    fill(body, line.node);
+    fill(body, line.node, looked && foundBody(looked, looked.survey!));
     complain("");
+    changed();
   };
 
   const ask = async (path: string, what: unknown, name: string, making: boolean): Promise<void> => {
@@ -84,6 +86,8 @@ export function showCapture(host: HTMLElement, id: string, told: StartTold, jobs
       return;
     }
     title.textContent = one.title;
+    looked = one.survey ? one : null;
+    if (!one.job) changed();
     if (one.job) {
       watch(one.job, one.survey ? words.making : words.looking, Boolean(one.survey));
       await catchUp(one.job);
@@ -109,8 +113,10 @@ export function showCapture(host: HTMLElement, id: string, told: StartTold, jobs
     const openIt = one.has_room && plainButton(words.open, () => void open(), "button is-large");
     fill(
       body,
-      survey && foundView(one, survey),
-      h("div", { class: "capture-side" }, choices?.node, h("div", { class: "row" }, survey && start, openIt), remover(id, leave, complain)),
+      survey && foundHead(survey),
+      choices?.node,
+      h("div", { class: "row" }, survey && start, openIt, remover(id, leave, complain)),
+      survey && foundBody(one, survey),
     );
     show();
   };

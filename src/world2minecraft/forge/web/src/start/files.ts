@@ -10,6 +10,7 @@ const MOST_FILES = 25_000; // A little over what the server takes, so that it sa
 /** All files of a drop; folders are walked through. Call it within the event. */
 export async function filesOfDrop(data: DataTransfer): Promise<Given[]> {
   const entries = [...data.items].map((item) => item.webkitGetAsEntry()).filter((one) => one !== null);
+  if (!entries.length) return [...data.files].map((file) => ({ path: file.name, file }));
   const found: Given[] = [];
   for (const entry of entries) await walk(entry, found);
   return found;

@@ -9,24 +9,28 @@ import type { CaptureTold, Doubt, Survey } from "./told";
 const MARKS = { ok: "check", warn: "warn", stop: "close" } as const;
 const WORST_FIRST = ["stop", "warn", "ok"];
 
-export function foundView(one: CaptureTold, survey: Survey): HTMLElement {
-  const facts = survey.lines.map(([name, text]) => [h("dt", {}, name), h("dd", {}, text)]).flat();
+/** What it is, and what to mind. */
+export function foundHead(survey: Survey): HTMLElement {
   const doubts = [...survey.doubts]
     .sort((a, b) => WORST_FIRST.indexOf(a.level) - WORST_FIRST.indexOf(b.level))
     .map(doubtRow);
-  const picture =
-    survey.kind === "frames" &&
-    h("a", { class: "found-picture", href: pictureOf(one.id), target: "_blank", rel: "noopener" },
-      h("img", { src: pictureOf(one.id), alt: survey.called, width: 1600, height: 1040 }));
   return h(
     "section",
-    { class: "found", "aria-label": TEXT.start.found },
+    { class: "survey", "aria-label": TEXT.start.found },
     h("h3", {}, TEXT.start.found),
-    h("p", { class: "found-called" }, `${survey.called}, ${TEXT.start.about(timeOf(survey.about_s))}`),
+    h("p", { class: "survey-called" }, `${survey.called}, ${TEXT.start.about(timeOf(survey.about_s))}`),
     doubts.length > 0 && h("ul", { class: "doubts" }, ...doubts),
-    picture,
-    h("dl", { class: "facts" }, ...facts),
   );
+}
+
+/** Its picture and its facts. */
+export function foundBody(one: CaptureTold, survey: Survey): HTMLElement {
+  const facts = survey.lines.map(([name, text]) => [h("dt", {}, name), h("dd", {}, text)]).flat();
+  const picture =
+    survey.kind === "frames" &&
+    h("a", { class: "survey-picture", href: pictureOf(one.id), target: "_blank", rel: "noopener" },
+      h("img", { src: pictureOf(one.id), alt: survey.called, width: 1600, height: 1040 }));
+  return h("section", { class: "survey" }, picture, h("dl", { class: "facts" }, ...facts));
 }
 
 function doubtRow(doubt: Doubt): HTMLElement {

@@ -94,7 +94,7 @@ class StartPage {
       this.showDrop();
       void this.refresh();
     };
-    this.leave = showCapture(this.main, id, this.told, this.jobs, back);
+    this.leave = showCapture(this.main, id, this.told, this.jobs, back, () => void this.refresh());
   }
 
   private async take(given: readonly Given[]): Promise<void> {
