@@ -1,8 +1,10 @@
 """What is too large, too deep or no number: refused over HTTP and websocket, at once."""
 
 import gzip
+import io
 import json
 import socket
+import zipfile
 import zlib
 
 import pytest
@@ -174,3 +176,38 @@ def test_brackets_in_strings_are_no_depth():
 def test_the_server_is_well_after_all_this(server):
     with client(server) as script:
         assert script.get("/api/scene", headers=bearer(server)).json()["rev"] == 0
+
+
+def npz_bomb() -> bytes:
+    """An archive of 0.3 MB that holds 300 MB."""
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("labels.npy", b"\x93NUMPY" + b"\0" * (300 << 20))
+    return made.getvalue()
+
+
+def npy_of(shape: str) -> bytes:
+    """An array that says it is larger than the file."""
+    text = f"{{'descr': '|u1', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
+    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode()
+
+
+FILES = [
+    ("bomb.npz", npz_bomb),
+    ("huge.npy", lambda: npy_of("(100000, 100000, 100000)")),
+    ("pickle.npy", lambda: npy_of("(1,)").replace(b"|u1", b"|O ")),
+    ("deep.json", DEEP.encode),
+    ("nan.json", lambda: b'{"voxels": [[NaN, 1, 2, 3]], "voxel_size": 0.08, "shape": [9, 9, 9]}'),
+    ("shape.json", lambda: b'{"shape": [100000, 100000, 100000], "voxels": [], "voxel_m": 0.08}'),
+    ("name.exe", lambda: b"MZ"),
+    ("../../up.npy", lambda: npy_of("(1, 1, 1)")),
+    ("empty.npz", lambda: b""),
+]
+
+
+@pytest.mark.parametrize(("name", "made"), FILES, ids=[name for name, _ in FILES])
+def test_a_file_that_is_a_bomb_is_refused_with_a_line(server, name, made):
+    with client(server) as script:
+        answer = script.post("/api/upload/compare", params={"name": name}, content=made())
+        assert answer.status_code == 400, answer.text
+        assert 0 < len(answer.json()["error"]) < 400 and "/tmp" not in answer.text

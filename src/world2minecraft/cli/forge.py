@@ -26,6 +26,10 @@ def run(
     port: Annotated[
         int | None, typer.Option("--port", min=0, max=65535, help="8484, or any that is free.")
     ] = None,
+    allow_host: Annotated[
+        list[str] | None,
+        typer.Option("--allow-host", help="A further name of this machine; may be given again."),
+    ] = None,
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Print the link, and open nothing.")
     ] = False,
@@ -41,6 +45,7 @@ def run(
         demo: whether to open the demo room.
         host: the address to listen on.
         port: the port to listen on.
+        allow_host: names, beside addresses and localhost, that a browser may call it by.
         no_browser: whether to open no browser.
 
     Raises:
@@ -54,7 +59,7 @@ def run(
     if demo and source is not None:
         raise UsageError("--demo is a room of its own; leave out the file, or --demo")
     editor = Editor.open(source) if demo or source else None
-    server = ForgeServer(editor, host=host, port=port)
+    server = ForgeServer(editor, host=host, port=port, hosts=allow_host or ())
     if server.is_open:
         print(
             f"warning: whoever reaches {host} and has the link can edit, and nothing is "
