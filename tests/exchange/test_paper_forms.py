@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.errors import DamagedFileError, LimitError
-from world2minecraft.exchange.paper import write_occ_json
+from world2minecraft.exchange.paper import _lines, write_occ_json
 from world2minecraft.exchange.paper_forms import CELLS, METRES, read_any_centers, read_any_occ
 
 CELLS_OF = [[0, 0, 0, 2], [1, 0, 0, 2], [1, 2, 3, 5], [4, 1, 0, 11]]
@@ -160,3 +160,9 @@ def test_whatever_is_given_is_read_or_told(tmp_path_factory, value):
     except (DamagedFileError, LimitError):
         return
     assert grid.labels.size
+
+
+@given(st.integers(1, 12345), st.integers(1, 40), st.integers(0, 99))
+def test_rows_are_written_as_plain_text(most, count, seed):
+    rows = np.random.default_rng(seed).integers(0, most, (count, 4))
+    assert _lines(rows) == "".join(f"[{x},{y},{z},{c}],\n" for x, y, z, c in rows.tolist())

@@ -21,19 +21,39 @@ from world2minecraft.files import read_json, write_text
 from world2minecraft.types import OBSERVED, ObjectInstance, OccupancyGrid
 
 MAX_CELLS = 200_000_000
+_CHUNK = 1 << 18  # Rows that are made into text at once.
 
 
 def write_occ_json(path: str | Path, grid: OccupancyGrid) -> None:
     """Write the occupied cells of a grid, one voxel a line."""
     cells = np.argwhere(grid.occupied)
-    rows = np.column_stack([cells, grid.labels[tuple(cells.T)]]).tolist()
+    rows = np.column_stack([cells, grid.labels[tuple(cells.T)]])
     head = (
         f'"format":"world2minecraft/occ","version":1,"voxel_m":{grid.voxel_m},'
         f'"origin_m":{[round(float(v), 6) for v in grid.origin_m]},"shape":{list(grid.shape)},'
         f'"classes":{list(CLASS_NAMES)}'
     ).replace("'", '"')
-    voxels = ",\n".join(f"[{x},{y},{z},{c}]" for x, y, z, c in rows)
+    parts = (_lines(rows[at : at + _CHUNK]) for at in range(0, len(rows), _CHUNK))
+    voxels = "".join(parts).removesuffix(",\n")
     write_text(path, f'{{{head},"voxels":[\n{voxels}\n]}}\n')
+
+
+def _lines(rows: np.ndarray) -> str:
+    """Return ``[x,y,z,class],`` and a line feed for each row, int [N, 4], none below 0.
+
+    Written digit by digit at once: four million voxels take a second, not twenty.
+    """
+    digits = len(str(rows.max()))
+    powers = 10 ** np.arange(digits)[::-1]
+    numbers = np.full((len(rows), 4, digits + 1), ord(","), np.uint8)
+    numbers[..., :digits] = rows[..., None] // powers % 10 + ord("0")
+    is_shown = np.ones(numbers.shape, bool)
+    is_shown[..., : digits - 1] = rows[..., None] >= powers[:-1]
+    numbers[:, -1, -1] = ord("]")
+    ends = np.ones((len(rows), 1), np.uint8)
+    text = np.hstack([ends * ord("["), numbers.reshape(len(rows), -1), ends * ord(","), ends * 10])
+    shown = np.hstack([ends, is_shown.reshape(len(rows), -1), ends, ends]).astype(bool)
+    return text[shown].tobytes().decode()
 
 
 def read_occ_json(path: str | Path) -> OccupancyGrid:

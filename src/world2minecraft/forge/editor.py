@@ -200,9 +200,15 @@ class Editor:
         return lambda: self._listeners.remove(listener)
 
     def active(self, actor: str = "") -> None:
-        """Note that a person is at work, so that the effort log knows time from idle time."""
-        with self._lock:
-            self.document.active(actor)
+        """Note that a person is at work, so that the effort log knows time from idle time.
+
+        While a step is done nothing is noted: the step is sign enough, and this never waits.
+        """
+        if self._lock.acquire(blocking=False):
+            try:
+                self.document.active(actor)
+            finally:
+                self._lock.release()
 
     def save(self) -> Path:
         """Write the scene to the files that the other verbs read; return their folder.

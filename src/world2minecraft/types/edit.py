@@ -125,8 +125,19 @@ class Operation:
 
 def each_once(cells: np.ndarray) -> bool:
     """Whether no cell of [N, 3] is named twice."""
-    ordered = cells[np.lexsort(cells.T)]
-    return not (ordered[1:] == ordered[:-1]).all(axis=1).any()
+    if not len(cells):
+        return True
+    low = cells.min(axis=0).astype(np.int64)
+    spans = cells.max(axis=0) - low + 1
+    if np.prod(spans.astype(np.float64)) >= 2**63:  # No one number can name each cell.
+        ordered = cells[np.lexsort(cells.T)]
+        return not (ordered[1:] == ordered[:-1]).all(axis=1).any()
+    x, y, z = (cells - low).T
+    numbers = (x * spans[1] + y) * spans[2] + z
+    if (numbers[1:] > numbers[:-1]).all():
+        return True
+    numbers.sort()
+    return not (numbers[1:] == numbers[:-1]).any()
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,6 +16,7 @@ from world2minecraft.edit.scene.packing import (
 )
 from world2minecraft.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
+from world2minecraft.types.edit import each_once
 
 SEEDS = st.integers(0, 100_000)
 
@@ -117,3 +118,13 @@ def test_no_more_memory_is_taken_than_the_scene_has():
     many = write_nbt({"objects": [{"id": 1}] * 10})
     with pytest.raises((DamagedFileError, LimitError)):
         unpack_objects(many, "j")
+
+
+@given(
+    st.lists(st.tuples(*[st.integers(-3, 3)] * 3), max_size=8),
+    st.sampled_from([1, 1000, 700_000_000]),
+)
+def test_a_cell_that_is_named_twice_is_seen(places, far):
+    cells = (np.array(places, np.int64).reshape(-1, 3) * far).astype(np.int32)
+    assert each_once(cells) == (len(set(places)) == len(places))
+    assert not each_once(np.repeat(cells, 2, axis=0)) or not places

@@ -67,6 +67,10 @@ class SceneDraft:
     def apply(self, operation: Operation) -> None:
         """Do an operation. Raises what ``check`` raises; then nothing is changed."""
         self.check(operation)
+        self.put(operation)
+
+    def put(self, operation: Operation) -> None:
+        """Do an operation that was checked."""
         at = tuple(operation.cells.T)
         for name in ARRAYS:
             getattr(self, name)[at] = getattr(operation.after, name)

@@ -76,7 +76,7 @@ class SceneHistory:
         """Do an operation. Raises ConflictError, or what the log raises."""
         self.draft.check(operation)
         number = self.log.do(operation)
-        self.draft.apply(operation)
+        self.draft.put(operation)
         self.line = self.line.with_new(number, operation.kind)
         return operation
 
@@ -96,7 +96,7 @@ class SceneHistory:
         inverse = self.log.operation(number).inverse()
         self.draft.check(inverse)
         self.log.undo(number, actor, time_s)
-        self.draft.apply(inverse)
+        self.draft.put(inverse)
         self.line = self.line.moved(-1)
         return inverse
 
@@ -116,7 +116,7 @@ class SceneHistory:
         operation = self.log.operation(number)
         self.draft.check(operation)
         self.log.redo(number, actor, time_s)
-        self.draft.apply(operation)
+        self.draft.put(operation)
         self.line = self.line.moved(1)
         return operation
 
