@@ -96,6 +96,16 @@ def test_the_scene_is_compared_with_what_was_opened(editor):
     json.dumps(answer, allow_nan=False)
 
 
+def test_filling_what_was_never_seen_is_a_difference_to_what_was_opened(tmp_path):
+    labels = room()
+    labels[8:10, 8:11, 0] = 255
+    np.save(tmp_path / "unseen.npy", labels)
+    editor = Editor.open(tmp_path / "unseen.npy", out=tmp_path)
+    editor.do("fill_holes", plane="floor")
+    assert editor.ask("compare")["cells"] == {"added": 6, "removed": 0, "changed": 0}
+    editor.close()
+
+
 def test_the_scene_is_compared_with_a_file_of_finer_cells_elsewhere(editor, tmp_path):
     fine = np.repeat(np.repeat(np.repeat(room(), 2, 0), 2, 1), 2, 2)[:, :40]
     place = {"voxel_m": 0.04, "origin_m": np.zeros(3)}

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.classes import CLASS_NAMES, UNKNOWN
 from world2minecraft.edit.scene.difference import difference, labels_in_cells
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.floaters import MAX_CELLS, find_floaters
@@ -86,7 +86,7 @@ class Compare(Query):
     """How the scene differs from another occupancy of the same room, and the IoU.
 
     ``path`` is a file in the scene's folder, such as a prediction, or ``opened``: the scene as it
-    was when it was opened. The other one counts as the truth.
+    was when it was opened, its unseen cells taken for empty. The other one counts as the truth.
     """
 
     path: Annotated[str, Field(max_length=1000)] = OPENED
@@ -97,7 +97,8 @@ class Compare(Query):
 
     def _other(self, editor: "Editor") -> np.ndarray:
         if self.path == OPENED:
-            return editor.opened.grid.labels
+            labels = editor.opened.grid.labels
+            return np.where(labels == UNKNOWN, 0, labels).astype(np.uint8)
         place = file_within(editor.opened.folder, self.path)
         return labels_in_cells(read_occupancy(place), editor.draft)
 

@@ -45,13 +45,17 @@ def test_a_scene_without_faults_leaves_no_doubt():
             ("no_template", "no furniture fits this table: it is built from its own cells", 3),
         ),
         (
-            table(alternatives=(Alternative("plain", 0, 0.8), Alternative("desk_long", 1, 0.79))),
+            table(alternatives=(Alternative("plain", 0, 0.8), Alternative("desk_long", 0, 0.79))),
             ("near_tie", "desk long fits this table almost as well: 79 % beside 80 %", 3),
         ),
         (
             table(alternatives=(Alternative("plain", 3, 0.8),)),
             ("near_tie", "plain turned to 270° fits this table almost as well: 80 % beside 80 %",
              3),
+        ),
+        (
+            table(alternatives=(Alternative("desk", 0, 0.8), Alternative("desk", 1, 0.78))),
+            ("near_tie", "desk turned to 90° fits this table almost as well: 78 % beside 80 %", 3),
         ),
         (
             table(at=4),

@@ -23,7 +23,10 @@ UNSURE = 0.5  # The confidence under which a cell is rather wrong than right.
 UNSURE_CELLS = 30  # About 0.2 square metres at 0.08 m; fewer are the edges of things.
 CRUMB_CELLS = 8  # A cube of 16 cm: the smallest thing that the finder calls an object.
 FLOATING, UNCARRIED, CRUMB = 0.97, 0.85, 0.4  # How doubtful these are, beside 1 - IoU.
-NO_TEMPLATE, COMPLETED_DOUBT, TIE_DOUBT = 0.45, 0.3, 0.6  # Often right, and soon looked at.
+NO_TEMPLATE, COMPLETED_DOUBT = 0.45, 0.3  # Often right, and soon looked at.
+# Of objects that fit as well in another turn a third was wrong, of those that another piece fits
+# as well a tenth, of those without doubt 7 % (ten tuning rooms).
+TURN_DOUBT, TIE_DOUBT = 0.6, 0.32
 STANDING = (5, 6, 7, 8)  # Chairs, beds, sofas and tables stand; other things may hang.
 
 
@@ -77,14 +80,18 @@ def _of_furniture(one: SceneObject, placed: Placement) -> Iterator[Doubt]:
     if placed.iou < LOW_IOU:
         why = f"{spelled(placed.template)} fits this {name} by {share} only"
         yield Doubt("low_iou", why, 1 - placed.iou, at_m, one.id)
-    rivals = [other for other in placed.alternatives if _is_other(placed, other)]
-    best = max(rivals, key=lambda other: other.iou, default=None)
-    if best is None or placed.iou - best.iou >= TIE:
+    rivals = [o for o in placed.alternatives if _is_other(placed, o) and placed.iou - o.iou < TIE]
+    # Which way a thing looks matters more than which of two like pieces it is.
+    rivals.sort(key=lambda other: (other.quarter_turns == placed.quarter_turns, -other.iou))
+    if not rivals:
         return
-    turned = "" if best.template != placed.template else f" turned to {90 * best.quarter_turns}°"
+    best, faces = rivals[0], rivals[0].quarter_turns != placed.quarter_turns
+    turned = f" turned to {90 * best.quarter_turns}°" if faces else ""
     why = f"{spelled(best.template)}{turned} fits this {name} almost as well: "
     why += f"{100 * best.iou:.0f} % beside {share}"
-    yield Doubt("near_tie", why, TIE_DOUBT * (1 - (placed.iou - best.iou) / TIE / 2), at_m, one.id)
+    apart = max(placed.iou - best.iou, 0) / TIE
+    doubt = (TURN_DOUBT if faces else TIE_DOUBT) * (1 - apart / 4)
+    yield Doubt("near_tie", why, doubt, at_m, one.id)
 
 
 def _is_other(placed: Placement, other) -> bool:
