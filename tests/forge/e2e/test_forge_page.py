@@ -42,9 +42,13 @@ def test_drag_turns_wheel_comes_closer_and_keys_look_along_axes(forge):
     assert page.evaluate(orbit)["elevation"] > 1.5
     forge.key("Numpad5")
     assert page.evaluate(orbit)["ortho"] is True
-    forge.key("Shift+F")
+    forge.key("Numpad1", "Shift+F")
     forge.idle()
-    assert forge.state("s.selectedObjects") == []
+    before = page.evaluate(orbit)
+    forge.key("Control+ArrowLeft", "Control+ArrowUp", "Shift+PageUp")
+    forge.idle()
+    after = page.evaluate(orbit)
+    assert all(before[part] != after[part] for part in ("azimuth", "elevation", "distance"))
 
 
 def test_the_legend_hides_shows_alone_locks_and_chooses(forge, shot):
@@ -170,6 +174,20 @@ def test_theme_and_a_narrow_window(open_tab, shot):
     shot(forge, "light")
     assert forge.page.evaluate("document.documentElement.dataset.theme") == "light"
     assert forge.mistakes == []
+
+
+def test_a_room_that_is_read_only_says_so_and_lets_one_look(open_tab, server):
+    server.session.document.document.read_only = "another SceneForge has it open"
+    forge = open_tab()
+    assert forge.page.locator(".saved").inner_text() == "Read only"
+    forge.key("Shift+Digit3", "ArrowRight")
+    forge.until("s.selectedObjects.size", 1)
+    why = "Read only: another SceneForge has it open"
+    for name in ("object.turn", "delete", "save", "tool.add"):
+        assert forge.action(name).get_attribute("aria-description") == why
+    forge.key("Delete")
+    assert why in forge.page.locator(".toast").last.inner_text()
+    assert forge.rev() == 0
 
 
 def test_a_lost_server_is_told_and_nothing_can_be_changed(forge, server):

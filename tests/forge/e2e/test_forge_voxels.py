@@ -156,6 +156,37 @@ def test_selected_cells_are_relabelled_filled_and_deleted(voxels, shot):
     assert forge.state("s.selectedCells.size") == 0
 
 
+def test_copied_cells_are_mirrored_moved_and_set_down(voxels, shot):
+    forge, before = voxels, counts(voxels)
+    x, y = forge.object_at(2)
+    forge.key("k")
+    forge.page.mouse.click(x, y)
+    forge.until("s.selectedCells.size", before[7])
+    forge.key("Control+c", "Control+v")
+    forge.page.mouse.move(x, y + 60)
+    forge.page.mouse.move(x, y + 62)
+    forge.key("x", "ArrowUp", "PageUp")
+    shot(forge, "paste")
+    forge.key("Escape")
+    assert forge.rev() == 0
+    forge.key("Control+v", *["PageUp"] * 6, "Enter")
+    forge.until("s.scene.rev", 1)
+    forge.page.wait_for_selector("[data-action=undo][title^='Undo paste']")
+    assert counts(forge)[7] > before[7]
+
+
+def test_a_class_is_smoothed_by_its_panel(voxels):
+    forge, page = voxels, voxels.page
+    page.locator(".panel[data-panel=smoothing] .panel-title").click()
+    forge.key("3")
+    button = page.get_by_role("button", name="Smooth wall")
+    assert "class of objects" in button.get_attribute("aria-description")
+    forge.key("0")
+    page.get_by_role("button", name="Smooth furn").click()
+    forge.until("s.scene.rev", 1)
+    page.wait_for_selector("[data-action=undo][title^='Undo smooth']")
+
+
 def test_eyedropper_measure_and_the_region_under_the_pointer(voxels, shot):
     forge, page = voxels, voxels.page
     x, y = forge.object_at(2)
@@ -175,10 +206,12 @@ def test_eyedropper_measure_and_the_region_under_the_pointer(voxels, shot):
     assert page.locator("[data-status=class]").inner_text() == "sofa"
     forge.key("Shift+Delete")
     forge.until("s.scene.counts[7]", 0)
-    page.mouse.click(x, y, button="right")
-    page.get_by_role("menuitem", name="Hide floor").click()
-    forge.until("s.view.hidden.has(2)")
     assert before[7] > 0
+    forge.key("Control+z")
+    forge.until("s.scene.counts[7]", before[7])
+    page.mouse.click(x, y, button="right")
+    page.get_by_role("menuitem", name="Hide sofa").click()
+    forge.until("s.view.hidden.has(7)")
 
 
 def test_floaters_are_found_by_size_and_deleted_at_once(voxels, shot):

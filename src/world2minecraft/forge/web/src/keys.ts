@@ -79,6 +79,8 @@ const ROWS: Row[] = [
   ["cells.relabel", "voxels", ["Enter"], VOXELS],
   ["cells.fillBox", "voxels", ["Shift+Enter"], VOXELS],
   ["cells.smooth", "voxels", ["Shift+S"], VOXELS],
+  ["cells.copy", "voxels", ["Ctrl+C"], VOXELS],
+  ["cells.paste", "voxels", ["Ctrl+V"], VOXELS],
   ["cells.component", "voxels", ["Shift+Delete"], VOXELS],
   ["holes.fill", "voxels", ["H"], VOXELS],
   ["floaters.find", "voxels", ["Shift+H"], VOXELS],

@@ -82,6 +82,8 @@ export const TEXT = {
     "cells.relabel": "Give the selection the chosen class",
     "cells.smooth": "Smooth the selection, or all",
     "cells.fillBox": "Fill the box around the selection",
+    "cells.copy": "Copy the selected cells",
+    "cells.paste": "Put the copied cells somewhere else",
     "cells.component": "Delete the connected region under the pointer",
     "holes.fill": "Find holes of floor, walls and ceiling",
     "floaters.find": "Find floaters",
@@ -159,6 +161,7 @@ export const TEXT = {
       cells: "Selected cells",
       floaters: "Floaters",
       holes: "Holes",
+      smoothing: "Smoothing",
       doubtful: "Doubtful places",
       recluster: "Find objects anew",
       slices: "Slices and section",
@@ -249,6 +252,12 @@ export const TEXT = {
     fill: (cells: number): string => `fill ${cells.toLocaleString("en")}`,
     fillOne: (name: string): string => `Fill the holes of ${name}`,
   },
+  smoothing: {
+    note: "Takes away bumps and fills dents of objects, by what is around each cell.",
+    only: (word: string): string => `Smooth ${word}`,
+    all: "All objects",
+    selection: "The selection",
+  },
   doubtful: {
     title: "Doubtful places, worst first",
     note: "Places to look at first. The . key goes to the next.",
@@ -292,6 +301,8 @@ export const TEXT = {
   },
   tools: {
     moved: (by: readonly number[]): string => by.map((cells) => (cells > 0 ? `+${cells}` : cells)).join(", "),
+    copied: (count: number): string => `${count.toLocaleString("en")} cells copied; Ctrl+V puts them somewhere else`,
+    pasting: "Click where the copy stands; arrow keys move it, X, Y and Z mirror it, Esc drops it",
     measured: (words: string): string => `Measured ${words}`,
     distance: (all: number, sides: readonly number[]): string =>
       `${all.toFixed(2)} m  (${sides.map((side) => side.toFixed(2)).join(", ")})`,
@@ -395,6 +406,7 @@ export const TEXT = {
     oneObject: "It goes with one object at a time",
     twoObjects: "Select two objects or more; Shift+click adds",
     noOtherTemplate: "No other furniture fits it",
+    nothingCopied: "Nothing was copied yet; Ctrl+C copies the selection",
     noFloaters: "None were found yet",
     nothingToCompare: "Nothing to compare with is open",
     noSelectionBefore: "There is no selection before this one",

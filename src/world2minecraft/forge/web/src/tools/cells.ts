@@ -70,14 +70,14 @@ export function line(from: Vec3, to: Vec3): Vec3[] {
   });
 }
 
-/** All cells of the same label that hold to one by faces. */
-export function component(start: number, labels: Uint8Array, shape: Vec3): number[] {
+/** All cells of the same label that hold to one by faces; about the first `most` of them. */
+export function component(start: number, labels: Uint8Array, shape: Vec3, most = Infinity): number[] {
   const label = labels[start];
   const seen = new Uint8Array(labels.length);
   const found = [start];
   seen[start] = 1;
   const strides = [shape[1] * shape[2], shape[2], 1];
-  for (let at = 0; at < found.length; at++) {
+  for (let at = 0; at < found.length && found.length < most; at++) {
     const flat = found[at] ?? 0;
     const cell = cellOf(flat, shape);
     for (let axis = 0; axis < 3; axis++) {

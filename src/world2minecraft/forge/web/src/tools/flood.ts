@@ -5,6 +5,7 @@ import { combineOf } from "./selection";
 import type { Desk, Tool } from "./tool";
 
 const HINT = "#ffffff";
+const MOST_SHOWN = 20_000; // of what a click would select: more is seen without being lit
 
 export function floodTool(desk: Desk): Tool {
   const { app } = desk;
@@ -31,7 +32,7 @@ export function floodTool(desk: Desk): Tool {
       if ((hit?.flat ?? -1) === shown) return;
       shown = hit?.flat ?? -1;
       if (!hit || !scene) clear();
-      else app.view.setOverlay("flood", runsOf(component(hit.flat, labels, scene.shape)), HINT);
+      else app.view.setOverlay("flood", runsOf(component(hit.flat, labels, scene.shape, MOST_SHOWN)), HINT);
     },
     stop: clear,
   };

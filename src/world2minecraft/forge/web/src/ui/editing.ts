@@ -8,6 +8,7 @@ import { floodTool } from "../tools/flood";
 import { ToolManager } from "../tools/manager";
 import { measureTool } from "../tools/measure";
 import { moveTool } from "../tools/move";
+import { pasteActions } from "../tools/paste";
 import { navigateTool } from "../tools/navigate";
 import type { Press } from "../tools/tool";
 import { TEXT } from "../text";
@@ -25,6 +26,7 @@ import { mountObjectList } from "./object_list";
 import { mountRecluster } from "./recluster";
 import { mountSlices } from "./slices";
 import { optionActions, selectionActions } from "./selection_actions";
+import { mountSmoothing } from "./smoothing";
 import { registerPanel, type App } from "./slots";
 import { viewActions } from "./view_actions";
 
@@ -39,6 +41,7 @@ export function registerEditing(): void {
   registerPanel({ ...right, id: "cells", title: titles.cells, modes: ["voxels"], order: 10, mount: mountCellSelection });
   registerPanel({ ...right, id: "floaters", title: titles.floaters, modes: ["voxels"], order: 20, mount: mountFloaters });
   registerPanel({ ...right, id: "holes", title: titles.holes, modes: ["voxels"], order: 30, mount: mountHoles });
+  registerPanel({ ...right, id: "smoothing", title: titles.smoothing, modes: ["voxels"], order: 40, closed: true, mount: mountSmoothing });
   registerPanel({ ...right, id: "doubtful", title: titles.doubtful, modes: ["inspect", "objects"], order: 40, closed: true, mount: mountDoubtful });
   registerPanel({ ...right, id: "recluster", title: titles.recluster, modes: ["objects"], order: 50, closed: true, mount: mountRecluster });
   registerPanel({ ...right, id: "slices", title: titles.slices, modes: ["inspect", "voxels", "objects", "build"], order: 80, closed: true, mount: mountSlices });
@@ -64,6 +67,7 @@ export function startEditing(app: App, hover: (at: Press | null) => void): ToolM
   viewActions(app);
   objectActions(app);
   cellActions(app);
+  pasteActions(desk);
   selectionActions(app);
   optionActions(app);
   app.store.watch(["mode"], ({ tool }) => {

@@ -23,7 +23,7 @@ export function mountSlices(host: HTMLElement, app: App): void {
   const section = check(TEXT.slices.section, "section", (on) =>
     store.setView({ section: on ? wholeBox(store.get()) : null }),
   );
-  const sides = h("div", { class: "stack" });
+  const sides = h("div", { class: "stack section-fields" });
   const toSelection = plainButton(TEXT.slices.toSelection, () => cutToSelection(app), "button is-wide");
   host.append(axis.node, place, h("h3", { class: "sub" }, TEXT.slices.sectionTitle), section.node, sides, toSelection);
   let bounds: Slider[] = [];
