@@ -109,11 +109,16 @@ function openFaces(labels: Uint8Array, { low, high }: { low: Vec3; high: Vec3 })
 }
 
 describe("overlay", () => {
+  it("says for each corner how light it is", () => {
+    const { corners, lights } = facesOfCells([[0, 5]], SHAPE);
+    expect(lights.length / 4).toBe(corners.length / 3);
+  });
+
   it("has a face on each outer side of its cells and none between them", () => {
     const one = flatOf(SHAPE, 4, 4, 4);
-    expect(facesOfCells([[one, 1]], SHAPE)).toHaveLength(6 * 12);
-    expect(facesOfCells([[one, 2]], SHAPE)).toHaveLength(10 * 12);
-    expect(facesOfCells([[0, 11 * 9 * 10]], SHAPE)).toHaveLength(2 * (99 + 110 + 90) * 12);
+    expect(facesOfCells([[one, 1]], SHAPE).corners).toHaveLength(6 * 12);
+    expect(facesOfCells([[one, 2]], SHAPE).corners).toHaveLength(10 * 12);
+    expect(facesOfCells([[0, 11 * 9 * 10]], SHAPE).corners).toHaveLength(2 * (99 + 110 + 90) * 12);
   });
 });
 

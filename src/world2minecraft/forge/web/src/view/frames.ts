@@ -5,9 +5,12 @@ import type { Fineness, Quality } from "./quality";
 
 const REST_MS = 160; // without a change, until all is drawn in full
 
+const AFTER = 3; // frames that may still wait for what an unusual one has begun
+
 export interface Painted {
   again: boolean; // the next frame shows something else: a flight goes on
   settled: boolean; // nothing is missing in it
+  more: boolean; // at rest, another pass makes it finer
   usual: boolean; // it did no more than frames do: no shader was compiled, no mesh made
 }
 
@@ -17,12 +20,12 @@ export class Frames {
   private timer = 0;
   private wanted = false;
   private began = 0;
-  private usual = false;
+  private unusual = 1; // how many frames more tell nothing about speed
   private waiting: (() => void)[] = [];
 
   constructor(
     private readonly quality: Quality,
-    private readonly paint: (fineness: Fineness, now: number) => Painted,
+    private readonly paint: (fineness: Fineness, now: number, pass: number | null) => Painted,
   ) {}
 
   /** Something changed: draw soon. */
@@ -45,6 +48,13 @@ export class Frames {
     clearTimeout(this.timer);
   }
 
+  /** After the next frame is on its way: a change that comes before is not kept waiting. */
+  private later(call: () => void): void {
+    requestAnimationFrame(() => {
+      if (!this.wanted) this.timer = window.setTimeout(call, 0);
+    });
+  }
+
   private ask(): void {
     this.asked ||= requestAnimationFrame((now) => this.tick(now));
   }
@@ -52,7 +62,7 @@ export class Frames {
   private tick(now: number): void {
     this.asked = 0;
     if (this.began) {
-      if (this.usual) {
+      if (!this.unusual) {
         this.lastMs = performance.now() - this.began;
         this.quality.took(this.lastMs);
       }
@@ -64,19 +74,20 @@ export class Frames {
   private draw(now: number): void {
     this.wanted = false;
     this.began = performance.now();
-    const { again, settled, usual } = this.paint(this.quality.moving, now);
-    this.usual = usual;
+    const { again, settled, usual } = this.paint(this.quality.moving, now, null);
+    this.unusual = usual ? Math.max(this.unusual - 1, 0) : AFTER;
     this.wanted = again;
     this.ask(); // Also where nothing is to be drawn: to see when this frame was done.
     if (again || !settled) return;
     this.timer = window.setTimeout(() => this.drawFull(), this.waiting.length ? 0 : REST_MS);
   }
 
-  private drawFull(): void {
+  private drawFull(pass = 0): void {
     if (this.wanted) return;
-    this.usual = false; // The time that is being taken has this in it.
-    const { again, settled } = this.paint(this.quality.still, performance.now());
+    this.unusual = Math.max(this.unusual, 1); // The time that is being taken has this in it.
+    const { again, settled, more } = this.paint(this.quality.still, performance.now(), pass);
     if (again) this.invalidate();
+    else if (settled && more) this.later(() => this.drawFull(pass + 1));
     else if (settled) for (const resolve of this.waiting.splice(0)) resolve();
     // else: invalidate() comes with the meshes that miss
   }

@@ -20,6 +20,7 @@ export class VoxelMaterial {
     shape: { value: new THREE.Vector3(1, 1, 1) },
     edges: { value: 0.2 },
     opacity: { value: 1 },
+    grain: { value: 0 },
   };
 
   readonly greedy = this.variant({});

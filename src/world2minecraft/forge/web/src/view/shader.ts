@@ -62,6 +62,7 @@ uniform sampler3D solid; // 1 where a drawn cell is; z y x
 uniform sampler3D field; // a value for each cell; z y x
 uniform vec3 shape; // cells of \`solid\`: two more than the scene
 uniform float edges, opacity;
+uniform float grain; // number of the frame of those that are averaged
 in vec3 cell;
 in vec2 across;
 flat in vec3 normal, tint;
@@ -94,9 +95,11 @@ vec3 base() {
 
 void main() {
 #ifdef SCREEN_DOOR
-  // Layers behind each other get other patterns, else the nearest would hide all of them.
-  float depth = dot(floor(cell - normal * 0.5), vec3(0.754877, 0.569840, 0.431597));
-  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))) + depth);
+  // Layers behind each other get other patterns, else the nearest would hide all of them; each
+  // goes through the eighths in an order of its own.
+  float layer = fract(dot(floor(cell - normal * 0.5), vec3(0.754877, 0.569840, 0.431597)));
+  float turn = grain * (1.0 + 2.0 * floor(layer * 4.0)) / 8.0;
+  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))) + layer + turn);
   if (noise >= opacity) discard;
 #endif
   vec3 rgb = base() * light;

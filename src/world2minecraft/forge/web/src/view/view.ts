@@ -13,6 +13,7 @@ import { Compass } from "./compass";
 import { Controls } from "./controls";
 import { Fields, type Difference } from "./fields";
 import { Frames, type Painted } from "./frames";
+import { Glass, PASSES } from "./glass";
 import { Ground } from "./ground";
 import { Look } from "./look";
 import { Looking, START } from "./looking";
@@ -53,6 +54,7 @@ export class SceneView extends Looking {
   private readonly reach: Reach;
   private readonly compass: Compass;
   private readonly frames: Frames;
+  private readonly glass: Glass;
   private copy: Uint8Array = new Uint8Array(0);
   private place = "";
   private size = "";
@@ -67,7 +69,8 @@ export class SceneView extends Looking {
     super();
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false });
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV; // It waits for the compiler.
-    this.frames = new Frames(new Quality(), (fineness, now) => this.paint(fineness, now));
+    this.frames = new Frames(new Quality(), (...how) => this.paint(...how));
+    this.glass = new Glass(this.renderer);
     this.scene.add(this.ground.lines, this.chunks.group, this.overlays.group, this.markers.group);
     this.reach = new Reach(store, this.sight, () => this.look.seen);
     this.compass = new Compass(canvas, (side) => this.lookFrom(side));
@@ -166,7 +169,7 @@ export class SceneView extends Looking {
 
   dispose(): void {
     for (const end of this.ends) end();
-    for (const part of [this.frames, this.compass, this.markers, this.ground, this.controls, this.chunks, this.material, this.renderer]) part.dispose();
+    for (const part of [this.frames, this.glass, this.compass, this.markers, this.ground, this.controls, this.chunks, this.material, this.renderer]) part.dispose();
   }
 
   private takeVolume({ scene, labels }: Readonly<State>): void {
@@ -212,7 +215,9 @@ export class SceneView extends Looking {
     if (box) this.ground.take(box.low, box.high, theme === "dark");
   }
 
-  private paint(fineness: Fineness, now: number): Painted {
+  private paint(wanted: Fineness, now: number, pass: number | null): Painted {
+    const clear = this.store.get().view.opacity < 1 && this.chunks.group.visible;
+    const fineness = clear && pass !== null ? { scale: 1, coarse: 0 } : wanted;
     this.drawn = fineness;
     this.sight.step(now);
     this.resize(fineness.scale);
@@ -220,14 +225,27 @@ export class SceneView extends Looking {
     if (this.copy.length) this.aim(camera, fineness.coarse);
     this.markers.dim((center) => this.reach.isCovered(center));
     this.compass.turn(this.sight.pose || !this.copy.length ? null : this.sight.axes);
-    this.renderer.render(this.scene, camera);
+    if (clear && pass !== null) this.addPass(pass, camera);
+    else this.renderer.render(this.scene, camera);
     const work = [this.renderer.info.programs?.length, this.chunks.made, fineness.scale].join();
     const usual = work === this.work;
     this.work = work;
     if (this.copy.length) markOnce("scene-first");
     if (this.copy.length && this.chunks.settled) markOnce("scene-whole");
     for (const call of [...this.onFrame]) call(this.frames.lastMs);
-    return { again: this.sight.flying, settled: this.chunks.settled, usual };
+    return { again: this.sight.flying, settled: this.chunks.settled, usual, more: clear && pass !== PASSES - 1 };
+  }
+
+  /** A frame of those that are averaged, and the marks, which are not, over them. */
+  private addPass(pass: number, camera: THREE.Camera): void {
+    this.material.uniforms.grain.value = pass;
+    this.markers.group.visible = false;
+    this.glass.add(pass, this.scene, camera);
+    this.material.uniforms.grain.value = 0;
+    this.markers.group.visible = true;
+    this.renderer.autoClear = false;
+    this.renderer.render(this.markers.group, camera);
+    this.renderer.autoClear = true;
   }
 
   private aim(camera: THREE.Camera, coarse: number): void {
