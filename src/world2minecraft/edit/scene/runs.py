@@ -9,7 +9,7 @@ from world2minecraft.errors import UsageError
 
 def runs_of_cells(cells: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:
     """Return the runs, int64 [R, 2], that name the cells int [N, 3] of a grid."""
-    flat = np.ravel_multi_index(tuple(cells.T), shape)
+    flat = np.asarray(np.ravel_multi_index(tuple(cells.T), shape))
     if not (flat[1:] > flat[:-1]).all():  # np.unique takes seconds for millions of cells.
         flat = np.sort(flat)
         flat = flat[np.diff(flat, prepend=-1) > 0]
