@@ -7,21 +7,21 @@ import numpy as np
 from pydantic import Field
 
 from world2minecraft.classes import CLASS_NAMES, UNKNOWN
-from world2minecraft.edit.scene.difference import difference, labels_in_cells
+from world2minecraft.edit.scene.difference import difference
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.floaters import MAX_CELLS, find_floaters
 from world2minecraft.edit.scene.holes import HOLE_M2, hole_cells, plane_gaps
 from world2minecraft.edit.scene.planes import find_planes
 from world2minecraft.edit.scene.runs import runs_of_cells
 from world2minecraft.errors import UsageError
-from world2minecraft.exchange.occupancy import read_occupancy
+from world2minecraft.forge.comparing import labels_of_file, labels_of_truth, truth_folder
 from world2minecraft.forge.query import Query
 from world2minecraft.metrics.occupancy import count_occupancy
 
 if TYPE_CHECKING:
     from world2minecraft.forge.editor import Editor
 
-OPENED = "opened"
+OPENED, TRUTH = "opened", "truth"
 DECIMALS = 4
 
 
@@ -85,8 +85,9 @@ class Holes(Query):
 class Compare(Query):
     """How the scene differs from another occupancy of the same room, and the IoU.
 
-    ``path`` is a file in the scene's folder, such as a prediction, or ``opened``: the scene as it
-    was when it was opened, its unseen cells taken for empty. The other one counts as the truth.
+    ``path`` is a file in the scene's folder, such as a prediction; or ``truth``, of a generated
+    room that was scanned; or ``opened``: the scene as it was when it was opened, its unseen cells
+    taken for empty. The other one counts as the truth.
     """
 
     path: Annotated[str, Field(max_length=1000)] = OPENED
@@ -99,8 +100,13 @@ class Compare(Query):
         if self.path == OPENED:
             labels = editor.opened.grid.labels
             return np.where(labels == UNKNOWN, 0, labels).astype(np.uint8)
-        place = file_within(editor.opened.folder, self.path)
-        return labels_in_cells(read_occupancy(place), editor.draft)
+        folder = editor.opened.folder
+        if self.path != TRUTH:
+            return labels_of_file(file_within(folder, self.path), editor.draft)
+        place = truth_folder(folder, None)
+        if place is None:
+            raise UsageError("no truth lies in the scene's folder; only generated rooms have one")
+        return labels_of_truth(place, editor.draft, editor.opened.scan_to_room)
 
 
 def compared(draft: SceneDraft, other: np.ndarray) -> dict[str, Any]:
