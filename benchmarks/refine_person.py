@@ -1,0 +1,289 @@
+"""Who refines: a script that looks at a scene and its truth, and does what a person would do next.
+
+It knows the truth, as a person knows the room, and has nothing but the editor's commands: each is
+one gesture on one object, one plane or one connected region. It tries each gesture that what is
+wrong suggests, on the draft and back again, and takes the one after which least is wrong; of equal
+ones the one that leaves most cells as they truly are. Where no single gesture helps, a split is
+tried with the gesture that follows it.
+"""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from benchmarks.refine_truth import NEAR_CELLS, Defects, Wanted, agreement, covered, defects_of
+from world2minecraft.edit.scene import SceneDraft, Tools, parse_command, runs_of_cells
+from world2minecraft.edit.scene.planes import find_planes
+from world2minecraft.errors import UsageError
+from world2minecraft.furniture import TEMPLATES, template
+from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.types import LayoutObject
+
+Gesture = dict[str, Any]
+NEAR_M = 1.2  # Farther off, a thing is another thing.
+TOUCH_CELLS = 5  # Objects this near may be parts of one: the post between a seat and its base.
+LEAST_CELLS = 5  # Fewer cells of another thing in an object are its rim.
+OFFERS = 8  # How many pieces of furniture one would try for a thing: those nearest in size.
+LARGE_M2 = 4.0  # The hole filler's bound drawn up, by one who sees that there is no window.
+ADDED_AT_ONCE = 3  # Of many missing things one is added after another.
+LOCKED = [4, 5, 6, 7, 8, 9, 10, 11]  # In the legend, while a box is filled: windows and objects.
+MOST_GESTURES = 200
+
+
+CELLS_WORTH = 30.0  # What all cells count beside one thing that is wrong: 3 % of them count as one.
+DIGITS = 2  # Of that sum; less difference is none.
+
+
+class Tried(NamedTuple):
+    """A gesture, how much is wrong after it, and that with the cells that are wrong then too."""
+
+    wrong: int
+    cost: float
+    gesture: Gesture
+
+
+def next_gesture(draft: SceneDraft, tools: Tools, wanted: Wanted) -> Gesture | None:
+    """Return the gesture to do next; None where nothing is wrong, or nothing helps."""
+    defects = defects_of(draft, wanted)
+    quick = tools._replace(match=lambda grid, one: ())
+    few = defects.missing[:ADDED_AT_ONCE]
+    tries = [on_objects(draft, wanted, defects, few)]
+    tries += [_filled(draft, wanted, index) for index in defects.holes]
+    tries += [on_objects(draft, wanted, defects, defects.missing)]
+    for gestures in tries:
+        best = _best(draft, quick, wanted, gestures, defects.total - 1)
+        if best is not None:
+            return best.gesture
+    return _first_of_two(draft, quick, wanted, defects) if defects.total else None
+
+
+def on_objects(
+    draft: SceneDraft, wanted: Wanted, defects: Defects, added: tuple[int, ...]
+) -> Iterator[Gesture]:
+    """Give every gesture that what is wrong with objects, or floats, suggests.
+
+    ``added`` are those of the missing objects that adding is tried for.
+    """
+    for number in defects.extra:
+        yield from _for_extra(draft, wanted, defects, number)
+    for index in added:
+        yield from _added(wanted.objects[index])
+    for number, index in defects.turned:
+        yield from _turned(draft, number, wanted.objects[index])
+    for cells in defects.floaters:
+        yield from _held(draft, cells)
+
+
+def _for_extra(
+    draft: SceneDraft, wanted: Wanted, defects: Defects, number: int
+) -> Iterator[Gesture]:
+    one = draft.objects[number]
+    yield {"op": "delete_objects", "ids": [number]}
+    for index in defects.missing:
+        true = wanted.objects[index]
+        if np.linalg.norm(true.center_m - one.center_m) > NEAR_M:
+            continue
+        if true.class_id != one.class_id:
+            yield {"op": "relabel_objects", "ids": [number], "class_id": true.class_id}
+            continue
+        yield {"op": "move_object", "id": number, "to_m": true.center_m.tolist()}
+        for name in offered(true):
+            turns = round(true.yaw_deg / 90) % 4
+            chosen = {"id": number, "template": name, "quarter_turns": turns}
+            yield {"op": "set_template", **chosen}
+    for other in _beside(draft, number):
+        yield {"op": "merge_objects", "ids": [number, other]}
+        yield {"op": "merge_objects", "ids": [other, number]}
+
+
+def _added(true: LayoutObject) -> Iterator[Gesture]:
+    turns = round(true.yaw_deg / 90) % 4
+    x, y, z = true.center_m.tolist()
+    for name in offered(true):
+        heights = {"floor": z - true.size_m[2] / 2 + 0.02, "wall": z, "ceiling": z}
+        at_m = [x, y, float(heights.get(template(name).mount, heights["floor"]))]
+        chosen = {"template": name, "quarter_turns": turns}
+        yield {"op": "add_object", "class_id": true.class_id, "at_m": at_m, **chosen}
+
+
+def _turned(draft: SceneDraft, number: int, true: LayoutObject) -> Iterator[Gesture]:
+    one = draft.objects[number]
+    turns = round((true.yaw_deg - one.yaw_deg) / 90) % 4
+    if turns:
+        yield {"op": "turn_objects", "ids": [number], "quarter_turns": turns}
+    turns = round(true.yaw_deg / 90) % 4
+    for name in dict.fromkeys([p.template for p in one.placements] + offered(true)):
+        yield {"op": "set_template", "id": number, "template": name, "quarter_turns": turns}
+
+
+def _held(draft: SceneDraft, cells: np.ndarray) -> Iterator[Gesture]:
+    """Give what lets a floating part hold: it is erased, or a stroke joins it to what is near."""
+    labels = draft.labels[tuple(cells.T)]
+    for class_id in np.unique(labels):
+        first = cells[labels == class_id][0]
+        yield {"op": "delete_component", "cell": first.tolist()}
+    owners = draft.instance[tuple(cells.T)]
+    for number in np.unique(owners[owners > 0]).tolist():
+        yield {"op": "delete_objects", "ids": [number]}
+        for other in _beside(draft, number):
+            yield {"op": "merge_objects", "ids": [number, other]}
+        yield {"op": "snap_object", "id": number, "to": "floor"}
+        stroke = _stroke(draft, cells[owners == number], cells)
+        if stroke is not None:
+            class_id = draft.objects[number].class_id
+            yield {
+                "op": "set_cells", "cells": stroke, "class_id": class_id, "instance": number
+            }  # fmt: skip
+
+
+def _stroke(draft: SceneDraft, own: np.ndarray, part: np.ndarray) -> list[list[int]] | None:
+    """Return the runs of a straight stroke from an object's cells to the nearest other cell."""
+    taken = draft.labels % 255 > 0
+    taken[tuple(part.T)] = False
+    best: np.ndarray | None = None
+    for start in own:
+        for axis in range(3):
+            line = [int(v) for v in start]
+            at = tuple(slice(None) if n == axis else line[n] for n in range(3))
+            ends = np.flatnonzero(taken[at])
+            for end in (ends[ends > start[axis]][:1], ends[ends < start[axis]][-1:]):
+                for stop in end.tolist():
+                    low, high = sorted((int(start[axis]), stop))
+                    if best is None or high - low - 1 < len(best):
+                        best = np.repeat(start[None], high - low - 1, axis=0)
+                        best[:, axis] = np.arange(low + 1, high)
+    if best is None or not len(best):
+        return None
+    best = best[draft.labels[tuple(best.T)] % 255 == 0]
+    return runs_of_cells(best, draft.shape).tolist() if len(best) else None
+
+
+def _filled(draft: SceneDraft, wanted: Wanted, index: int) -> Iterator[Gesture]:
+    """Give what fills a plane's holes: the hole filler for all or for one, a lasso, a box."""
+    plane = wanted.planes[index]
+    axis = plane.normal_axis
+    holes = plane.cells[~covered(draft, plane)]
+    largest = _largest_hole(draft, holes, axis)
+    middle = np.median(plane.cells[:, :, axis])
+    for found in find_planes(draft):
+        if found.axis == axis and abs(found.layer - middle) <= NEAR_CELLS + 1:
+            yield {"op": "fill_holes", "plane": found.name}
+            yield {"op": "fill_holes", "plane": found.name, "hole_m2": LARGE_M2}
+            cell = largest[0, 0].copy()
+            cell[axis] = found.layer
+            yield {"op": "fill_holes", "plane": found.name, "cell": cell.tolist()}
+    class_id = {"floor": 2, "ceiling": 1}.get(plane.name, 3)
+    for step in range(min(NEAR_CELLS, holes.shape[1])):  # Behind the face.
+        lasso = largest[:, step]
+        lasso = lasso[draft.labels[tuple(lasso.T)] % 255 == 0]
+        if len(lasso):
+            runs = runs_of_cells(lasso, draft.shape).tolist()
+            yield {"op": "set_cells", "cells": runs, "class_id": class_id, "verb": "fill"}
+        low, high = holes[:, step].min(axis=0).tolist(), holes[:, step].max(axis=0).tolist()
+        box = {"low": low, "high": high, "class_id": class_id, "locked": LOCKED}
+        yield {"op": "fill_box", **box}
+
+
+def _largest_hole(draft: SceneDraft, holes: np.ndarray, axis: int) -> np.ndarray:
+    """Return those of a plane's open places, int [N, K, 3], that are its largest hole."""
+    flat = np.delete(holes[:, 0], axis, axis=1)
+    mask = np.zeros(np.delete(draft.shape, axis), bool)
+    mask[tuple(flat.T)] = True
+    numbers = connected_parts(mask, corners=False)[0][tuple(flat.T)]
+    return holes[numbers == np.bincount(numbers).argmax()]
+
+
+def _first_of_two(
+    draft: SceneDraft, tools: Tools, wanted: Wanted, defects: Defects
+) -> Gesture | None:
+    """Return the split that, with the gesture after it, leaves least wrong; or None."""
+    best: Tried | None = None
+    for split in _splits(draft, wanted):
+        operation = _planned(draft, tools, split)
+        if operation is None:
+            continue
+        draft.apply(operation)
+        after = defects_of(draft, wanted)
+        again = on_objects(draft, wanted, after, after.missing[:ADDED_AT_ONCE])
+        row = _best(draft, tools, wanted, again, defects.total - 1)
+        draft.apply(operation.inverse())
+        if row and (best is None or row.cost < best.cost):
+            best = row._replace(gesture=split)
+    return best.gesture if best is not None else None
+
+
+def _splits(draft: SceneDraft, wanted: Wanted) -> Iterator[Gesture]:
+    """Give the splits of objects that hold cells of two true ones, where these part best."""
+    for number in sorted(draft.objects):
+        cells = draft.cells_of(number)
+        owners = wanted.instance[tuple(cells.T)]
+        ids, counts = np.unique(owners[owners > 0], return_counts=True)
+        for true in ids[counts >= LEAST_CELLS] if (counts >= LEAST_CELLS).sum() > 1 else ():
+            inside, outside = cells[owners == true], cells[(owners != true) & (owners > 0)]
+            for axis, name in enumerate("xyz"):
+                edge = _edge(inside[:, axis], outside[:, axis])
+                at_m = float(draft.origin_m[axis] + edge * draft.voxel_m)
+                yield {
+                    "op": "split_object", "id": number, "plane": {"axis": name, "at_m": at_m}
+                }  # fmt: skip
+
+
+def _edge(inside: np.ndarray, outside: np.ndarray) -> int:
+    """Return the first cell past the cut that keeps two sets of cells apart best."""
+    edges = np.arange(min(inside.min(), outside.min()) + 1, max(inside.max(), outside.max()) + 1)
+    if not len(edges):
+        return int(inside.min())
+    below = np.array([(inside < edge).mean() - (outside < edge).mean() for edge in edges])
+    return int(edges[np.argmax(np.abs(below))])
+
+
+def offered(true: LayoutObject) -> list[str]:
+    """Return the templates of an object's class that are nearest to it in size."""
+    rows = []
+    for name in TEMPLATES.names():
+        one = template(name)
+        if one.class_id == true.class_id:
+            rows.append((float(np.abs(np.array(one.typical_m) - true.size_m).sum()), name))
+    return [name for _, name in sorted(rows)[:OFFERS]]
+
+
+def _beside(draft: SceneDraft, number: int) -> list[int]:
+    """Return the objects whose cells come near to those of one."""
+    cells = draft.cells_of(number)
+    if not len(cells):
+        return []
+    low, high = cells.min(axis=0) - TOUCH_CELLS, cells.max(axis=0) + TOUCH_CELLS + 1
+    box = tuple(slice(max(int(a), 0), int(b)) for a, b in zip(low, high, strict=True))
+    near = np.unique(draft.instance[box]).tolist()
+    return [other for other in near if other and other != number and other in draft.objects]
+
+
+def _best(
+    draft: SceneDraft, tools: Tools, wanted: Wanted, gestures: Iterator[Gesture], limit: int
+) -> Tried | None:
+    """Do each gesture, judge the scene, and take it back.
+
+    Returns:
+        The best of those after which at most ``limit`` things are wrong.
+    """
+    best: Tried | None = None
+    for gesture in gestures:
+        operation = _planned(draft, tools, gesture)
+        if operation is None:
+            continue
+        draft.apply(operation)
+        wrong = defects_of(draft, wanted).total
+        if wrong <= limit:
+            cost = round(wrong - CELLS_WORTH * agreement(draft, wanted), DIGITS)
+            if best is None or cost < best.cost:
+                best = Tried(wrong, cost, gesture)
+        draft.apply(operation.inverse())
+    return best
+
+
+def _planned(draft: SceneDraft, tools: Tools, gesture: Gesture):
+    try:
+        return parse_command(gesture).plan(draft, tools)
+    except UsageError:
+        return None
