@@ -71,7 +71,7 @@ def frames(page: Any, size: float, style: str) -> tuple[str, str]:
 def made(editor: Editor, size: float, style: str) -> list[str]:
     """Return the best of three times of a build and of its mesh, and how large that is."""
     scene = HeldScene.of(editor)
-    build_s = mesh_s = 1e9
+    build_s, mesh_s, packed = 1e9, 1e9, b""
     for _ in range(3):
         start = time.perf_counter()
         build = Build.of(scene, BuildOptions(size, style))

@@ -194,6 +194,7 @@ def test_what_can_be_hidden_keeps_what_is_behind_it():
     whole = volume_of(states, semantic=semantic)
     mesh = mesh_of(BlockVolume(**{**vars(whole), "instance": np.zeros_like(whole.instance)}))
     assert len(mesh) == 12  # Two cubes of two classes: each has six sides.
+    assert sorted(mesh.cover.tolist()) == [3, 5] + [65535] * 10, "two of them lie on each other"
 
 
 def test_a_volume_of_air_has_no_quads():
@@ -211,7 +212,9 @@ def test_cuts_are_those_of_the_preview():
     pose = look_at(np.array([4.0, 4.5, 3.0]), np.array([0.8, 0.8, 0.2]))
     for bit, corner in enumerate(CORNERS):
         cut = without_near_walls(without_ceiling(volume), *corner)
-        kept = (mesh.cuts & (1 << bit | 1 << 4)) == 0
+        hidden = 1 << bit | 1 << 4
+        kept = (mesh.cuts & hidden) == 0
+        kept &= (mesh.cover == 65535) | (mesh.cover >> 8 & hidden > 0)
         rays = rays_of(volume, pose, WIDE)
         shown, told = (first_quads(one, *rays)[0] for one in (some_of(mesh, kept), mesh_of(cut)))
         both = np.isfinite(shown)

@@ -140,7 +140,8 @@ def _arrays(mesh: BlockMesh) -> dict[str, np.ndarray]:
     """Return what is drawn, a row for each corner, and what a click tells, a row for each quad."""
     emission = np.repeat(mesh.emission[:, None], 4, axis=1)[..., None]
     colour = np.concatenate([mesh.tint, mesh.shade[:, None]], axis=1)
-    kind = np.stack([mesh.layer, mesh.semantic + mesh.cuts * np.uint16(256)], axis=1)
+    facts = mesh.semantic + mesh.cuts * np.uint16(256)
+    kind = np.stack([mesh.layer, facts, mesh.cover, np.zeros_like(facts)], axis=1)
     return {
         "position": mesh.position.reshape(-1, 3),
         "uv": mesh.uv.reshape(-1, 2),

@@ -55,7 +55,7 @@ def seen(forge) -> dict[int, np.ndarray]:
               if (!met || !mesh.instance[met.quad]) continue;
               const tint = mesh.colour.slice(met.quad * 16, met.quad * 16 + 4);
               const shade = (1.1 * tint[3]) / 255;
-              const mean = meanOf(mesh.kind[met.quad * 8]);
+              const mean = meanOf(mesh.kind[met.quad * 16]);
               const colour = mean.map((c, i) => (c * shade * tint[i]) / 255);
               rows.push([mesh.instance[met.quad], x, y, ...colour]);
             }

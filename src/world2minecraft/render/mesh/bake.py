@@ -25,7 +25,7 @@ from world2minecraft.render.standing_boxes import standing_things
 from world2minecraft.render.tables import ABSOLUTE, FULL
 from world2minecraft.types import BlockVolume
 
-NO_STATE = 65_535
+NO_STATE = NO_COVER = 65_535
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,8 @@ class BlockMesh:
     """Q quads in coordinates of the volume's cells; those that are drawn over others come last.
 
     ``light`` is sky light and block light, 0 to 60, and what darkens a corner, 0 to 240.
-    ``state`` indexes the palette, 65535 for display entities. ``cuts`` are bits of ``cuts_of``.
+    ``state`` indexes the palette, 65535 for display entities. ``cuts`` are bits of ``cuts_of``. A
+    quad with a ``cover`` is seen only where that is hidden.
     """
 
     position: np.ndarray  # float32 [Q, 4, 3]
@@ -47,6 +48,7 @@ class BlockMesh:
     instance: np.ndarray  # uint16 [Q]
     semantic: np.ndarray  # uint8 [Q]
     cuts: np.ndarray  # uint8 [Q]
+    cover: np.ndarray  # uint16 [Q], class + 256 * cuts of what lies on it; 65535 for nothing
     clear_from: int  # the first quad that is drawn over what is behind it
     atlas: Atlas
 
@@ -64,6 +66,7 @@ class _Placed:
     semantic: np.ndarray
     instance: np.ndarray
     cuts: np.ndarray
+    cover: np.ndarray
 
 
 def mesh_of(
@@ -111,7 +114,9 @@ def _of_blocks(
     joining = np.array([joins(*pair) for pair in zip(volume.palette, models, strict=True)], bool)
     groups = cuts.astype(np.int32) * 256 + volume.semantic
     hidden = covered(states, kinds, joining, groups)
-    solid = np.pad((kinds == FULL)[states], 1)
+    full = (kinds == FULL)[states]
+    owners = volume.semantic + cuts * np.uint16(256)
+    covers = np.pad(np.where(full, owners, NO_COVER), 1, constant_values=NO_COVER)
     order = np.argsort(states.ravel(), kind="stable")
     ends = np.searchsorted(states.ravel()[order], np.arange(len(templates) + 1))
     parts = []
@@ -130,26 +135,27 @@ def _of_blocks(
         at = tuple(cells.T)
         facts = (volume.semantic[at], volume.instance[at], cuts[at])
         state = np.full(len(cells), row, np.uint16)
-        placed = _Placed(quads, cells, state, *facts)
-        lit = _lit(placed, lattice, solid)
+        placed = _Placed(quads, cells, state, *facts, _cover(quads, cells, covers))
+        lit = _lit(placed, lattice)
         parts.append(_joined(*lit) if kinds[row] == FULL else lit)
     return parts
 
 
-def _lit(
-    placed: _Placed, lattice: np.ndarray, solid: np.ndarray | None = None
-) -> tuple[_Placed, np.ndarray]:
-    """Return quads with the light at their corners."""
+def _cover(quads: Quads, cells: np.ndarray, covers: np.ndarray) -> np.ndarray:
+    """Return what lies on each quad; ``covers`` has a margin of one cell."""
+    ahead = cells + 1
+    ahead[np.arange(len(cells)), quads.facing // 2] += np.where(quads.facing % 2, 1, -1)
+    return np.where(quads.side == INSIDE, NO_COVER, covers[tuple(ahead.T)])
+
+
+def _lit(placed: _Placed, lattice: np.ndarray) -> tuple[_Placed, np.ndarray]:
+    """Return quads with the light at their corners; what a cut lays bare is in the open."""
     count = len(placed.cells)
     cells = np.repeat(placed.cells, 4, axis=0)
     points = placed.quads.corners.reshape(-1, 3)
     facing = np.repeat(placed.quads.facing.astype(np.int64), 4)
     light = light_at(lattice, cells, facing, points).reshape(count, 4, 3)
-    if solid is not None:
-        ahead = placed.cells + 1
-        axis, on_side = placed.quads.facing // 2, placed.quads.side != INSIDE
-        ahead[np.arange(count), axis] += np.where(placed.quads.facing % 2, 1, -1)
-        light[on_side & solid[tuple(ahead.T)]] = OPEN
+    light[placed.cover != NO_COVER] = OPEN
     return placed, light
 
 
@@ -159,13 +165,14 @@ def _standing(quads: Quads, facts: tuple[int, int, int, int]) -> _Placed:
     cells = np.floor(middle).astype(np.int64)
     count = len(cells)
     moved = quads._replace(corners=quads.corners - cells[:, None])
-    state, semantic, instance, cuts = (np.full(count, fact) for fact in facts)
-    return _Placed(moved, cells, state, semantic, instance, cuts)
+    held = (np.full(count, fact) for fact in (*facts, NO_COVER))
+    return _Placed(moved, cells, *held)
 
 
 def _joined(placed: _Placed, light: np.ndarray) -> tuple[_Placed, np.ndarray]:
     """Join the faces of cubes of one state; only such that are lit evenly."""
-    facts = np.stack([placed.semantic, placed.instance, placed.cuts], axis=1).astype(np.int64)
+    facts = (placed.semantic, placed.instance, placed.cuts, placed.cover)
+    facts = np.stack(facts, axis=1).astype(np.int64)
     keys = np.concatenate([facts, light[:, 0].astype(np.int64)], axis=1)
     look = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
     even = (light == light[:, :1]).all(axis=(1, 2))
@@ -180,9 +187,10 @@ def _joined(placed: _Placed, light: np.ndarray) -> tuple[_Placed, np.ndarray]:
     along_two = (two * (length - 1)).sum(axis=1)[:, None, None]
     ends = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)
     uv = quads.uv + slope[0] * along_one * ends[:, :1] + slope[1] * along_two * ends[:, 1:]
-    facts = (placed.state[rows], placed.semantic[rows], placed.instance[rows], placed.cuts[rows])
+    names = ("cells", "state", "semantic", "instance", "cuts", "cover")
+    held = {name: getattr(placed, name)[rows] for name in names}
     quads = quads._replace(corners=grown, uv=uv.astype(np.float32))
-    return _Placed(quads, placed.cells[rows], *facts), light[rows]
+    return _Placed(quads=quads, **held), light[rows]
 
 
 def _mesh(parts: list[tuple[_Placed, np.ndarray]], atlas: Atlas) -> BlockMesh:
@@ -208,6 +216,7 @@ def _mesh(parts: list[tuple[_Placed, np.ndarray]], atlas: Atlas) -> BlockMesh:
         instance=all_of("instance", np.uint16),
         semantic=all_of("semantic", np.uint8),
         cuts=all_of("cuts", np.uint8),
+        cover=all_of("cover", np.uint16),
         clear_from=int(np.count_nonzero(~quads.clear)),
         atlas=atlas,
     )

@@ -31,18 +31,18 @@ function packed(magic: string, told: object, arrays: Arrays): ArrayBuffer {
 const raw = (values: Float32Array | Uint16Array | Uint8Array): Uint8Array => new Uint8Array(values.buffer);
 
 /** Two faces that look to -x: at x = 2 of class 3 with cut 1, at x = 5 of class 8 and object 7. */
-function wall(): BlockMesh {
+function wall(cover = 65535): BlockMesh {
   const face = (x: number): number[] => [x, 0, 0, x, 0, 3, x, 3, 3, x, 3, 0];
   const corners = (of: (quad: number) => number[]): number[] => [0, 1].flatMap((q) => [0, 1, 2, 3].flatMap(() => of(q)));
   const entry = (dtype: string, shape: number[], values: Float32Array | Uint16Array | Uint8Array) => ({ dtype, shape, data: raw(values) });
-  const kinds = [[0, 3 + 256], [0, 8]];
+  const kinds = [[0, 3 + 256, 65535, 0], [0, 8, cover, 0]];
   return new BlockMesh(
     packed("W2MB", { palette: ["minecraft:air", "minecraft:stone"], clear_from: 2, texture_px: 1 }, {
       position: entry("f4", [8, 3], new Float32Array([...face(2), ...face(5)])),
       uv: entry("f4", [8, 2], new Float32Array(16)),
       light: entry("u1", [8, 4], new Uint8Array(32)),
       colour: entry("u1", [8, 4], new Uint8Array(32)),
-      kind: entry("u2", [8, 2], new Uint16Array(corners((q) => kinds[q]!))),
+      kind: entry("u2", [8, 4], new Uint16Array(corners((q) => kinds[q]!))),
       state: entry("u2", [2], new Uint16Array([1, 1])),
       instance: entry("u2", [2], new Uint16Array([0, 7])),
       texels: entry("u1", [1, 1, 1, 4], new Uint8Array(4)),
@@ -66,6 +66,13 @@ describe("the mesh of a build", () => {
     expect(mesh.meet([9, 1.5, 1.5], [-1, 0, 0], NOTHING)).toBeNull();
     expect(mesh.meet([0, 3.01, 1.5], [1, 0, 0], NOTHING)).toBeNull();
     expect(mesh.meet([3, 1.5, 1.5], [1, 0, 0], NOTHING)?.quad).toBe(1);
+  });
+
+  it("shows what lies under something only where that is hidden", () => {
+    const mesh = wall(2 + 2 * 256);
+    expect(mesh.meet([3, 1.5, 1.5], [1, 0, 0], NOTHING)).toBeNull();
+    expect(mesh.meet([3, 1.5, 1.5], [1, 0, 0], { classes: 1 << 2, cuts: 0 })?.quad).toBe(1);
+    expect(mesh.meet([3, 1.5, 1.5], [1, 0, 0], { classes: 0, cuts: 2 })?.quad).toBe(1);
   });
 
   it("knows the box of an object", () => {

@@ -80,7 +80,7 @@ function geometryOf(mesh: BlockMesh): THREE.BufferGeometry {
   geometry.setAttribute("uv", new THREE.BufferAttribute(mesh.uv, 2));
   geometry.setAttribute("light", new THREE.BufferAttribute(mesh.light, 4, true));
   geometry.setAttribute("colour", new THREE.BufferAttribute(mesh.colour, 4, true));
-  geometry.setAttribute("kind", new THREE.BufferAttribute(mesh.kind, 2));
+  geometry.setAttribute("kind", new THREE.BufferAttribute(mesh.kind, 4));
   geometry.setAttribute("outward", new THREE.BufferAttribute(outward(mesh), 4, true));
   const index = new Uint32Array(mesh.quads * 6);
   for (let quad = 0; quad < mesh.quads; quad++) {

@@ -6,7 +6,7 @@ import * as THREE from "three";
 const VERTEX = /* glsl */ `
 in vec4 light; // sky, block, corner, own
 in vec4 colour; // tint, shade
-in vec2 kind; // texture, class + 256 * cuts
+in vec4 kind; // texture; class + 256 * cuts, its own and of what lies on it
 uniform int hiddenClasses;
 uniform int hiddenCuts;
 uniform vec3 skyLight;
@@ -23,9 +23,12 @@ float shine(float level) {
   float share = min(level * (255.0 / 60.0), 1.0);
   return share / (1.0 + curve * (1.0 - share));
 }
+bool isOff(float told) {
+  int facts = int(told + 0.5);
+  return ((1 << (facts & 255)) & hiddenClasses) != 0 || ((facts >> 8) & hiddenCuts) != 0;
+}
 void main() {
-  int facts = int(kind.y + 0.5);
-  bool hidden = ((1 << (facts & 255)) & hiddenClasses) != 0 || ((facts >> 8) & hiddenCuts) != 0;
+  bool hidden = isOff(kind.y) || (kind.z < 65534.5 && !isOff(kind.z));
   vec4 place = modelViewMatrix * vec4(position, 1.0);
   float pixel = 2.0 * (projectionMatrix * place).w / (projectionMatrix[1][1] * tall);
   vec3 away = mat3(modelViewMatrix) * outward;
@@ -64,7 +67,11 @@ const LOOKS: Record<Light, { sky: number[]; lamp: number[]; ambient: number[]; c
   night: { sky: [0.13, 0.15, 0.26], lamp: [0.95, 0.82, 0.6], ambient: [0.05, 0.05, 0.07], corner: 0.2 },
 };
 
+/** What is behind all blocks for one who walks. */
+export const SKIES: Record<Light, number> = { even: 0x8fb8f0, day: 0x8fb8f0, night: 0x0b1026 };
+
 export class BlockMaterial {
+  light: Light = "even";
   readonly uniforms = {
     textures: { value: null as THREE.DataArrayTexture | null },
     hiddenClasses: { value: 0 },
@@ -80,10 +87,11 @@ export class BlockMaterial {
   readonly clear = this.made(true);
 
   constructor() {
-    this.setLight("even");
+    this.setLight(this.light);
   }
 
   setLight(light: Light): void {
+    this.light = light;
     const { sky, lamp, ambient, corner } = LOOKS[light];
     this.uniforms.skyLight.value.fromArray(sky);
     this.uniforms.lampLight.value.fromArray(lamp);

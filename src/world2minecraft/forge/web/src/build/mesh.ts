@@ -5,6 +5,7 @@ import { Packet } from "./packet";
 
 export const CEILING_CUT = 1 << 4;
 export const PARTITION_CUT = 1 << 5;
+const NO_COVER = 65535;
 
 /** Bits of what is not drawn: classes by the legend, cuts that open a room. */
 export interface Hidden {
@@ -37,7 +38,7 @@ export class BlockMesh {
   readonly uv: Float32Array;
   readonly light: Uint8Array;
   readonly colour: Uint8Array;
-  readonly kind: Uint16Array; // texture, class + 256 * cuts
+  readonly kind: Uint16Array; // texture; class + 256 * cuts, its own and of what lies on it; 0
   readonly state: Uint16Array; // by quad
   readonly instance: Uint16Array; // by quad
   readonly texels: Uint8Array;
@@ -62,9 +63,9 @@ export class BlockMesh {
     return this.state.length;
   }
 
-  isHidden(quad: number, { classes, cuts }: Hidden): boolean {
-    const facts = this.kind[quad * 8 + 1]!;
-    return ((1 << (facts & 255)) & classes) !== 0 || ((facts >> 8) & cuts) !== 0;
+  isHidden(quad: number, hidden: Hidden): boolean {
+    const cover = this.kind[quad * 16 + 2]!;
+    return isOff(this.kind[quad * 16 + 1]!, hidden) || (cover !== NO_COVER && !isOff(cover, hidden));
   }
 
   /** The first quad that a ray, in cells of the build, meets from its front. */
@@ -128,6 +129,10 @@ export class BlockMesh {
     const length = Math.hypot(...n) || 1;
     return n.map((v) => v / length) as Vec3;
   }
+}
+
+function isOff(facts: number, { classes, cuts }: Hidden): boolean {
+  return ((1 << (facts & 255)) & classes) !== 0 || ((facts >> 8) & cuts) !== 0;
 }
 
 /** Which cuts open the room to one who looks from this side: bits of render/mesh/cuts.py. */

@@ -37,7 +37,6 @@ function mountWishes(host: HTMLElement, app: App): void {
   const builder = builderOf(app);
   const { loader, blocks } = builder;
   const words = TEXT.build;
-  let light: Light = "even";
   const voxel = (): number => 1 / (app.store.get().scene?.voxel_m ?? 0.08);
   const sizes = (): number[] => [1, 2, 4, voxel()];
   const size = segment<string>(
@@ -54,7 +53,6 @@ function mountWishes(host: HTMLElement, app: App): void {
     words.light,
     () => LIGHTS.map((value) => ({ value, label: words.lights[value] })),
     (value) => {
-      light = value;
       blocks.material.setLight(value);
       builder.view.invalidate();
       show();
@@ -68,7 +66,7 @@ function mountWishes(host: HTMLElement, app: App): void {
   const show = (): void => {
     size.set(String(loader.wish.size));
     style.set(loader.wish.style as (typeof STYLES)[number]);
-    lamp.set(light);
+    lamp.set(blocks.material.light);
     open.set(builder.cutOpen);
     const { mesh } = loader;
     facts.textContent = mesh ? words.facts(mesh.facts.blocks, mesh.facts.palette.length - 1) : "";

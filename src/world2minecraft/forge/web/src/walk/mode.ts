@@ -1,5 +1,6 @@
 // Walk: through the build, or through the voxels, with the game's physics.
 
+import { SKIES } from "../build/material";
 import { builderOf } from "../build/mode";
 import { describe } from "../build/words";
 import { Packet } from "../build/packet";
@@ -15,7 +16,6 @@ import { Walker } from "./walker";
 
 type Ground = "blocks" | "voxels";
 
-const SKY = 0x8fb8f0;
 const TOLD_MS = 250; // between two looks at what is ahead
 
 export class Walking {
@@ -27,7 +27,8 @@ export class Walking {
   private frame = 0;
   private last = 0;
   private toldAt = 0;
-  private sky: SceneView["scene"]["background"] = null;
+  private behind: SceneView["scene"]["background"] = null; // what was behind all before
+  private readonly sky = new Color();
   private listeners = new Set<() => void>();
   private asked = 0;
 
@@ -50,8 +51,7 @@ export class Walking {
   }
 
   enter(): void {
-    this.sky = this.view.scene.background;
-    this.view.scene.background = new Color(SKY);
+    this.behind = this.view.scene.background;
     this.choose(this.ground);
     this.input.start();
     (document.activeElement as HTMLElement | null)?.blur();
@@ -64,7 +64,7 @@ export class Walking {
     this.input.stop();
     this.walker = null;
     this.view.pose = null;
-    this.view.scene.background = this.sky;
+    this.view.scene.background = this.behind;
     builderOf(this.app).show(false);
   }
 
@@ -106,6 +106,7 @@ export class Walking {
     this.last = now;
     const { walker } = this;
     if (!walker) return;
+    this.showSky();
     const [right, down] = this.input.look(milliseconds);
     walker.look(right, down);
     walker.keys = this.input.keys;
@@ -118,6 +119,14 @@ export class Walking {
       this.toldAt = now;
       this.tell();
     }
+  }
+
+  /** The view paints its own ground behind all when the theme or the legend changes. */
+  private showSky(): void {
+    const wanted = SKIES[builderOf(this.app).blocks.material.light];
+    if (this.view.scene.background === this.sky && this.sky.getHex() === wanted) return;
+    this.view.scene.background = this.sky.setHex(wanted);
+    this.view.invalidate();
   }
 
   /** What is in the middle of the picture, in words. */
