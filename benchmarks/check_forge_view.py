@@ -5,11 +5,11 @@
 Needs node (the page is built for this), playwright and a chromium. ``demo`` is the demo room in the
 whole editor; the other scenes are made here and drawn alone: rooms with furniture, three cells in
 a hundred missing and a crust of wrong ones, as a raw reconstruction has. ``first`` is the time
-from the start of the navigation to the first frame, ``whole`` until all is drawn as fine as it
-will be; ``moving`` and ``inside`` are the medians of frames while the
-camera orbits, from outside and from within a room; ``scale`` is the share of the screen's pixels
-that those frames had, which falls where the machine is slow. The browser runs already. Beside stand an SVG square a voxel, as D3 draws
-them, and an instanced cube a voxel.
+from the start of the navigation to the first frame, in a browser that runs, ``whole`` until all is
+drawn as fine as it will be. ``moving`` and ``inside`` are the medians of frames while the camera
+orbits, from outside and from within a room; ``scale`` is the share of the screen's pixels along a
+side that they had, which falls where the machine is slow. Beside stand an SVG square a voxel, as
+D3 draws them, and an instanced cube a voxel.
 """
 
 import argparse

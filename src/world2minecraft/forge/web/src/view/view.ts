@@ -79,6 +79,7 @@ export class SceneView extends Looking {
     this.warm();
     const size = new ResizeObserver(() => this.invalidate());
     size.observe(canvas);
+    canvas.addEventListener("webglcontextrestored", () => this.invalidate());
     this.ends = [
       () => size.disconnect(),
       store.watch(["scene", "labels", "view", "theme"], (state, changed) => {
