@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from voxel_scenes import TOOLS, done, grid_of, held, object_at, random_scene, seeds
 
 from world2minecraft.edit.scene import SceneDraft, parse_command, runs_of_cells
+from world2minecraft.edit.scene.painting import colours_of
 from world2minecraft.edit.scene.parts import component_of, parts_of_cells
 from world2minecraft.errors import UsageError
 
@@ -116,6 +117,31 @@ def test_a_painted_cell_joins_the_object_of_its_class_that_it_touches():
     assert draft.instance[1, 0, 0] == 1
     assert draft.colour[1, 0, 0].tolist() == [200, 0, 0], "the colour of the nearest of its class"
     assert draft.source[1, 0, 0] == 1 and draft.confidence[1, 0, 0] == 1
+
+
+@given(seeds)
+def test_a_new_cell_has_a_colour_of_the_nearest_cells_of_its_class(seed):
+    draft = random_scene(seed)
+    rng = np.random.default_rng(seed)
+    cells = rng.permutation(np.argwhere(draft.labels % 255 == 0))[:5]
+    class_id = int(rng.choice([2, 5, 6]))
+    colours = colours_of(draft, cells, np.full(len(cells), class_id, np.uint8))
+    known = np.argwhere((draft.labels == class_id) & draft.colour.any(axis=-1))
+    for cell, colour in zip(cells, colours, strict=True):
+        gaps = ((known - cell) ** 2).sum(axis=1)
+        nearest = known[gaps == gaps.min()] if len(known) and gaps.min() <= 36 else []
+        allowed = [draft.colour[tuple(one)].tolist() for one in nearest] or [[0, 0, 0]]
+        assert colour.tolist() in allowed
+
+
+def test_many_objects_lose_their_last_cells_at_once():
+    labels = np.zeros((40, 2, 1), np.uint8)
+    labels[:, 0], instance = 5, np.zeros((40, 2, 1), np.uint16)
+    instance[:, 0, 0] = np.arange(1, 41)
+    objects = [object_at(n, 5, np.argwhere(instance == n)) for n in range(1, 41)]
+    draft = SceneDraft(grid_of(labels, instance), objects)
+    painted(draft, [(x, 0, 0) for x in range(30)], 0)
+    assert sorted(draft.objects) == list(range(31, 41))
 
 
 def test_a_bridge_goes_as_a_whole_to_the_one_with_most_faces_and_the_lowest_id():

@@ -13,13 +13,15 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
+from scipy.spatial import KDTree
 
 from world2minecraft.classes import OBJECT_CLASSES, UNKNOWN
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.parts import box_of, parts_of_cells, shifted
 from world2minecraft.types import OBSERVED, GridCells, Operation, SceneObject
 
+MAX_IDS = 1 << 16
+FEW = 16
 COLOUR_REACH_M = 0.5  # Paint and wood change from one end of a room to the other.
 
 
@@ -84,10 +86,20 @@ def emptied(draft: SceneDraft, cells: np.ndarray, instance: np.ndarray) -> list[
     lost = np.unique(held[(held > 0) & (held != instance)])
     if not len(lost):
         return []
-    total = np.bincount(draft.instance.ravel(), minlength=65536)
-    total -= np.bincount(held, minlength=65536)
-    total += np.bincount(instance, minlength=65536)
+    total = cells_held(draft, lost)
+    total -= np.bincount(held, minlength=MAX_IDS)
+    total += np.bincount(instance, minlength=MAX_IDS)
     return [int(one) for one in lost if total[one] == 0 and int(one) in draft.objects]
+
+
+def cells_held(draft: SceneDraft, numbers: np.ndarray) -> np.ndarray:
+    """Return how many cells some objects have, int64 [65536], by id; of others it may be 0."""
+    if len(numbers) > FEW:
+        return np.bincount(draft.instance.ravel(), minlength=MAX_IDS)
+    total = np.zeros(MAX_IDS, np.int64)
+    for number in numbers:  # Counting all takes eight times the memory of the grid.
+        total[number] = np.count_nonzero(draft.instance == number)
+    return total
 
 
 def adjacent_owners(draft: SceneDraft, cells: np.ndarray, labels: np.ndarray) -> np.ndarray:
@@ -140,9 +152,10 @@ def _nearest_colours(draft: SceneDraft, cells: np.ndarray, class_id: int) -> np.
     reach = max(round(COLOUR_REACH_M / draft.voxel_m), 1)
     low, box = box_of(cells, draft.shape, reach)
     known = (draft.labels[box] == class_id) & draft.colour[box].any(axis=-1)
-    if not known.any():
+    sources = np.argwhere(known) + low
+    if not len(sources):
         return np.zeros((len(cells), 3), np.uint8)
-    apart, nearest = ndimage.distance_transform_edt(~known, return_indices=True)  # type: ignore[misc]
-    at = tuple((cells - low).T)
-    colours = draft.colour[box][tuple(nearest[(slice(None), *at)])]
-    return np.where((apart[at] <= reach)[:, None], colours, 0).astype(np.uint8)
+    _, nearest = KDTree(sources).query(cells, distance_upper_bound=reach + 1e-6)
+    found = np.asarray(nearest < len(sources))  # Where nothing is near, it is one past the last.
+    at = tuple(sources[np.where(found, nearest, 0)].T)
+    return np.where(found[:, None], draft.colour[at], 0).astype(np.uint8)
