@@ -5,6 +5,7 @@ import { TEXT } from "../text";
 import { boxOf } from "../tools/objects_at";
 import { fill, h } from "./dom";
 import { plainButton } from "./fields";
+import { unfold } from "./panels";
 import { rove } from "./rove";
 import type { App } from "./slots";
 
@@ -47,8 +48,12 @@ export function mountDoubtful(host: HTMLElement, app: App): void {
     go(places.length ? (at + by + places.length + (at < 0 && by < 0 ? 1 : 0)) % places.length : -1);
   };
   const why = (): string => (app.store.get().scene ? "" : TEXT.why.noScene);
-  app.actions.on("doubtful.next", { run: () => void step(1), why });
-  app.actions.on("doubtful.previous", { run: () => void step(-1), why });
+  const asked = (by: number): void => {
+    unfold("doubtful");
+    void step(by);
+  };
+  app.actions.on("doubtful.next", { run: () => asked(1), why });
+  app.actions.on("doubtful.previous", { run: () => asked(-1), why });
   const next = plainButton(TEXT.doubtful.next, () => void step(1));
   const previous = plainButton(TEXT.doubtful.previous, () => void step(-1));
   host.append(h("div", { class: "stack" }, h("div", { class: "row is-even" }, previous, next), note, list));

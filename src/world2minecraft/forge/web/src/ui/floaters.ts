@@ -6,6 +6,7 @@ import { cellsOfRuns, cellOf } from "../tools/cells";
 import { cannotEdit } from "./blocked";
 import { fill, h, setWhy } from "./dom";
 import { plainButton, slider } from "./fields";
+import { unfold } from "./panels";
 import { rove } from "./rove";
 import type { App } from "./slots";
 
@@ -63,7 +64,10 @@ export function mountFloaters(host: HTMLElement, app: App): void {
   host.append(h("div", { class: "stack" }, size.node, h("div", { class: "row is-even" }, find, all), note, list));
   rove(list);
   draw();
-  app.actions.on("floaters.find", { run: () => void look(), why: () => (app.store.get().scene ? "" : TEXT.why.noScene) });
+  app.actions.on("floaters.find", { run: () => {
+      unfold("floaters");
+      void look();
+    }, why: () => (app.store.get().scene ? "" : TEXT.why.noScene) });
   app.store.watch(["online", "scene"], draw);
   app.connection.onChange(() => looked && void look());
   app.store.watch(["mode"], ({ mode }) => mode !== "voxels" && looked && clear());

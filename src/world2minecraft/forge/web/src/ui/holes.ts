@@ -5,6 +5,7 @@ import { TEXT } from "../text";
 import { cannotEdit } from "./blocked";
 import { fill, h, setWhy } from "./dom";
 import { plainButton } from "./fields";
+import { unfold } from "./panels";
 import { rove } from "./rove";
 import type { App } from "./slots";
 
@@ -40,7 +41,10 @@ export function mountHoles(host: HTMLElement, app: App): void {
   host.append(h("div", { class: "stack" }, find, note, list));
   rove(list);
   app.actions.on("holes.fill", {
-    run: () => void look(),
+    run: () => {
+      unfold("holes");
+      void look();
+    },
     why: () => (app.store.get().scene ? "" : TEXT.why.noScene),
   });
   app.connection.onChange(() => looked && void look());

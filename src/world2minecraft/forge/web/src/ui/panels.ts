@@ -40,6 +40,14 @@ function section(panel: Panel, app: App): HTMLElement {
   return node;
 }
 
+/** Open a folded panel that a key asked for, and bring it into view. */
+export function unfold(id: string): void {
+  const node = document.querySelector<HTMLElement>(`[data-panel="${id}"]`);
+  const toggle = node?.querySelector<HTMLElement>(".panel-title");
+  if (toggle?.getAttribute("aria-expanded") === "false") toggle.click();
+  node?.scrollIntoView({ block: "nearest" });
+}
+
 export function mountDrawer(host: HTMLElement, app: App): void {
   const panels = slots.panels("drawer");
   const tabs = h("div", { class: "drawer-tabs", role: "tablist", "aria-label": TEXT.panels.drawer });

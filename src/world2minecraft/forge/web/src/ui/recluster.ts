@@ -34,16 +34,19 @@ export function mountRecluster(host: HTMLElement, app: App): void {
   app.stage.append(marks);
   let shown: Centre[] = [];
   let timer = 0;
+  let asked = 0;
   const place = (): void => placeDots(app, marks, shown);
   app.view.onFrame.push(place);
   const clear = (): void => {
+    asked += 1;
     shown = [];
     marks.replaceChildren();
     note.textContent = TEXT.recluster.note;
   };
   const ask = async (): Promise<void> => {
+    const mine = ++asked;
     const found = await app.ask<Centre[]>("centers", { ...params });
-    if (!found) return;
+    if (!found || mine !== asked) return; // A later one is on its way, or the preview was closed.
     shown = found;
     note.textContent = TEXT.recluster.found(shown.length, app.store.get().objects.size);
     makeDots(app, marks, shown);

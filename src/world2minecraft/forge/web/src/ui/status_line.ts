@@ -5,6 +5,8 @@ import { TEXT } from "../text";
 import { h } from "./dom";
 import type { App } from "./slots";
 
+const PAUSE_MS = 500; // figures that change faster cannot be read
+
 export interface Under {
   cell: readonly [number, number, number] | null;
   flat: number;
@@ -21,18 +23,24 @@ export function mountStatusLine(host: HTMLElement, app: App): { show(under: Unde
     said.textContent = status;
     said.title = status;
   });
-  let shown = 0;
-  let timer = 0;
-  // Told only while something moves: of a still picture it would mean nothing.
-  app.view.onFrame.push((milliseconds) => {
-    clearTimeout(timer);
-    timer = window.setTimeout(() => (speed.textContent = ""), 1500);
-    if (performance.now() - shown < 500) return;
-    shown = performance.now();
-    speed.textContent = TEXT.status.frame(milliseconds);
-  });
+  showSpeed(speed, app);
   parts[0]!.textContent = TEXT.status.none;
   return { show: (under) => parts.forEach((node, at) => (node.textContent = words(app.store, under)[at] ?? "")) };
+}
+
+/** Frame times, while one moves: of a picture that stands still they would mean nothing. */
+function showSpeed(node: HTMLElement, app: App): void {
+  let shown = 0;
+  let timer = 0;
+  app.view.onFrame.push((milliseconds) => {
+    const now = performance.now();
+    const moving = app.view.controls.dragging || app.store.get().mode === "walk";
+    if (!moving || now - shown < PAUSE_MS) return;
+    shown = now;
+    node.textContent = TEXT.status.frame(milliseconds);
+    clearTimeout(timer);
+    timer = window.setTimeout(() => (node.textContent = ""), 4 * PAUSE_MS);
+  });
 }
 
 function words(store: Store, { cell, flat }: Under): string[] {
