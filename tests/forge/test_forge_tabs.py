@@ -15,10 +15,24 @@ from websockets.client import ClientProtocol
 from websockets.uri import parse_uri
 
 from world2minecraft.edit.scene import COMMANDS, Command
-from world2minecraft.forge import hub
+from world2minecraft.forge import hub, session
 from world2minecraft.forge.hub import MAX_QUEUED, MAX_TABS, Hub
 from world2minecraft.forge.serve import ForgeServer
 from world2minecraft.forge.volumes import HEADER
+
+
+@pytest.mark.parametrize("quick_cells", [session.QUICK_CELLS, 0])  # At once; by the thread.
+def test_what_is_done_undone_and_redone_is_told_before_the_answer(monkeypatch, quick_cells):
+    monkeypatch.setattr(session, "QUICK_CELLS", quick_cells)
+    with served(small_editor()) as server, tab(server) as page:
+        for number in range(20):
+            say(page, type="do", seq=3 * number, command=paint(100))
+            say(page, type="undo", seq=3 * number + 1)
+            say(page, type="redo", seq=3 * number + 2)
+            say(page, type="undo", seq=-1)
+            told = [heard(page) for _ in range(8)]
+            assert [m["type"] for m in told] == ["change", "done"] * 4
+            assert [m["rev"] for m in told[::2]] == [m["rev"] for m in told[1::2]]
 
 
 def test_edits_of_many_tabs_are_one_row(server_of_many):

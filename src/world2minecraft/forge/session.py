@@ -23,7 +23,7 @@ from world2minecraft.forge.wire import PROTOCOL
 from world2minecraft.types import Operation
 
 QUICK = frozenset({"set_cells", "move_object", "turn_objects", "delete_objects", "set_template"})
-QUICK_CELLS = 1 << 20  # In a larger grid these are planned by the thread too.
+QUICK_CELLS = 1 << 20  # In a larger grid the thread does these too.
 NO_ROOM = "no room is open; choose one on the start page"
 LOG = logging.getLogger(__name__)
 Value = TypeVar("Value")
@@ -89,19 +89,22 @@ class Session:
         checked = parse_command(command)
         async with self._turn:
             document = self.document
-            quick = command["op"] in QUICK and document.draft.labels.size <= QUICK_CELLS
-            planned = checked if quick else await asyncio.to_thread(_planned, document, checked)
-            return await self._done(document.do(planned, actor=actor))
+            if command["op"] in QUICK and self._is_small:
+                return await self._done(document.do(checked, actor=actor))
+            planned = await asyncio.to_thread(_planned, document, checked)
+            return await self._step(lambda: document.do(planned, actor=actor))
 
     async def undo(self, actor: str = "") -> dict[str, Any]:
         """Take the last operation back. Returns and raises as ``do``."""
         async with self._turn:
-            return await self._done(self.document.undo(actor=actor))
+            document = self.document
+            return await self._step(lambda: document.undo(actor=actor))
 
     async def redo(self, actor: str = "") -> dict[str, Any]:
         """Do again what was taken back last. Returns and raises as ``do``."""
         async with self._turn:
-            return await self._done(self.document.redo(actor=actor))
+            document = self.document
+            return await self._step(lambda: document.redo(actor=actor))
 
     async def preview(self, command: Any) -> dict[str, Any]:
         """Return what a command would do, without doing it. Raises as ``do``."""
@@ -180,6 +183,15 @@ class Session:
                 self.hub.tell_soon(change_of(editor, rev, step, operation))
 
             self._unlisten = editor.on_change(told)
+
+    @property
+    def _is_small(self) -> bool:
+        return self.document.draft.labels.size <= QUICK_CELLS
+
+    async def _step(self, act: Callable[[], Operation]) -> dict[str, Any]:
+        """Do a planned step: at once, or by the thread where it may be of millions of cells."""
+        operation = act() if self._is_small else await asyncio.to_thread(act)
+        return await self._done(operation)
 
     async def _done(self, operation: Operation) -> dict[str, Any]:
         await asyncio.sleep(0)  # The change that waits is told before the answer.

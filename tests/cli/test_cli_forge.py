@@ -1,0 +1,106 @@
+"""``w2m forge`` as a process: its link, its warning, its end."""
+
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import contextmanager
+
+import httpx
+import numpy as np
+import pytest
+from websockets.sync.client import connect
+
+from world2minecraft.cli import run
+
+POSIX = pytest.mark.skipif(os.name != "posix", reason="Ctrl+C is sent as a signal")
+
+
+@pytest.fixture
+def labels(tmp_path):
+    cells = np.zeros((12, 10, 8), np.uint8)
+    cells[:, :, 0], cells[0] = 2, 3
+    np.save(tmp_path / "den.npy", cells)
+    return tmp_path / "den.npy"
+
+
+@contextmanager
+def forge(*words):
+    """The process and the link that it printed; it is ended whatever happens."""
+    command = [sys.executable, "-u", "-m", "world2minecraft.cli", "forge", *map(str, words)]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    with subprocess.Popen([*command, "--no-browser"], **pipes) as process:
+        try:
+            lines = []
+            while not (found := re.findall(r"http://\S+", "".join(lines))):
+                line = process.stdout.readline()
+                assert line, lines
+                lines.append(line)
+            yield process, found[0], "".join(lines)
+        finally:
+            process.kill()
+
+
+@POSIX
+def test_a_room_is_served_until_ctrl_c_and_opens_again_as_it_was_left(labels):
+    paint = {"op": "set_cells", "cells": [[41, 3]], "class_id": 8}
+    for rev in (0, 1):
+        with forge(labels, "--port", 0) as (process, link, _):
+            url, token = link.split("?token=")
+            headers = {"Authorization": f"Bearer {token}"}
+            with httpx.Client(base_url=url, headers=headers, timeout=30) as script:
+                assert httpx.get(url).status_code == 403
+                scene = script.get("/api/scene").json()
+                assert (scene["name"], scene["rev"]) == ("den.npy", rev)
+                if not rev:
+                    assert script.post("/api/do", json=paint).json()["rev"] == 1
+                live = url.replace("http", "ws") + "api/live"
+                with connect(live, additional_headers=headers) as tab:
+                    assert tab.recv()
+                    process.send_signal(signal.SIGINT)
+                    assert process.wait(timeout=30) == 0
+            assert "Traceback" not in process.stdout.read()
+
+
+def test_without_a_room_there_is_a_start_page(tmp_path, monkeypatch):
+    monkeypatch.setenv("W2M_FORGE_HOME", str(tmp_path))
+    with forge("--port", 0) as (_, link, _), httpx.Client(follow_redirects=True) as browser:
+        assert "<html" in browser.get(link).text
+        assert browser.get(link.partition("?")[0] + "api/scene").status_code == 404
+
+
+def test_a_server_for_others_warns_and_wants_the_link_all_the_same(labels):
+    words = (labels, "--port", 0, "--host", "0.0.0.0", "--allow-host", "den.lan")
+    with forge(*words) as (_, link, said):
+        assert said.startswith("warning: whoever reaches 0.0.0.0 and has the link can edit")
+        url, token = link.split("?token=")
+        bearer = {"Authorization": f"Bearer {token}"}
+        for host, status in (("127.0.0.2", 200), ("den.lan", 200), ("evil.example", 403)):
+            answer = httpx.get(f"{url}api/scene", headers=bearer | {"Host": host})
+            assert answer.status_code == status, host
+        assert httpx.get(f"{url}api/scene").status_code == 403
+
+
+def test_a_port_that_is_taken_is_one_line(labels, capsys):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+        assert run(["forge", str(labels), "--no-browser", "--port", port]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith(f"error: cannot listen on 127.0.0.1:{port} (Address already in use)")
+    assert told.endswith("leave out --port for a free one\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "why"),
+    [
+        (["none.npz"], 3, "none.npz"),
+        (["--demo", "den.npy"], 2, "--demo is a room of its own; leave out the file, or --demo"),
+        (["--host", "no.such.host.invalid", "--demo"], 2, "cannot listen on no.such.host.invalid"),
+    ],
+)
+def test_what_cannot_be_opened_is_one_line(words, code, why, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run(["forge", *words]) == code
+    assert why in capsys.readouterr().err
