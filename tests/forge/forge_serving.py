@@ -41,7 +41,8 @@ def client(server, **options) -> httpx.Client:
 def tab(server, **headers):
     """A websocket whose hello was read."""
     url = f"ws://127.0.0.1:{server.port}/api/live"
-    with connect(url, additional_headers=bearer(server) | headers) as socket_:
+    patient = {"ping_interval": None, "max_queue": None}  # A test may look away for long.
+    with connect(url, additional_headers=bearer(server) | headers, **patient) as socket_:
         assert heard(socket_)["type"] == "hello"
         yield socket_
 

@@ -29,7 +29,8 @@ async def live(socket: WebSocket) -> None:
     sender = None
     try:
         await socket.accept()
-        for message in (session.hello(), *session.jobs.states()):
+        running = [one for one in session.jobs.states() if one["state"] == "running"]
+        for message in (session.hello(), *running):  # Of those that ended GET /api/jobs tells.
             tab.put(as_text(message))
         sender = asyncio.create_task(_send(socket, tab, session))
         while True:
