@@ -291,10 +291,11 @@ export const TEXT = {
     centerSize: "Centre size",
     edges: "Edges of cells",
     colourBy: "Colour by",
+    doubtful: "doubtful",
     colours: { class: "Class", confidence: "Sure", colour: "Photo", difference: "Diff" },
     legends: {
       class: "",
-      confidence: "From doubtful to sure.",
+      confidence: "sure",
       colour: "The colour that the photos saw.",
       difference: "Against the other scene: added, removed, changed.",
     },

@@ -2,7 +2,7 @@
 
 import type { ColourBy } from "../store";
 import { TEXT } from "../text";
-import { h } from "./dom";
+import { fill, h } from "./dom";
 import { check, segment, slider } from "./fields";
 import type { App } from "./slots";
 
@@ -43,7 +43,7 @@ export function mountDisplay(host: HTMLElement, { store }: App): void {
     () => COLOURS.map((value) => ({ value, label: words.colours[value], why: whyNot(value, store.get().scene?.has.truth) })),
     (colourBy) => store.setView({ colourBy }),
   );
-  const legend = h("p", { class: "note" });
+  const legend = h("p", { class: "note colour-legend" });
   host.append(
     h("div", { class: "stack" }, size.node, opacity.node, centre.node, edges.node),
     h("h3", { class: "sub" }, words.colourBy),
@@ -56,7 +56,8 @@ export function mountDisplay(host: HTMLElement, { store }: App): void {
     centre.set(view.centerSize);
     edges.set(view.edges);
     colour.set(view.colourBy);
-    legend.textContent = words.legends[view.colourBy];
+    const ramp = view.colourBy === "confidence" && h("span", { class: "ramp" });
+    fill(legend, ramp && words.doubtful, ramp, words.legends[view.colourBy]);
   });
 }
 
