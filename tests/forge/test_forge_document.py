@@ -159,6 +159,22 @@ def test_a_journal_damaged_after_the_last_snapshot_gives_what_is_before_it(run, 
     last.close()
 
 
+@pytest.mark.parametrize("record", [0, 4])
+def test_a_damaged_length_is_no_torn_tail(run, forge, record):
+    editor, states = edited(run, 10)
+    steps = editor.document._journal.steps
+    abandon(editor)
+    before = (forge / "journal.bin").read_bytes()
+    at = len(b"w2m scene 1\n") if record == 0 else steps[record].record.at
+    damaged(forge / "journal.bin", at)
+    again = Editor.open(run)
+    # The first record holds no edit, so all that follow are there.
+    assert held(again) == states[10 if record == 0 else record]
+    assert any(f"journal.bin is damaged at byte {at}" in note for note in again.notes)
+    assert len((forge / "journal-damaged-1.bin").read_bytes()) == len(before)
+    again.close()
+
+
 @pytest.mark.parametrize("name", ["journal.bin", "snapshot", "base.npz"])
 @pytest.mark.parametrize("how", ["gone", "noise", "empty"])
 def test_one_damaged_file_of_a_closed_document_never_keeps_it_shut(run, forge, name, how):

@@ -120,6 +120,11 @@ def test_questions_are_asked_by_name(editor):
         editor.ask("counts", cells=3)
 
 
+def test_a_scene_knows_its_source(editor, source):
+    assert editor.holds(source) and editor.holds(source.with_name("den.npy.forge"))
+    assert not editor.holds(source.with_name("other.npy")) and not editor.holds(None)
+
+
 def test_nothing_is_written_before_it_is_saved(editor, source):
     editor.do("set_cells", cells=HOLE, class_id=0)
     assert not (source.parent / "den").exists()

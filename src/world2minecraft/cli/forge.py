@@ -65,6 +65,10 @@ def run(
             f"warning: whoever reaches {host} and has the link can edit, and nothing is "
             "encrypted; an SSH tunnel is safer (docs/forge.md)"
         )
+    for note in editor.notes if editor else ():
+        print(f"note: {note}")
+    if editor and editor.read_only:
+        print(f"note: open to be read only: {editor.read_only}")
     print(f"SceneForge: {server.link}", flush=True)
     print("Ctrl+C stops it; everything done is kept.", flush=True)
     server.run(lambda: None if no_browser else _open(server.link))

@@ -12,13 +12,14 @@ import struct
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import BinaryIO, NamedTuple
 
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, OutputError
 
 LEVEL = 1  # Of zlib: a build of a million blocks is recorded in half a second.
 HEAD = struct.Struct(">II")
 NUMBER = struct.Struct(">cI")
+_STREAM = zlib.compress(b"", LEVEL)[:2]  # What each stream begins with.
 
 
 class Record(NamedTuple):
@@ -52,6 +53,8 @@ class RecordFile:
     def scan(self) -> Iterator[tuple[Record, bytes]]:
         """Go through the records with their streams; ``end`` follows, past damaged ones too.
 
+        A damaged length is known by the whole records after it: without any it is a torn tail.
+
         Raises:
             DamagedFileError: it is no such file. InputError: it cannot be read.
         """
@@ -66,15 +69,10 @@ class RecordFile:
                     raise DamagedFileError(self.path, f"is no {self.name}")
                 self.end = len(self.mark)
                 while size - self.end >= HEAD.size:
-                    length, checksum = HEAD.unpack(stream.read(HEAD.size))
-                    record = Record(self.end, length)
-                    if record.end > size:
+                    stream.seek(self.end)
+                    record, packed = _next(stream, self.end, size)
+                    if record is None:
                         return
-                    packed = stream.read(length)
-                    if zlib.crc32(packed) != checksum:
-                        if record.end == size:
-                            return
-                        record = record._replace(is_whole=False)
                     self.end = record.end
                     yield record, packed
         except FileNotFoundError:
@@ -151,6 +149,27 @@ class RecordFile:
             raise OutputError(self.path, reason) from error
         self.end = at + len(packed)
         return Record(at, len(packed) - HEAD.size)
+
+
+def _next(stream: BinaryIO, at: int, size: int) -> tuple[Record | None, bytes]:
+    """Return the record that begins here, what is damaged up to the next whole one, or None."""
+    length, checksum = HEAD.unpack(stream.read(HEAD.size))
+    record = Record(at, length)
+    if record.end <= size:
+        packed = stream.read(length)
+        if zlib.crc32(packed) == checksum:
+            return record, packed
+    stream.seek(at)
+    rest = stream.read(size - at)
+    found = 0
+    while (found := rest.find(_STREAM, found + 1)) >= 0:
+        start = found - HEAD.size
+        if start <= 0:
+            continue
+        length, checksum = HEAD.unpack_from(rest, start)
+        if found + length <= len(rest) and zlib.crc32(rest[found : found + length]) == checksum:
+            return Record(at, start - HEAD.size, is_whole=False), b""
+    return None, b""
 
 
 def packed_record(verb: bytes, number: int, content: bytes = b"") -> bytes:

@@ -20,6 +20,7 @@ import numpy as np
 
 from world2minecraft.edit.scene import Command, SceneDraft, parse_command
 from world2minecraft.forge.document import Document
+from world2minecraft.forge.identity import folder_of
 from world2minecraft.forge.queries import parse_query
 from world2minecraft.forge.sources import Opened
 from world2minecraft.forge.tools import tools_of
@@ -101,6 +102,11 @@ class Editor:
     def notes(self) -> list[str]:
         """Sentences for the user: what was recovered, what could not be written."""
         return self.document.notes
+
+    def holds(self, source: Path | None) -> bool:
+        """Whether this is the scene that ``open`` would give for a source."""
+        document = self.document
+        return isinstance(document, Document) and document.folder == folder_of(source)
 
     def do(self, op: str | Command | Operation, *, actor: str = "", **fields: Any) -> Operation:
         """Do a command and return what it did.

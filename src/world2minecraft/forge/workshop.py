@@ -74,6 +74,8 @@ class Workshop:
 
     async def open(self, source: Path) -> None:
         """Open a room in the place of what is open; every tab begins anew."""
+        if self.session.editor is not None and self.session.editor.holds(source):
+            return  # Opened anew it would find itself at work, and be read only.
         editor = await asyncio.to_thread(Editor.open, source)
         for one in self.captures.all():
             if one.run == source:
