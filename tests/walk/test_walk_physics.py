@@ -93,6 +93,13 @@ def test_one_who_sneaks_does_not_fall():
     assert run(world, STANDING, 200, forward=True, yaw_deg=30.0)[-1].position[1] < -5
 
 
+def test_a_body_is_of_plain_values():
+    body = step(PLAIN, STANDING, Keys(forward=True, sneak=True))
+    told = [body.on_ground, body.crouched, body.hit_wall]
+    assert [type(one) for one in told] == [bool] * 3
+    assert {type(value) for value in (*body.position, *body.velocity)} == {float}
+
+
 def test_eyes_are_where_the_game_has_them():
     assert eye_height(STANDING) == 1.62
     assert eye_height(STANDING._replace(crouched=True), 4.0) == pytest.approx(5.08)

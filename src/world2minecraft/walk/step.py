@@ -61,7 +61,7 @@ def step(world: World, body: Body, keys: Keys, scale: float = 1.0) -> Body:
     if crouched and body.on_ground and velocity[1] <= 0:
         way = _kept_from_edges(boxes, body, way, scale)
     gone = _go(boxes, body, way, crouched, scale)
-    stopped = [abs(g - w) > TOUCH * scale for g, w in zip(gone, way, strict=True)]
+    stopped = [bool(abs(g - w) > TOUCH * scale) for g, w in zip(gone, way, strict=True)]
     inertia = GROUND_INERTIA if body.on_ground else AIR_INERTIA
     fall = 0.0 if stopped[1] else velocity[1]
     return Body(
@@ -71,7 +71,7 @@ def step(world: World, body: Body, keys: Keys, scale: float = 1.0) -> Body:
             (fall - GRAVITY * scale) * FALL_DRAG,
             0.0 if stopped[2] else velocity[2] * inertia,
         ),
-        on_ground=stopped[1] and way[1] < 0,
+        on_ground=stopped[1] and velocity[1] < 0,
         crouched=crouched,
         jump_wait=wait,
         hit_wall=stopped[0] or stopped[2],
