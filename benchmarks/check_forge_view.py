@@ -3,13 +3,13 @@
 ``python -m benchmarks.check_forge_view [--pictures FOLDER] [--scenes demo room house building]``
 
 Needs node (the page is built for this), playwright and a chromium. ``demo`` is the demo room in the
-whole editor; the other scenes are made here and drawn alone: rooms with furniture, three cells in
-a hundred missing and a crust of wrong ones, as a raw reconstruction has. ``first`` is the time
-from the start of the navigation to the first frame, in a browser that runs, ``whole`` until all is
-drawn as fine as it will be. ``moving`` and ``inside`` are the medians of frames while the camera
-orbits, from outside and from within a room; ``scale`` is the share of the screen's pixels along a
-side that they had, which falls where the machine is slow. Beside stand an SVG square a voxel, as
-D3 draws them, and an instanced cube a voxel.
+whole editor, by the bundle that is committed. The other scenes are made here and drawn alone:
+rooms with furniture, three cells in a hundred missing and a crust of wrong ones, as a raw
+reconstruction has. ``first`` is the time from the start of the navigation to the first frame, in a
+browser that runs, ``whole`` until all is drawn as fine as it will be. ``moving`` and ``inside``
+are the medians of frames while the camera orbits, from outside and from within a room; ``scale``
+is the share of the screen's pixels along a side that they had, which falls where the machine is
+slow. Beside stand an SVG square a voxel, as D3 draws them, and an instanced cube a voxel.
 """
 
 import argparse
@@ -44,7 +44,7 @@ FLAGS = (
 VOXEL_M = 0.08
 ROOM = (60, 60, 36)  # 4.8 m square and 2.9 m high
 # Rooms along x and y, and the rooms' size in cells; occupied cells are 36k, 420k and 3.9M.
-SCREEN = {"width": 1280, "height": 720}
+SCREEN: Any = {"width": 1280, "height": 720}
 SCENES = {"room": (1, 1), "house": (4, 3), "building": (11, 10)}
 FURNITURE = (  # class, low corner and size in cells, within a room
     (6, (6, 6, 1), (26, 22, 6)),
@@ -213,7 +213,7 @@ def measure(page: Any, url: str, picture: Path | None) -> dict[str, float]:
     """Return seconds to the first frame and milliseconds of later ones."""
     page.add_init_script(WATCH)
     page.goto(url)
-    page.wait_for_function("() => window.__seen?.whole", timeout=120_000)
+    page.wait_for_function("() => window.__seen?.whole", timeout=60_000)
     seen = page.evaluate("window.__seen")
     found = {name: seen[name] / 1000 for name in ("first", "whole")}
     if "each=" in url:
