@@ -3,6 +3,7 @@
 ====================================  ========================================================
 GET    /api/compare                   ``{name, has_truth}``: what is compared with, if anything
 POST   /api/compare/truth             with the truth of a generated room
+POST   /api/compare/opened            with the scene as it was when it was opened
 POST   /api/upload/compare?name=NAME  with a file: room.npz, occ.json, .npz or .npy of labels
 GET    /api/compare/labels            its labels in the document's cells, as ``W2MV``
 DELETE /api/compare                   with nothing any more
@@ -30,6 +31,7 @@ def routes() -> list[BaseRoute]:
         Route("/api/compare", _told),
         Route("/api/compare", _end, methods=["DELETE"]),
         Route("/api/compare/truth", _truth, methods=["POST"]),
+        Route("/api/compare/opened", _opened, methods=["POST"]),
         Route("/api/compare/labels", _labels),
         Route("/api/upload/compare", _file, methods=["POST"]),
     ]
@@ -55,6 +57,12 @@ async def _truth(request: Request) -> Response:
         labels_of_truth, folder, editor.draft, editor.opened.scan_to_room
     )
     shop.compared = Compared("truth", labels, editor)
+    return _answer(shop)
+
+
+async def _opened(request: Request) -> Response:
+    shop = workshop_of(request)
+    shop.compared = Compared("opened", shop.editor.opened.grid.labels, shop.editor)
     return _answer(shop)
 
 

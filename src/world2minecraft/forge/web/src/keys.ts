@@ -62,6 +62,8 @@ const ROWS: Row[] = [
   ["view.edges", "view", ["E"], LOOKING],
   ["slice.up", "view", ["PageUp"], LOOKING],
   ["slice.down", "view", ["PageDown"], LOOKING],
+  ["photo.way", "photos", ["P"], LOOKING],
+  ["photo.leave", "photos", []],
   ["doubtful.next", "view", ["."], LOOKING],
   ["doubtful.previous", "view", [","], LOOKING],
   ["tool.navigate", "tools", ["Q"], LOOKING],

@@ -7,6 +7,10 @@ import "./style_panels.css";
 import "./style_build.css";
 import { builderOf, registerBuild } from "./build/mode";
 import "./style_start.css";
+import "./style_parts.css";
+import { registerCompare } from "./compare/panel";
+import { registerExports } from "./export/sheet";
+import { registerPhotos } from "./photos/strip";
 import { registerStart } from "./start/page";
 import { Store } from "./store";
 import { startApp } from "./ui/app";
@@ -24,6 +28,9 @@ registerHints();
 registerBuild();
 registerWalk();
 registerStart();
+registerPhotos();
+registerCompare();
+registerExports();
 
 void startApp(host, store, (canvas) => new SceneView(canvas, store)).then((app) => {
   const { view, connection } = app;

@@ -65,6 +65,8 @@ export const TEXT = {
     "camera.away": "Go farther away",
     "slice.up": "Slice one cell up",
     "slice.down": "Slice one cell down",
+    "photo.way": "Photo, blend, side by side, scene",
+    "photo.leave": "Leave the photo",
     "doubtful.next": "Next doubtful place",
     "doubtful.previous": "Previous doubtful place",
     "tool.navigate": "Navigate and select",

@@ -143,7 +143,7 @@ export const EXPORT_TEXT = {
     centers: ["centers.json", "the paper's centres"],
     objects: ["objects.json", "boxes and turns"],
     placements: ["placements.json", "furniture that stands for them"],
-    stats: ["Figures", "cells and objects by class, and the operations, as CSV"],
+    stats: ["Figures", "cells and objects by class, as CSV"],
   } as Record<string, [string, string]>,
   download: "Download",
   made: (name: string, size: string): string => `${name}, ${size}`,

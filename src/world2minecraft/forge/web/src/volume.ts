@@ -15,6 +15,13 @@ export async function readVolume(what: string): Promise<Volume> {
   return { rev: Number(answer.headers.get("X-Rev")), ...parseVolume(await answer.arrayBuffer()) };
 }
 
+/** The cells of a volume of bytes that lies elsewhere. */
+export async function readVolumeAt(path: string): Promise<Uint8Array> {
+  const answer = await fetch(path);
+  if (!answer.ok) throw new Error(`${path}: ${answer.status} ${answer.statusText}`);
+  return parseVolume(await answer.arrayBuffer()).cells as Uint8Array;
+}
+
 /** Take a volume apart; what is no volume is an Error. */
 export function parseVolume(buffer: ArrayBuffer): Omit<Volume, "rev"> {
   const view = new DataView(buffer);
