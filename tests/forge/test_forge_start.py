@@ -10,7 +10,7 @@ from forge_serving import bearer, client, heard, raw, served, small_editor, tab
 from PIL import Image
 
 from world2minecraft.forge.apart import run_apart
-from world2minecraft.forge.captures import Captures
+from world2minecraft.forge.captures import Captures, is_capture
 from world2minecraft.rooms import generate_room, scan_room
 
 
@@ -273,3 +273,22 @@ def test_a_file_of_a_broken_capture_leaves_the_others(tmp_path):
     other = captures.announce("b", [{"path": "b.jpg", "size": 1}])
     (one.folder / "capture.json").write_text("{")
     assert [found.id for found in captures.all()] == [other.id]
+
+
+def test_a_capture_on_the_command_line_is_shown_first(tmp_path, scanned):
+    place = tmp_path / "den"
+    for name, data in scanned.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(data)
+    assert is_capture(place) and not is_capture(tmp_path / "room.npz")
+    with served(home=tmp_path / "home") as server, client(server) as script:
+        server.workshop.begin_with(place, True)
+        told = script.get("/api/start").json()
+    assert told["wanted"] == told["captures"][0]["id"]
+    assert told["captures"][0]["elsewhere"] == str(place)
+
+
+def test_a_run_and_an_occupancy_file_are_no_captures(small_run, tmp_path):
+    assert not is_capture(small_run)
+    assert not is_capture(small_run / "occ.json")
+    assert not is_capture(tmp_path)

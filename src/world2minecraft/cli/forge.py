@@ -11,13 +11,16 @@ w2m forge OUT                   a run: its room, objects, photos, blocks
 w2m forge room.npz              any occupancy file; occ.json too
 w2m forge --demo                a room to try it on
 w2m forge                       a page to start from: drop a capture on it
+w2m forge IMG_2041.MOV          a capture: see what is in it, then make the room
+w2m forge OUT --capture scan    a run, and where its photos lie
 w2m forge OUT --no-browser      print the link, and open nothing
 """
 
 
 def run(
     source: Annotated[
-        Path | None, typer.Argument(metavar="[OUT_OR_FILE]", help="A run's folder or a file.")
+        Path | None,
+        typer.Argument(metavar="[OUT_OR_FILE]", help="A run's folder, a file, a capture."),
     ] = None,
     demo: Annotated[bool, typer.Option("--demo", help="Open a room to try it on.")] = False,
     host: Annotated[
@@ -30,6 +33,15 @@ def run(
         list[str] | None,
         typer.Option("--allow-host", help="A further name of this machine; may be given again."),
     ] = None,
+    home: Annotated[
+        Path | None, typer.Option("--home", help="Where captures and rooms of the page are kept.")
+    ] = None,
+    capture: Annotated[
+        Path | None, typer.Option("--capture", help="Where the photos of the run lie.")
+    ] = None,
+    max_upload: Annotated[
+        int, typer.Option("--max-upload", metavar="MB", min=1, help="Of one dropped capture.")
+    ] = 512,
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Print the link, and open nothing.")
     ] = False,
@@ -46,6 +58,9 @@ def run(
         host: the address to listen on.
         port: the port to listen on.
         allow_host: names, beside addresses and localhost, that a browser may call it by.
+        home: the folder for captures and rooms made here; SceneForge in your data folder.
+        capture: what the run was made of, where its folder does not say so; remembered.
+        max_upload: the most megabytes that a dropped capture may hold.
         no_browser: whether to open no browser.
 
     Raises:
@@ -53,13 +68,18 @@ def run(
         InputError: there is no room in the source.
     """
     from world2minecraft.errors import UsageError
+    from world2minecraft.forge.captures import is_capture
     from world2minecraft.forge.editor import Editor
     from world2minecraft.forge.serve import ForgeServer
 
     if demo and source is not None:
         raise UsageError("--demo is a room of its own; leave out the file, or --demo")
-    editor = Editor.open(source) if demo or source else None
-    server = ForgeServer(editor, host=host, port=port, hosts=allow_host or ())
+    dropped = source is not None and is_capture(source)
+    editor = Editor.open(source) if demo or (source and not dropped) else None
+    places = {"home": home, "capture": capture, "most_upload_bytes": max_upload << 20}
+    server = ForgeServer(editor, host=host, port=port, hosts=allow_host or (), **places)
+    if source is not None:
+        server.workshop.begin_with(source, dropped)
     if server.is_open:
         print(
             f"warning: whoever reaches {host} and has the link can edit, and nothing is "

@@ -31,7 +31,9 @@ from world2minecraft.errors import (
 )
 from world2minecraft.files import read_json, write_json
 from world2minecraft.forge.upload_names import UploadFile, checked_files, common_folder
+from world2minecraft.making import plan_in
 from world2minecraft.minecraft.worlds.installing import check_name
+from world2minecraft.scan.sources import find_capture
 
 MOST_UPLOAD_BYTES = 512 << 20
 SPARE_BYTES = 256 << 20  # What a run of the capture writes, with room to breathe.
@@ -248,6 +250,17 @@ class Captures:
         if free < size + SPARE_BYTES:
             needed = (size + SPARE_BYTES) >> 20
             raise OutputError(self.home, f"its disk has {free >> 20} MB free; {needed} are needed")
+
+
+def is_capture(place: Path) -> bool:
+    """Whether a capture or a plan lies at a path, and no room that could be opened."""
+    if (place / "room.npz").is_file() or place.suffix in (".npz", ".npy", ".forge"):
+        return False
+    try:
+        find_capture(place)
+        return True
+    except InputError:
+        return plan_in(place) is not None
 
 
 def _folder_name(title: str) -> str:

@@ -19,7 +19,12 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
 from world2minecraft.errors import UsageError, World2MinecraftError
-from world2minecraft.forge.comparing import checked_name, labels_of_file, labels_of_truth
+from world2minecraft.forge.comparing import (
+    beside_reached,
+    checked_name,
+    labels_of_file,
+    labels_of_truth,
+)
 from world2minecraft.forge.requests import workshop_of
 from world2minecraft.forge.volumes import labels_bytes
 from world2minecraft.forge.workshop import Compared, Workshop
@@ -56,6 +61,7 @@ async def _truth(request: Request) -> Response:
     labels = await asyncio.to_thread(
         labels_of_truth, folder, editor.draft, editor.opened.scan_to_room
     )
+    labels = beside_reached(labels, editor.opened.grid.source)
     shop.compared = Compared("truth", labels, editor)
     return _answer(shop)
 

@@ -6,13 +6,16 @@ The page counts what was added, removed and changed, and the IoU, from the two a
 from pathlib import Path
 
 import numpy as np
+from scipy.ndimage import binary_dilation
 
+from world2minecraft.classes import UNKNOWN
 from world2minecraft.edit.scene import SceneDraft
 from world2minecraft.edit.scene.difference import labels_in_cells
 from world2minecraft.errors import InputError
 from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.exchange.occupancy import read_occupancy
 from world2minecraft.metrics.truth import carry_truth
+from world2minecraft.types import UNSEEN
 
 SUFFIXES = (".npz", ".npy", ".json")
 
@@ -47,6 +50,18 @@ def labels_of_truth(folder: Path, draft: SceneDraft, scan_to_room: np.ndarray) -
     truth_to_room = scan_to_room @ truth.truth_to_scan
     place = (draft.shape, draft.origin_m, draft.voxel_m)
     return carry_truth(truth.labels, truth.voxel_m, truth.origin_m, truth_to_room, *place)
+
+
+def beside_reached(labels: np.ndarray, source: np.ndarray) -> np.ndarray:
+    """Return labels with 255 where a scan never came near: a truth's walls are thick.
+
+    Args:
+        labels: uint8 [X, Y, Z] of a truth.
+        source: uint8 [X, Y, Z] of the scene as it was opened; cells that were reached, and those
+            beside one, count.
+    """
+    near = binary_dilation(source != UNSEEN, np.ones((3, 3, 3), bool))
+    return np.where(near, labels, np.uint8(UNKNOWN))
 
 
 def checked_name(name: str) -> str:

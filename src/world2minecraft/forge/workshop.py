@@ -4,13 +4,13 @@ import asyncio
 import tempfile
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.errors import InputError, OutputError, UnknownNameError, UsageError
 from world2minecraft.files import read_json, write_json
 from world2minecraft.forge.captures import MOST_UPLOAD_BYTES, CaptureFolder, Captures
 from world2minecraft.forge.comparing import truth_folder
@@ -136,6 +136,14 @@ class Workshop:
     def truth_folder(self) -> Path | None:
         """Return where the truth of the open run lies, None where there is none."""
         return truth_folder(self.run, self.capture_of_run()) if self.session.editor else None
+
+    def begin_with(self, source: Path, is_capture: bool) -> None:
+        """Show a capture of this machine first, or note that a room was opened."""
+        if is_capture:
+            self.wanted = self.captures.adopt(source).id
+        else:
+            with suppress(OutputError):  # A home that cannot be written keeps nobody from editing.
+                self.remember(source)
 
     def remember(self, source: Path) -> None:
         """Note that a room was opened; the newest come first."""

@@ -63,11 +63,7 @@ def test_photos_are_stood_in_blended_and_left(forge, shot):
     forge.idle()
     shot(forge, "photos-strip")
     page.locator("[data-photo='4']").click()
-    told = page.evaluate("fetch('api/photos').then((one) => one.json())")["frames"][4]
-    until(
-        forge,
-        f"Math.abs((window.__forge.view.pose?.position[0] ?? 9) - {told['camera_to_room'][0][3]}) < 1e-6",
-    )
+    stood(forge, 4)
     picture = page.locator(".photo-over")
     picture.evaluate("one => one.decode()")
     assert (
@@ -96,11 +92,7 @@ def test_a_photo_lies_on_the_room_that_was_made_of_it(forge):
     page = forge.page
     page.get_by_role("tab", name="Photos").click()
     page.locator("[data-photo='2']").click()
-    told = page.evaluate("fetch('api/photos').then((one) => one.json())")["frames"][2]
-    until(
-        forge,
-        f"Math.abs((window.__forge.view.pose?.position[0] ?? 9) - {told['camera_to_room'][0][3]}) < 1e-6",
-    )
+    told = stood(forge, 2)
     pose = told["camera_to_room"]
     point = [pose[row][3] + 2 * pose[row][2] + 0.3 * pose[row][0] for row in range(3)]
     x, y = page.evaluate(f"window.__forge.view.project({json.dumps(point)})")
