@@ -16,6 +16,27 @@ w2m forge OUT --capture scan    a run, and where its photos lie
 w2m forge OUT --no-browser      print the link, and open nothing
 """
 
+Host = Annotated[
+    str, typer.Option("--host", help="Listen here; others than this machine can come in.")
+]
+Port = Annotated[
+    int | None, typer.Option("--port", min=0, max=65535, help="8484, or any that is free.")
+]
+NoBrowser = Annotated[bool, typer.Option("--no-browser", help="Print the link, and open nothing.")]
+AllowHost = Annotated[
+    list[str] | None,
+    typer.Option("--allow-host", help="A further name of this machine; may be given again."),
+]
+Home = Annotated[
+    Path | None, typer.Option("--home", help="Where captures and rooms of the page are kept.")
+]
+PhotosOf = Annotated[
+    Path | None, typer.Option("--capture", help="Where the photos of the run lie.")
+]
+MaxUpload = Annotated[
+    int, typer.Option("--max-upload", metavar="MB", min=1, help="Of one dropped capture.")
+]
+
 
 def run(
     source: Annotated[
@@ -23,28 +44,13 @@ def run(
         typer.Argument(metavar="[OUT_OR_FILE]", help="A run's folder, a file, a capture."),
     ] = None,
     demo: Annotated[bool, typer.Option("--demo", help="Open a room to try it on.")] = False,
-    host: Annotated[
-        str, typer.Option("--host", help="Listen here; others than this machine can come in.")
-    ] = "127.0.0.1",
-    port: Annotated[
-        int | None, typer.Option("--port", min=0, max=65535, help="8484, or any that is free.")
-    ] = None,
-    allow_host: Annotated[
-        list[str] | None,
-        typer.Option("--allow-host", help="A further name of this machine; may be given again."),
-    ] = None,
-    home: Annotated[
-        Path | None, typer.Option("--home", help="Where captures and rooms of the page are kept.")
-    ] = None,
-    capture: Annotated[
-        Path | None, typer.Option("--capture", help="Where the photos of the run lie.")
-    ] = None,
-    max_upload: Annotated[
-        int, typer.Option("--max-upload", metavar="MB", min=1, help="Of one dropped capture.")
-    ] = 512,
-    no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Print the link, and open nothing.")
-    ] = False,
+    host: Host = "127.0.0.1",
+    port: Port = None,
+    allow_host: AllowHost = None,
+    home: Home = None,
+    capture: PhotosOf = None,
+    max_upload: MaxUpload = 512,
+    no_browser: NoBrowser = False,
 ) -> None:
     """Serve the editor of one room and open it in the browser, until Ctrl+C.
 

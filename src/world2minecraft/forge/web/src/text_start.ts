@@ -82,7 +82,8 @@ export const START_TEXT = {
   left: (words: string): string => `about ${words} left`,
   seconds: (count: number): string => `${count} s`,
   minutes: (count: number): string => `${count} min`,
-  megabytes: (count: number): string => (count >= 10 ? `${Math.round(count)} MB` : `${count.toFixed(1)} MB`),
+  megabytes: (count: number): string =>
+    count >= 10 ? `${Math.round(count)} MB` : count >= 0.1 ? `${count.toFixed(1)} MB` : `${Math.ceil(count * 1024)} kB`,
   failed: "It did not work",
   cancelled: "Cancelled",
   job: { done: "Done", cancel: "Cancel", close: "Close" },
@@ -96,8 +97,8 @@ export const PHOTO_TEXT = {
   fly: (name: string): string => `Stand where ${name} was taken`,
   blend: "Photo",
   ways: { scene: "Scene", blend: "Blend", beside: "Side by side", photo: "Photo" } as Record<string, string>,
-  cameras: "Show cameras",
-  leave: "Leave the photo",
+  cameras: "Cameras",
+  leave: "Leave",
   why: "Open a photo first: the strip is below the scene",
 };
 
