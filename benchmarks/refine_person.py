@@ -181,7 +181,8 @@ def _filled(draft: SceneDraft, wanted: Wanted, index: int) -> Iterator[Gesture]:
             runs = runs_of_cells(lasso, draft.shape).tolist()
             yield {"op": "set_cells", "cells": runs, "class_id": class_id, "verb": "fill"}
         low, high = holes[:, step].min(axis=0).tolist(), holes[:, step].max(axis=0).tolist()
-        box = {"low": low, "high": high, "class_id": class_id, "locked": LOCKED}
+        box = {"low": low, "high": high, "class_id": class_id}
+        yield {"op": "fill_box", **box, "locked": LOCKED}
         yield {"op": "fill_box", **box}
 
 
