@@ -169,6 +169,7 @@ class Editor:
                 "rev": self.rev,
                 "saved_rev": self.saved_rev,
                 "read_only": self.read_only,
+                "notes": list(self.notes),
                 "voxel_m": float(self.draft.voxel_m),
                 "origin_m": [float(value) for value in self.draft.origin_m],
                 "shape": list(self.draft.shape),

@@ -13,6 +13,7 @@ import { registerExports } from "./export/sheet";
 import { registerPhotos } from "./photos/strip";
 import { registerStart } from "./start/page";
 import { Store } from "./store";
+import { TEXT } from "./text";
 import { startApp } from "./ui/app";
 import { h } from "./ui/dom";
 import { registerEditing } from "./ui/editing";
@@ -32,7 +33,16 @@ registerPhotos();
 registerCompare();
 registerExports();
 
-void startApp(host, store, (canvas) => new SceneView(canvas, store)).then((app) => {
+const drawn = (canvas: HTMLCanvasElement): SceneView => {
+  try {
+    return new SceneView(canvas, store);
+  } catch (error) {
+    host.replaceChildren(h("p", { class: "no-3d", role: "alert" }, TEXT.error.noView));
+    throw error;
+  }
+};
+
+void startApp(host, store, drawn).then((app) => {
   const { view, connection } = app;
   const build = builderOf(app);
   const walk = walkingOf(app);

@@ -420,5 +420,7 @@ export const TEXT = {
     offline: "No connection to the server: nothing was changed",
     protocol: "The server is of another version. Load the page again.",
     load: "The scene could not be loaded",
+    noView:
+      "This browser cannot draw in 3D: SceneForge needs WebGL 2. Switch hardware acceleration on, or open the same link in another browser.",
   },
 };

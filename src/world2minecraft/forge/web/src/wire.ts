@@ -49,6 +49,7 @@ export interface Scene {
   rev: number;
   saved_rev: number;
   read_only: string; // why, empty where the scene may be edited
+  notes: string[]; // for the person: what was recovered, what could not be written
   voxel_m: number;
   origin_m: Vec3;
   shape: Vec3;

@@ -81,6 +81,7 @@ export async function startApp(host: HTMLElement, store: Store, makeView: MakeVi
     addEventListener(kind, () => connection.active(), { passive: true });
   }
   changeModes(app);
+  tellNotes(app);
   await open(app, frame.root);
   return app;
 }
@@ -104,6 +105,18 @@ async function open(app: App, root: HTMLElement): Promise<void> {
   }
   ready = true;
   if (!app.store.get().scene) app.store.set({ scene: null });
+}
+
+/** Say once what the server has to say of a document: what was recovered, what could not be kept. */
+function tellNotes({ store, toast }: App): void {
+  let told = new Set<string>();
+  let document = 0;
+  store.watch(["scene"], ({ scene }) => {
+    if (scene && scene.document !== document) told = new Set();
+    document = scene?.document ?? 0;
+    for (const note of scene?.notes ?? []) if (!told.has(note)) toast(note, "error");
+    for (const note of scene?.notes ?? []) told.add(note);
+  });
 }
 
 function pageActions({ actions, store, connection, toast }: App, tell: (error: unknown) => null): void {
