@@ -12,6 +12,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from world2minecraft.posing.similarity import align_similarity
+from world2minecraft.types import OBSERVED
 
 REACH_VOXELS = 3**0.5 + 0.01
 
@@ -46,12 +47,16 @@ def read_cells(room_file: Path) -> Cells:
 
 
 def looked_up(cells: Cells, points_m: np.ndarray) -> np.ndarray:
-    """Return the labels of the cells that hold points of the capture's frame; 255 outside."""
+    """Return the labels of the cells that hold points of the capture's frame.
+
+    255 where they lie outside, and where nobody saw: what was completed is no observation.
+    """
     at = points_m @ cells.scan_to_room[:3, :3].T + cells.scan_to_room[:3, 3]
     index = np.floor((at - cells.origin_m) / cells.voxel_m + 1e-9).astype(int)
     inside = ((index >= 0) & (index < cells.labels.shape)).all(axis=1)
     found = np.full(len(points_m), 255, np.uint8)
-    found[inside] = cells.labels[tuple(index[inside].T)]
+    at = tuple(index[inside].T)
+    found[inside] = np.where(cells.source[at] == OBSERVED, cells.labels[at], 255)
     return found
 
 

@@ -99,6 +99,31 @@ def test_whole_classes_are_relabelled_and_deleted_by_their_menu(forge):
     assert page.locator(".menu").count() == 0
 
 
+def test_the_objects_of_a_class_are_merged_matched_and_found_anew_by_their_menu(forge):
+    """The room has three objects of class tvs: a screen and two cushions."""
+    page = forge.page
+    tvs = "[...s.objects.values()].filter((one) => one.class_id === 9).length"
+    before = forge.state(tvs)
+    assert before == 3
+
+    def choose(label: str, rev: int) -> None:
+        row = page.locator(".legend-row[data-class='9']")
+        row.hover()
+        row.locator(".mini").nth(0).click()
+        page.get_by_role("menuitem", name=label).click()
+        forge.until("s.scene.rev", rev)
+
+    choose("Merge all tvs", 1)
+    assert forge.state(tvs) == 1
+    choose("Find tvs anew", 2)
+    assert forge.state(tvs) > 1
+    forge.key("Control+z", "Control+z")
+    forge.until("s.scene.rev", 4)
+    assert forge.state(tvs) == before
+    choose("Match templates again", 5)
+    assert forge.state("s.scene.undo") == "rematch"
+
+
 def test_help_and_palette_are_made_of_the_one_table(forge, shot):
     page = forge.page
     forge.key("?")
