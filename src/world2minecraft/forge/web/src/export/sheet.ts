@@ -200,13 +200,15 @@ class ExportSheet {
       fill(note, "…");
       const { job } = await sendJson<{ job: string }>(path, told);
       const stop = connection.onJob((state) => hear(state));
+      let ended = false; // Its end may be heard of twice: by the socket, and by asking.
       const hear = (state: JobState): void => {
-        if (state.id !== job) return;
+        if (state.id !== job || ended) return;
         if (state.state === "running") {
           const left = state.left_s === null || !state.stage ? "" : `, ${TEXT.start.left(timeOf(state.left_s))}`;
           fill(note, `${TEXT.start.stages[state.stage] ?? "…"}${left}`);
           return;
         }
+        ended = true;
         stop();
         note.classList.toggle("is-bad", state.state === "failed");
         if (state.state === "done") done(state.result);
