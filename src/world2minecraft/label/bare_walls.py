@@ -16,6 +16,7 @@ from scipy.spatial import KDTree
 
 from world2minecraft.classes import UNKNOWN, SemanticClass
 from world2minecraft.coordinates import cell_centers_m
+from world2minecraft.metrics.layout import inside_polygon
 from world2minecraft.types import COMPLETED, UNSEEN, Layout, OccupancyGrid
 
 THICK_M = 0.16  # Behind its face a wall may be occupied so deep.
@@ -54,7 +55,7 @@ def without_wall_guesses(grid: OccupancyGrid, rooms: Sequence[Layout]) -> Occupa
     """Return a grid without what stereo guessed before and behind the walls of its rooms.
 
     Args:
-        grid: the cleaned read-out; only what is occupied counts.
+        grid: the cleaned read-out.
         rooms: of the place, in the room frame.
     """
     cells = np.argwhere(grid.source != UNSEEN)
@@ -116,7 +117,7 @@ def _mark_levels(classes: np.ndarray, grid: OccupancyGrid, room: Layout) -> None
     """Mark the unseen cells of the layer under a room's floor and, where one was seen, over it."""
     columns = np.argwhere(np.ones(grid.shape[:2], bool))
     plan_m = grid.origin_m[:2] + (columns + 0.5) * grid.voxel_m
-    inside = _inside(room, plan_m).reshape(grid.shape[:2])
+    inside = inside_polygon(plan_m, room.floor_polygon_m, 0.0).reshape(grid.shape[:2])
     half, floor_m = grid.voxel_m / 2, room.floor_z_m
     levels = [(floor_m - half, SemanticClass.FLOOR)]
     if (grid.labels == SemanticClass.CEILING).any():
@@ -175,20 +176,9 @@ def _outside(rooms: Sequence[Layout], points_m: np.ndarray) -> np.ndarray:
         top_m = room.floor_z_m + room.wall_height_m + THICK_M
         within = (points_m[:, 2] > room.floor_z_m - THICK_M) & (points_m[:, 2] < top_m)
         for side in sides:
-            outside &= ~(within & _inside(room, points_m[:, :2] + side))
+            moved_m = points_m[:, :2] + side
+            outside &= ~(within & inside_polygon(moved_m, room.floor_polygon_m, 0.0))
     return outside if rooms else np.zeros(len(points_m), bool)
-
-
-def _inside(room: Layout, plan_m: np.ndarray) -> np.ndarray:
-    """Whether points [N, 2] lie in a room's outline, by how often a ray to +x crosses it."""
-    inside = np.zeros(len(plan_m), bool)
-    corners = room.floor_polygon_m
-    x, y = plan_m.T
-    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        if ay != by:
-            crossed = (y >= min(ay, by)) & (y < max(ay, by))
-            inside ^= crossed & (x < ax + (y - ay) * (bx - ax) / (by - ay))
-    return inside
 
 
 def _seen_share(edge: WallEdge, face_m: np.ndarray, voxel_m: float) -> float:
