@@ -34,7 +34,8 @@ def built(tmp_path_factory) -> Path:
     root = tmp_path_factory.mktemp("page")
     web = root / WEB.relative_to(ROOT)
     shutil.copytree(WEB, web, ignore=shutil.ignore_patterns("node_modules"))
-    (root / "tests").symlink_to(ROOT / "tests")  # Some of the page's tests read vectors there.
+    for beside in ("tests", "docs"):  # Some of the page's tests read vectors and a page there.
+        (root / beside).symlink_to(ROOT / beside)
     installed = subprocess.run(
         [npm, "ci", "--no-audit", "--no-fund", "--prefer-offline"],
         check=False,
