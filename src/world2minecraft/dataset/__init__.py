@@ -1,0 +1,1 @@
+"""MinecraftOcc: from worlds to labelled images, and the files that trainers read."""
