@@ -23,6 +23,7 @@ REQUIREMENTS = [
     *PROJECT["dependencies"],
     *(item for item in EXTRAS["dev"] if not item.startswith(PROJECT["name"])),
     *EXTRAS["capture"],
+    *EXTRAS["data"],
     *EXTRAS["usd"],
 ]
 
