@@ -1,6 +1,7 @@
 """Errors: their texts byte for byte, their exit codes, and the tree in the docstring."""
 
 import inspect
+import pickle
 import re
 
 import pytest
@@ -42,6 +43,12 @@ def test_texts_and_exit_codes(error, text, code):
     assert str(error) == text
     assert error.exit_code == code
     assert isinstance(error, errors.World2MinecraftError)
+
+
+@pytest.mark.parametrize("error", [one for one, _, _ in GOLDEN], ids=lambda e: type(e).__name__)
+def test_an_error_can_be_sent_to_another_process(error):
+    again = pickle.loads(pickle.dumps(error))
+    assert (type(again), str(again), vars(again)) == (type(error), str(error), vars(error))
 
 
 def test_an_input_error_keeps_its_path_and_reason():

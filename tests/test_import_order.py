@@ -20,6 +20,7 @@ FOUNDATION = (
     "registry",
     "jit",
     "progress",
+    "lock",
 )
 ROWS: tuple[tuple[str, ...], ...] = (
     FOUNDATION,

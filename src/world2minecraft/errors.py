@@ -20,12 +20,23 @@ Each message says what was expected, what was given and what to type next, on on
 
 import difflib
 from collections.abc import Iterable
+from typing import Any
 
 
 class World2MinecraftError(Exception):
     """The root of the tree."""
 
     exit_code = 1
+
+    def __reduce__(self):  # So that one process can send it to another, whatever makes it.
+        return _again, (type(self), str(self), self.__dict__)
+
+
+def _again(kind: type[World2MinecraftError], text: str, facts: dict[str, Any]) -> Exception:
+    error = kind.__new__(kind)
+    error.args = (text,)
+    error.__dict__.update(facts)
+    return error
 
 
 class UsageError(World2MinecraftError):

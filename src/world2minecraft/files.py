@@ -102,6 +102,11 @@ def read_bytes(path: "str | Path | ArchivePath", limit_bytes: int) -> bytes:
 
 def write_npz(path: str | Path, arrays: Mapping[str, np.ndarray]) -> None:
     """Write arrays as a compressed ``.npz`` whose bytes depend on the values alone."""
+    write_bytes(path, npz_bytes(arrays))
+
+
+def npz_bytes(arrays: Mapping[str, np.ndarray]) -> bytes:
+    """Return what ``write_npz`` writes."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
         for name in sorted(arrays):
@@ -110,7 +115,7 @@ def write_npz(path: str | Path, arrays: Mapping[str, np.ndarray]) -> None:
             payload = io.BytesIO()
             np.lib.format.write_array(payload, np.asarray(arrays[name]), allow_pickle=False)
             archive.writestr(entry, payload.getvalue(), compresslevel=1)
-    write_bytes(path, buffer.getvalue())
+    return buffer.getvalue()
 
 
 def read_npz(path: str | Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
@@ -128,6 +133,21 @@ def read_npz(path: str | Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
             return {name: _read_member(archive, name, source) for name in names}
     except UNREADABLE as error:
         raise DamagedFileError(source, f"is not a readable .npz ({error})") from error
+
+
+def npz_arrays(
+    data: bytes, names: tuple[str, ...], source: str | Path, limit_bytes: int
+) -> dict[str, np.ndarray]:
+    """Read the named arrays of a ``.npz`` in memory, each of at most ``limit_bytes``.
+
+    ``source`` is what errors call it. Raises what ``read_npz`` raises.
+    """
+    place = Path(source)
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            return {name: _read_member(archive, name, place, limit_bytes) for name in names}
+    except UNREADABLE as error:
+        raise DamagedFileError(place, f"is not a readable .npz ({error})") from error
 
 
 def array_names(path: str | Path) -> tuple[str, ...]:
@@ -151,7 +171,9 @@ def read_npy(path: str | Path) -> np.ndarray:
         raise DamagedFileError(source, f"is not a readable .npy ({error})") from error
 
 
-def _read_member(archive: zipfile.ZipFile, name: str, source: Path) -> np.ndarray:
+def _read_member(
+    archive: zipfile.ZipFile, name: str, source: Path, limit_bytes: int | None = None
+) -> np.ndarray:
     member = f"{name}.npy"
     if member not in archive.namelist():
         held = ", ".join(sorted(entry.removesuffix(".npy") for entry in archive.namelist()))
@@ -160,7 +182,7 @@ def _read_member(archive: zipfile.ZipFile, name: str, source: Path) -> np.ndarra
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise DamagedFileError(source, f"array {name!r} is packed in a way no .npz is")
     declared = entry.file_size
-    if declared > MAX_ARRAY_BYTES:
+    if declared > (MAX_ARRAY_BYTES if limit_bytes is None else limit_bytes):
         raise LimitError(source, f"array {name!r} has {declared:,} bytes; too large to read")
     with archive.open(member) as stream:
         _check_header(stream, declared, source, repr(name))

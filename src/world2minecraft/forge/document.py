@@ -31,7 +31,6 @@ from world2minecraft.forge.identity import (
     retire_changed,
     write_identity,
 )
-from world2minecraft.forge.lock import Lock
 from world2minecraft.forge.recovery import (
     JOURNAL_FILE,
     Recovered,
@@ -42,6 +41,7 @@ from world2minecraft.forge.recovery import (
 from world2minecraft.forge.snapshots import State, snapshot_path, snapshot_paths, write_state
 from world2minecraft.forge.sources import Opened, read_source
 from world2minecraft.forge.unkept import Unkept
+from world2minecraft.lock import Lock
 from world2minecraft.types import Operation
 
 SNAPSHOT_STEPS, SNAPSHOT_S = 200, 60.0

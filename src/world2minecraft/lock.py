@@ -1,4 +1,4 @@
-"""Who edits a document: a lock that the system lets go of when its process ends, however it ends.
+"""Who works on a folder: a lock that the system lets go of when its process ends, however it ends.
 
 The file holds ``{"pid", "host"}`` of the one that has it, for the others to tell.
 """
@@ -24,9 +24,9 @@ _FAR = 1 << 30  # Where Windows locks a byte: locked ones cannot be read there.
 class Lock:
     """The lock at a path, held from ``take`` to ``let_go``."""
 
-    def __init__(self, path: Path):
-        """Name the lock; nothing is taken."""
-        self.path = path
+    def __init__(self, path: Path, work: str = "edited"):
+        """Name the lock and what is done under it; nothing is taken."""
+        self.path, self._work = path, work
         self._handle: int | None = None
 
     def take(self) -> None:
@@ -41,7 +41,7 @@ class Lock:
             except OSError as error:
                 reason = f"cannot be written: {error.strerror or error}"
                 raise OutputError(self.path, reason) from error
-            if _locked(handle) and self._is_there(handle):
+            if try_lock(handle) and self._is_there(handle):
                 told = json.dumps({"pid": os.getpid(), "host": socket.gethostname()}).encode()
                 with contextlib.suppress(OSError):  # A full disk: the lock holds all the same.
                     os.ftruncate(handle, 0)
@@ -54,7 +54,7 @@ class Lock:
                 self.path.unlink(missing_ok=True)
             elif self.path.exists():
                 break
-        raise ConflictError(self.path.parent, f"is being edited by {self.holder()}")
+        raise ConflictError(self.path.parent, f"is being {self._work} by {self.holder()}")
 
     def let_go(self) -> None:
         """Let go of the lock, where it is held."""
@@ -63,6 +63,16 @@ class Lock:
                 os.ftruncate(self._handle, 0)
             os.close(self._handle)
             self._handle = None
+
+    def remove(self) -> None:
+        """Let go of the lock and leave no file of it behind."""
+        if self._handle is not None:
+            with contextlib.suppress(OSError):  # Windows keeps a file that is open.
+                self.path.unlink(missing_ok=True)
+            self.let_go()
+            if fcntl is None:
+                with contextlib.suppress(OSError):
+                    self.path.unlink(missing_ok=True)
 
     def holder(self) -> str:
         """Return who has the lock, in words."""
@@ -98,7 +108,8 @@ class Lock:
             return False
 
 
-def _locked(handle: int) -> bool:
+def try_lock(handle: int) -> bool:
+    """Lock an open file for this process, unless another has it; closing it lets go."""
     try:
         if fcntl is not None:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
