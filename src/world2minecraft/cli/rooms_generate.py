@@ -14,6 +14,7 @@ w2m rooms generate --seed 7                              a room, to my_room/
 w2m rooms generate --seed 7 --kind bathroom --shape ell  an L-shaped bathroom
 w2m rooms generate --seed 7 --clutter 0.8                as it looks on a Friday
 w2m rooms generate --house --rooms 12 --storeys 2        a house with stairs
+w2m rooms generate --houses 40 --seed 1 --worlds WORLDS  forty houses as Minecraft worlds
 """
 DEFAULT_ROOMS = 5
 
@@ -35,12 +36,25 @@ def run(
     ] = None,
     clutter: Annotated[float, typer.Option("--clutter", help="0 (tidy) to 1.")] = 0.0,
     out: Annotated[Path, typer.Option("--out", help="The folder to write.")] = Path("my_room"),
+    houses: Annotated[
+        int | None, typer.Option("--houses", help="How many houses, as Minecraft worlds.")
+    ] = None,
+    worlds: Annotated[
+        Path | None, typer.Option("--worlds", help="The folder of the worlds.")
+    ] = None,
 ) -> None:
     """Generate a furnished room or a house of several rooms, with exact truth.
 
     The folder gets layout.json (the rooms with their walls, openings and objects, in metres),
     truth.npz (voxels of 2 cm with class, object and colour) and preview.png.
+
+    With --houses and --worlds, houses become Minecraft worlds instead, in styles of their own:
+    a folder each, with world/, scene.json, scene.npz and designs.json.
     """
+    if houses is not None or worlds is not None:
+        _check_worlds(houses, worlds, kind, shape, house, rooms, storeys)
+        _write_worlds(houses or 0, seed, worlds or Path())
+        return
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.errors import UsageError
@@ -64,6 +78,43 @@ def run(
     print(f"\nA {made.kind}, {sides} m, {len(made.objects)} objects.")
     print(f"  look   {out / 'preview.png'}")
     print(f"  next   w2m rooms scan {out} --out capture")
+
+
+def _check_worlds(
+    houses: int | None,
+    worlds: Path | None,
+    kind: str | None,
+    shape: str,
+    house: bool,
+    rooms: int | None,
+    storeys: int | None,
+) -> None:
+    from world2minecraft.errors import UsageError
+    from world2minecraft.run_folder import check_writable
+
+    if houses is None or worlds is None:
+        raise UsageError("--houses says how many and --worlds where; give both")
+    if houses < 1:
+        raise UsageError(f"--houses must be 1 or more, not {houses}")
+    if kind is not None or shape != "box" or house or rooms is not None or storeys is not None:
+        raise UsageError("--houses draws kinds, rooms and storeys by its seed; leave them out")
+    check_writable(worlds)
+
+
+def _write_worlds(houses: int, seed: int, worlds: Path) -> None:
+    from world2minecraft.cli.outcome import compiling_note
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.errors import UsageError
+    from world2minecraft.rooms.worlds import write_worlds
+
+    if seed < 0:
+        raise UsageError(f"--seed must be 0 or more, not {seed}")
+    compiling_note()
+    with shown() as progress:
+        written = write_worlds(worlds, houses, seed, progress=progress)
+    print(f"\n{len(written)} houses in {worlds}.")
+    print(f"  look   w2m render {written[0]} --out house.png")
+    print(f"  play   w2m install {written[0]}")
 
 
 def _check_words(

@@ -1,18 +1,24 @@
 """``scene.json`` and ``scene.npz``: what lies beside every world that the program writes.
 
 ``scene.json``: ``block_to_room`` [4][4], ``metres_per_block``, ``corner`` [3], ``size`` [3],
-``data_version``, ``mc_version``, ``spawn`` {position [3], yaw_deg}. ``scene.npz``: ``semantic``
-uint8 and ``instance`` uint16, both [X, Y, Z] in block axes, cell (0, 0, 0) at ``corner``.
+``data_version``, ``mc_version``, ``spawn`` {position [3], yaw_deg}; of a made house ``light``
+{hour 0 to 24, lamps} too. ``scene.npz``: ``semantic`` uint8 and ``instance`` uint16, both
+[X, Y, Z] in block axes, cell (0, 0, 0) at ``corner``; where it is known, ``design`` uint16 too, an
+index into the names of ``designs.json``, whose first stands for none.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import read_json, read_npz, write_json, write_npz
+from world2minecraft.files import array_names, read_json, read_npz, write_json, write_npz
 from world2minecraft.types import BlockVolume, checks
+
+DESIGNS = "designs.json"
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +33,9 @@ class Scene:
     data_version: int
     spawn: tuple[float, float, float]  # the feet, in world block coordinates
     spawn_yaw_deg: float  # the game's
+    design: np.ndarray | None = None  # uint16 [X, Y, Z], into ``designs``; None where unknown
+    designs: tuple[str, ...] = ("",)  # furniture of the library; the first is none
+    light: Mapping[str, Any] = field(default_factory=dict)  # hour 0 to 24, lamps
 
     def __post_init__(self):
         put = object.__setattr__
@@ -35,6 +44,10 @@ class Scene:
         put(self, "instance", checks.array("instance", self.instance, np.uint16, semantic.shape))
         put(self, "block_to_room", checks.floats("block_to_room", self.block_to_room, (4, 4)))
         checks.floats("spawn", self.spawn, (3,))
+        if self.design is not None:
+            put(self, "design", checks.array("design", self.design, np.uint16, semantic.shape))
+            if self.design.size and int(self.design.max()) >= len(self.designs):
+                raise ValueError(f"design goes to {self.design.max()} of {len(self.designs)} names")
 
     @property
     def metres_per_block(self) -> float:
@@ -49,6 +62,9 @@ def scene_of(
     data_version: int,
     spawn: tuple[float, float, float],
     spawn_yaw_deg: float,
+    design: np.ndarray | None = None,
+    designs: tuple[str, ...] = ("",),
+    light: Mapping[str, Any] | None = None,
 ) -> Scene:
     """Return the scene of a volume that is written for a version of the game."""
     return Scene(
@@ -60,13 +76,24 @@ def scene_of(
         data_version,
         spawn,
         spawn_yaw_deg,
+        design,
+        designs,
+        dict(light or {}),
     )
 
 
 def write_scene(folder: str | Path, scene: Scene) -> None:
-    """Write ``scene.json`` and ``scene.npz`` into a folder. Raises OutputError."""
+    """Write ``scene.json`` and ``scene.npz`` into a folder, and ``designs.json`` where known.
+
+    Raises:
+        OutputError: a file cannot be written.
+    """
     target = Path(folder)
-    write_npz(target / "scene.npz", {"semantic": scene.semantic, "instance": scene.instance})
+    arrays = {"semantic": scene.semantic, "instance": scene.instance}
+    if scene.design is not None:
+        arrays["design"] = scene.design
+        write_json(target / DESIGNS, list(scene.designs))
+    write_npz(target / "scene.npz", arrays)
     write_json(
         target / "scene.json",
         {
@@ -77,6 +104,7 @@ def write_scene(folder: str | Path, scene: Scene) -> None:
             "mc_version": scene.mc_version,
             "data_version": scene.data_version,
             "spawn": {"position": list(scene.spawn), "yaw_deg": scene.spawn_yaw_deg},
+            **({"light": dict(scene.light)} if scene.light else {}),
         },
     )
 
@@ -90,7 +118,10 @@ def read_scene(folder: str | Path) -> Scene:
     """
     source = Path(folder)
     raw = read_json(source / "scene.json")
-    arrays = read_npz(source / "scene.npz", ("semantic", "instance"))
+    names = ("semantic", "instance")
+    if "design" in array_names(source / "scene.npz"):
+        names = (*names, "design")
+    arrays = read_npz(source / "scene.npz", names)
     try:
         x, y, z = (int(value) for value in raw["corner"])
         east, up, south = (float(value) for value in raw["spawn"]["position"])
@@ -103,6 +134,9 @@ def read_scene(folder: str | Path) -> Scene:
             int(raw["data_version"]),
             (east, up, south),
             float(raw["spawn"]["yaw_deg"]),
+            arrays.get("design"),
+            tuple(map(str, read_json(source / DESIGNS))) if "design" in arrays else ("",),
+            dict(raw.get("light", {})),
         )
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFileError(source / "scene.json", f"is no scene ({error})") from error

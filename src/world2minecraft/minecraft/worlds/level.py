@@ -1,4 +1,4 @@
-"""``level.dat``: creative, a void, always noon, nothing that moves, the player in the room."""
+"""``level.dat``: creative, a void, always one hour, nothing that moves, the player in the room."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from world2minecraft.minecraft.versions import GameVersion
 
 MAKER = "world2minecraft"  # The game drops unknown tags when it saves: then the mark is gone.
 MAKER_TAG = "MadeBy"
-NOON = 6000
+TICKS_PER_HOUR = 1000
 FIRST_WITH_DIMENSIONS = 2554  # 20w22a, of 1.16.
 FIRST_WITHOUT_SEEDS = 3105  # 1.19.
 
@@ -49,6 +49,7 @@ def level_data(
     spawn_yaw_deg: float,
     version: GameVersion,
     packs: tuple[str, ...] = (),
+    hour: float = 12.0,
 ) -> dict[str, Any]:
     """Return the tree of a ``level.dat``.
 
@@ -58,6 +59,7 @@ def level_data(
         spawn_yaw_deg: where the player looks, in the game's yaw: 0 south, 90 west.
         version: the game that the world is written for.
         packs: data packs of the world's own folder, by file name.
+        hour: the hour that stays, 0 to 24; the game's day begins at 6.
     """
     x, y, z = (int(value // 1) for value in spawn)
     data_version = version.level_data_version
@@ -86,14 +88,14 @@ def level_data(
         **_generation(data_version),
         "Player": _player(spawn, spawn_yaw_deg, data_version),
     }
-    return {"Data": {**data, **place, **_calm()}}
+    return {"Data": {**data, **place, **_calm(round((hour - 6) * TICKS_PER_HOUR) % 24000)}}
 
 
-def _calm() -> dict[str, Any]:
-    """Noon, clear weather for years of play, no dragon, no trader."""
+def _calm(day_time: int) -> dict[str, Any]:
+    """An hour, clear weather for years of play, no dragon, no trader."""
     return {
         "Time": Long(0),
-        "DayTime": Long(NOON),
+        "DayTime": Long(day_time),
         "clearWeatherTime": 1_000_000_000,
         "raining": Byte(0),
         "rainTime": 1_000_000_000,

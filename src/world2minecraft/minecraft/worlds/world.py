@@ -41,8 +41,9 @@ def write_world(
     spawn: tuple[float, float, float],
     spawn_yaw_deg: float,
     version: GameVersion | None = None,
+    hour: float = 12.0,
 ) -> None:
-    """Write a volume as a world that opens in creative mode, at noon, in a void.
+    """Write a volume as a world that opens in creative mode, at one hour of the day, in a void.
 
     The folder is written beside its place and moved there at the end. A world of this program
     that no game has saved yet is replaced; any other folder with files in it is left alone.
@@ -54,6 +55,7 @@ def write_world(
         spawn: where the player's feet stand, in world block coordinates.
         spawn_yaw_deg: where the player looks, in the game's yaw: 0 south, 90 west.
         version: the game to write for; 1.20.1 where it is left out.
+        hour: the hour that stays, 0 to 24.
 
     Raises:
         OutputError: the folder is taken or cannot be written.
@@ -73,7 +75,7 @@ def write_world(
         _write_regions(volume, draft, version)
         _write_entities(volume.entities, draft, version)
         write_bytes(draft / "datapacks" / SIZE_PACK_FILE, size_pack(volume.blocks_per_metre))
-        level = level_data(name, spawn, spawn_yaw_deg, version, (SIZE_PACK_FILE,))
+        level = level_data(name, spawn, spawn_yaw_deg, version, (SIZE_PACK_FILE,), hour)
         write_bytes(draft / "level.dat", pack_gzip(write_nbt(level)))
         _move(draft, target)
     except OutputError as error:  # It names a file of the draft, which is gone by then.

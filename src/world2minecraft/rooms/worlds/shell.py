@@ -1,0 +1,127 @@
+"""The shell of a house: floors, walls, ceilings, windows, doors and stairs in each room's look."""
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.classes import SemanticClass
+from world2minecraft.rooms.worlds.canvas import WorldCanvas
+from world2minecraft.rooms.worlds.house import BlockGap, BlockHouse, BlockRoom
+from world2minecraft.rooms.worlds.looks import RoomLook
+
+FLOOR, WALL = int(SemanticClass.FLOOR), int(SemanticClass.WALL)
+CEILING, WINDOW = int(SemanticClass.CEILING), int(SemanticClass.WINDOW)
+OBJS = int(SemanticClass.OBJS)
+EIGHT = np.ones((3, 3), bool)
+# Which way a block looks that looks by 0 to 3 quarter turns from +x, in the game's words.
+FACINGS = ("east", "north", "west", "south")
+
+
+def put_shell(canvas: WorldCanvas, house: BlockHouse, looks: tuple[RoomLook, ...]) -> None:
+    """Set floors, walls, ceilings, and cut doors and windows into the walls."""
+    _put_levels(canvas, house, looks)
+    for room in house.rooms:
+        _put_walls(canvas, room, looks[room.number], house)
+    for gap in house.gaps:
+        _put_gap(canvas, gap, looks[gap.rooms[0]])
+
+
+def _put_levels(canvas: WorldCanvas, house: BlockHouse, looks: tuple[RoomLook, ...]) -> None:
+    """Set the floor and the ceiling of each room, and under walls too."""
+    shape = canvas.states.shape[:2]
+    for storey, ground in enumerate(house.grounds):
+        rooms = [room for room in house.rooms if room.storey == storey]
+        every = np.any([_columns(canvas, room, shape) for room in rooms], axis=0)
+        rim = ndimage.binary_dilation(every, EIGHT) & ~every
+        below, above = canvas.at(0, 0, ground - 1)[2], canvas.at(0, 0, ground + house.height)[2]
+        hall = looks[rooms[0].number]
+        for level, kind, state in ((below, WALL, hall.wall), (above, WALL, hall.wall)):
+            canvas.set((*np.nonzero(rim), level), state, kind)
+        for room in rooms:
+            inside, look = _columns(canvas, room, shape), looks[room.number]
+            canvas.set((*np.nonzero(inside), above), look.ceiling, CEILING)
+            _put_floor(canvas, inside, below, look)
+
+
+def _put_floor(canvas: WorldCanvas, inside: np.ndarray, level: int, look: RoomLook) -> None:
+    x, y = np.nonzero(inside)
+    count = len(look.floor)
+    step = {"plain": 0 * x, "rows": x % count, "checked": (x // 2 + y // 2) % count}
+    chosen = step[look.floor_pattern if count > 1 else "plain"]
+    for number, state in enumerate(look.floor):
+        own = chosen == number
+        canvas.set((x[own], y[own], np.full(own.sum(), level)), state, FLOOR)
+
+
+def _columns(canvas: WorldCanvas, room: BlockRoom, shape: tuple[int, ...]) -> np.ndarray:
+    inner = room.floor((shape[0] - 2 * canvas.margin, shape[1] - 2 * canvas.margin))
+    return np.pad(inner, canvas.margin)
+
+
+def _put_walls(canvas: WorldCanvas, room: BlockRoom, look: RoomLook, house: BlockHouse) -> None:
+    """Set the walls around a room, where no room before it has set them."""
+    inside = _columns(canvas, room, canvas.states.shape[:2])
+    rim = ndimage.binary_dilation(inside, EIGHT) & ~inside
+    others = [r for r in house.rooms if r.storey == room.storey and r is not room]
+    for other in others:
+        rim &= ~_columns(canvas, other, canvas.states.shape[:2])
+    low, high = canvas.at(0, 0, room.ground)[2], canvas.at(0, 0, room.ground + room.height)[2]
+    x, y = np.nonzero(rim)
+    for level in range(low, high):
+        free = canvas.states[x, y, level] == 0
+        height = level - low
+        state = look.skirting if height < look.skirting_height else look.wall
+        if height == high - low - 1 and look.cornice:
+            state = look.cornice
+        canvas.set((x[free], y[free], np.full(free.sum(), level)), state, WALL)
+
+
+def _put_gap(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
+    box = canvas.box((*gap.low, gap.bottom), (*gap.high, gap.top))
+    if gap.kind == "window":
+        canvas.set(box, look.glass, WINDOW)
+    elif len(gap.rooms) == 1:
+        _put_front_door(canvas, gap, look)
+    else:
+        canvas.set(box, "minecraft:air", 0)
+
+
+def _put_front_door(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
+    """Fill the front door with closed doors of the game, side by side and one on another."""
+    facing = FACINGS[gap.turn]
+    for n, (x, y) in enumerate(
+        (x, y) for x in range(gap.low[0], gap.high[0]) for y in range(gap.low[1], gap.high[1])
+    ):
+        for z in range(gap.bottom, gap.top - 1, 2):
+            for up, half in enumerate(("lower", "upper")):
+                hinge = ("left", "right")[n % 2]
+                state = f"{look.door}[facing={facing},half={half},hinge={hinge},open=false]"
+                canvas.set(canvas.at(x, y, z + up), state, OBJS)
+        if (gap.top - gap.bottom) % 2:
+            canvas.set(canvas.at(x, y, gap.top - 1), look.wall, WALL)
+
+
+def put_stairs(canvas: WorldCanvas, house: BlockHouse, look: RoomLook, instance: int) -> None:
+    """Set the stairs, open the floor over them, and guard the hole with a rail."""
+    flight = house.flight
+    if flight is None:
+        return
+    upper = house.grounds[1]
+    head = max(2, round(2.0 * house.blocks_per_metre))
+    first = flight.y0 + max(0, house.height - head - 1)
+    end = flight.y0 + flight.steps
+    canvas.set(
+        canvas.box((flight.x0, first, upper - 2), (flight.x1, end, upper)), "minecraft:air", 0
+    )
+    for n in range(flight.steps):
+        row = flight.y0 + n
+        tread = f"{look.stairs}[facing=north,half=bottom]"
+        under = f"{look.stairs}[facing=south,half=top]"
+        step = canvas.box((flight.x0, row, n), (flight.x1, row + 1, n + 1))
+        canvas.set(step, tread, OBJS, instance)
+        if n:
+            below = canvas.box((flight.x0, row, n - 1), (flight.x1, row + 1, n))
+            canvas.set(below, under, OBJS, instance)
+    rail = canvas.box((flight.x1, first - 1, upper), (flight.x1 + 1, end - 1, upper + 1))
+    canvas.set(rail, look.fence, OBJS, instance + 1)
+    rail = canvas.box((flight.x0, first - 1, upper), (flight.x1, first, upper + 1))
+    canvas.set(rail, look.fence, OBJS, instance + 1)

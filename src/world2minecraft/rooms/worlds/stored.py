@@ -1,0 +1,68 @@
+"""Worlds of houses on disk: a folder a house, with the world, its scene and its designs."""
+
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.exchange.scene import scene_of, write_scene
+from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
+from world2minecraft.minecraft.worlds.world import write_world
+from world2minecraft.progress import Progress, silent
+from world2minecraft.rooms.worlds.making import HouseWorld, generate_world
+
+ROOMS, STOREYS_SHARE = (4, 9), 0.35
+
+
+def write_house(
+    made: HouseWorld, folder: str | Path, *, name: str, mc_version: str = DEFAULT_VERSION
+) -> None:
+    """Write ``world/``, ``scene.json``, ``scene.npz``, ``designs.json`` and ``house.json``.
+
+    Raises:
+        OutputError: the folder cannot be written. UnknownNameError: no such version.
+    """
+    target, version = Path(folder), game_version(mc_version)
+    spawn = made.spawn
+    write_world(
+        made.volume,
+        target / "world",
+        name=name,
+        spawn=spawn.position,
+        spawn_yaw_deg=spawn.yaw_deg,
+        version=version,
+        hour=float(made.light["hour"]),
+    )
+    scene = scene_of(
+        made.volume,
+        mc_version=version.name,
+        data_version=version.data_version,
+        spawn=spawn.position,
+        spawn_yaw_deg=spawn.yaw_deg,
+        design=made.design,
+        designs=made.designs,
+        light=made.light,
+    )
+    write_scene(target, scene)
+
+
+def write_worlds(
+    folder: str | Path, houses: int, seed: int, *, progress: Progress = silent
+) -> list[Path]:
+    """Write ``house_0001`` to ``house_N`` below a folder; a longer series begins with a shorter."""
+    target, written = Path(folder), []
+    for number in range(1, houses + 1):
+        progress("houses", number - 1, houses, f"house_{number:04d}")
+        name = f"house_{number:04d}"
+        made = house_of(seed, number)
+        write_house(made, target / name, name=name.replace("_", " "))
+        written.append(target / name)
+    progress("houses", houses, houses)
+    return written
+
+
+def house_of(seed: int, number: int) -> HouseWorld:
+    """Return one house of a series."""
+    rng = np.random.default_rng([seed, number])
+    rooms = int(rng.integers(ROOMS[0], ROOMS[1] + 1))
+    storeys = 2 if rng.random() < STOREYS_SHARE else 1
+    return generate_world(int(rng.integers(1 << 31)), rooms=rooms, storeys=storeys)
