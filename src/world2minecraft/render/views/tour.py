@@ -12,6 +12,7 @@ from world2minecraft.render.views.heading import best_headings
 from world2minecraft.render.views.poses import GamePose, Shot
 from world2minecraft.render.views.ways import Ways
 from world2minecraft.types import BlockVolume, Camera
+from world2minecraft.walk.doors import is_shut, opened
 
 SAMPLE_M = 0.15  # Between places of the way at which one decides where to look.
 SMOOTH_M = 0.45  # Corners are rounded so much,
@@ -97,16 +98,16 @@ def with_open_doors(volume: BlockVolume, way: np.ndarray) -> tuple[BlockVolume, 
     near = near.reshape(-1, 3)
     near = near[((near >= 0) & (near < volume.states.shape)).all(axis=1)]
     palette = list(volume.palette)
-    opened = {n: _opened(state) for n, state in enumerate(palette) if _is_shut(state)}
+    open_of = {n: opened(state) for n, state in enumerate(palette) if is_shut(state)}
     states, count = volume.states.copy(), 0
     for place in np.unique(near, axis=0):
         number = int(states[tuple(place)])
-        if number not in opened:
+        if number not in open_of:
             continue
-        if opened[number] not in palette:
-            palette.append(opened[number])
-        states[tuple(place)] = palette.index(opened[number])
-        count += "half=upper" not in opened[number]
+        if open_of[number] not in palette:
+            palette.append(open_of[number])
+        states[tuple(place)] = palette.index(open_of[number])
+        count += "half=upper" not in open_of[number]
     return replace(volume, states=states, palette=tuple(palette)), count
 
 
@@ -119,15 +120,6 @@ def _with_headroom(volume: BlockVolume) -> BlockVolume:
         semantic=np.pad(volume.semantic, above),
         instance=np.pad(volume.instance, above),
     )
-
-
-def _is_shut(state: str) -> bool:
-    name = state.partition("[")[0]
-    return name.endswith(("_door", "_fence_gate")) and "open=false" in state
-
-
-def _opened(state: str) -> str:
-    return state.replace("open=false", "open=true")
 
 
 def _sampled(points: np.ndarray, spacing: float) -> np.ndarray:

@@ -1,0 +1,205 @@
+"""The walkable graph of a volume: the places where a player can stand, and the steps between.
+
+The player has the game's body, times a scale that is the volume's own where none is named: at 4
+blocks a metre a person of 1.8 m is 7.2 blocks high. He walks up steps of 0.6, jumps 1.25 where he
+may, and drops 3, all times the scale. Steps lead to the eight neighbours; no corner is cut.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from world2minecraft.classes import SemanticClass
+from world2minecraft.jit import njit
+from world2minecraft.minecraft.shapes import FULL_CUBE
+from world2minecraft.types import BlockVolume
+from world2minecraft.walk.body import HEIGHT, STEP_HEIGHT, WIDTH
+from world2minecraft.walk.columns import FINE, SKY, WET, Solid, Stands, stands_of
+from world2minecraft.walk.doors import doors_opened
+from world2minecraft.walk.world import BlockWorld
+
+JUMP_HEIGHT = 1.25  # Blocks; the game's jump reaches 1.2522.
+DROP = 3.0  # Blocks: from higher a fall hurts.
+SPACING_M = 0.25  # Between columns, or finer where a body is narrower.
+_LIQUIDS = ("minecraft:water", "minecraft:lava", "minecraft:fire")
+_FURNITURE = (int(SemanticClass.CHAIR), int(SemanticClass.FURN))  # From the first to the last.
+
+
+@dataclass(frozen=True)
+class WalkRule:
+    """How one walks; lengths are those of a player of the game's size.
+
+    ``scale`` None takes the volume's blocks a metre. ``on_furniture`` lets one stand on what is
+    labelled chair to furniture, as the game does; where nothing is labelled one may anyway.
+    """
+
+    scale: float | None = None
+    step: float = STEP_HEIGHT
+    jump: bool = False
+    drop: float = DROP
+    on_furniture: bool = False
+    opens_doors: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class WalkGraph:
+    """N places to stand and the E steps between them, in rows: those of place n go to
+    ``edge_to[edge_start[n]:edge_start[n + 1]]``. Steps down may have no way back.
+    """  # noqa: D205
+
+    feet: np.ndarray  # float64 [N, 3], world block coordinates
+    headroom: np.ndarray  # float64 [N], blocks over the feet, inf under the open sky
+    ground: np.ndarray  # uint8 [N], the class of what is under the feet
+    edge_start: np.ndarray  # int64 [N + 1]
+    edge_to: np.ndarray  # int32 [E]
+    edge_m: np.ndarray  # float64 [E], metres of the room
+    scale: float  # of the player
+    blocks_per_metre: float
+    spacing: float  # blocks from a column to the next
+
+    def __len__(self) -> int:
+        return len(self.feet)
+
+    def nearest(self, position: np.ndarray | tuple[float, float, float]) -> int:
+        """Return the place nearest to a position in world blocks. Raises ValueError: none is."""
+        if not len(self):
+            raise ValueError("the graph has no place to stand")
+        return int(((self.feet - np.asarray(position)) ** 2).sum(axis=1).argmin())
+
+    @cached_property
+    def edge_from(self) -> np.ndarray:
+        """Int32 [E]: where each step begins."""
+        return np.repeat(np.arange(len(self), dtype=np.int32), np.diff(self.edge_start))
+
+    @cached_property
+    def backward(self) -> "tuple[np.ndarray, np.ndarray, np.ndarray]":
+        """The steps turned round: ``edge_start``, ``edge_to`` and ``edge_m``."""
+        order = np.argsort(self.edge_to, kind="stable")
+        counts = np.bincount(self.edge_to, minlength=len(self))
+        start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+        return start, self.edge_from[order], self.edge_m[order]
+
+
+def walk_graph(volume: BlockVolume, rule: WalkRule | None = None) -> WalkGraph:
+    """Return the walkable graph of a volume.
+
+    Args:
+        volume: the blocks; what is beyond them is air without a floor.
+        rule: how one walks.
+
+    Example:
+        >>> from world2minecraft.walk.paths import shortest_path
+        >>> graph = walk_graph(volume)                                  # doctest: +SKIP
+        >>> path = shortest_path(graph, graph.nearest(spawn), goal)     # doctest: +SKIP
+    """
+    how = rule or WalkRule()
+    scale = volume.blocks_per_metre if how.scale is None else how.scale
+    width, height = WIDTH * scale, HEIGHT * scale
+    per_block = columns_per_block(volume.blocks_per_metre, width)
+    stands = stands_of(solid_of(volume, how.opens_doors), per_block, width / 2, height)
+    if not how.on_furniture:
+        stands = _without_furniture(stands)
+    deep = per_block * (volume.states.shape[2] - 1) + 1
+    column, level = np.nonzero(np.arange(stands.floor.shape[1]) < stands.counts[:, None])
+    first = np.concatenate([[0], np.cumsum(stands.counts)]).astype(np.int64)
+    climb = (JUMP_HEIGHT if how.jump else how.step) * scale * FINE + 1e-6
+    limits = (climb, how.drop * scale * FINE + 1e-6, how.step * scale * FINE + 1e-6)
+    need = int(np.ceil(height * FINE - 1e-6))
+    start, to = _steps(stands.counts, stands.floor, stands.ceiling, first, deep, need, limits)
+    feet = np.stack([column // deep, np.zeros(len(column)), column % deep], axis=1) / per_block
+    feet += np.add(volume.corner, [0.5, 0.0, 0.5])
+    feet[:, 1] += stands.floor[column, level] / FINE
+    ceiling = stands.ceiling[column, level]
+    rooms = np.where(ceiling == SKY, np.inf, (ceiling - stands.floor[column, level]) / FINE)
+    origin = np.repeat(np.arange(len(feet)), np.diff(start))
+    length_m = np.linalg.norm(feet[to] - feet[origin], axis=1) / volume.blocks_per_metre
+    return WalkGraph(
+        feet, rooms, stands.ground[column, level], start, to, length_m, scale,
+        volume.blocks_per_metre, 1 / per_block,
+    )  # fmt: skip
+
+
+def columns_per_block(blocks_per_metre: float, width: float) -> int:
+    """Return how many columns a block has: near each other, and no farther than a body is wide."""
+    return max(1, round(1 / (SPACING_M * blocks_per_metre)), int(np.ceil(1 / width - 1e-6)))
+
+
+def solid_of(volume: BlockVolume, opens_doors: bool = True) -> Solid:
+    """Return the boxes of a volume for the kernels; liquids count as full and are no ground."""
+    world = BlockWorld.of_volume(doors_opened(volume) if opens_doors else volume)
+    wet = np.array([state.startswith(_LIQUIDS) for state in volume.palette])[volume.states]
+    shapes = [*world.shapes, FULL_CUBE]
+    kinds = np.where(wet, len(shapes) - 1, world.kinds).astype(np.uint16)
+    counts = [len(shape) for shape in shapes]
+    full = [len(shape) == 1 and np.array_equal(shape, FULL_CUBE) for shape in shapes]
+    return Solid(
+        kinds,
+        np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
+        np.concatenate(shapes).astype(np.float64).reshape(-1, 6),
+        np.where(wet, WET, volume.semantic).astype(np.uint8),
+        np.array(full),
+    )
+
+
+def _without_furniture(stands: Stands) -> Stands:
+    """Return the stands whose ground is none of chair, bed, sofa, table, screen and furniture."""
+    low, high = _FURNITURE
+    there = np.arange(stands.floor.shape[1]) < stands.counts[:, None]
+    kept = there & ~((stands.ground >= low) & (stands.ground <= high))
+    order = np.argsort(~kept, axis=1, kind="stable")
+    moved = [np.take_along_axis(part, order, axis=1) for part in stands[1:]]
+    return Stands(kept.sum(axis=1).astype(np.int32), *moved)
+
+
+@njit
+def _steps(count, floor, ceiling, first, deep, need, limits):
+    """Return ``edge_start`` and ``edge_to`` of all stands."""
+    total = first[-1]
+    start, to = np.zeros(total + 1, np.int64), np.empty(total * 8, np.int32)
+    edges, wide = 0, len(count) // deep if deep > 0 else 0
+    for column in range(len(count)):
+        x, z = column // deep, column % deep
+        for level in range(count[column]):
+            low, high = floor[column, level], ceiling[column, level]
+            for dx in range(-1, 2):
+                for dz in range(-1, 2):
+                    if (dx == 0 and dz == 0) or not (0 <= x + dx < wide and 0 <= z + dz < deep):
+                        continue
+                    other = column + dx * deep + dz
+                    there = _reached(count, floor, ceiling, other, low, high, need, limits)
+                    if there < 0:
+                        continue
+                    goal = floor[other, there]
+                    lift, least = max(low, goal), min(low, goal) - limits[2]
+                    if dx != 0 and dz != 0:
+                        one = _passes(count, floor, ceiling, column + dz, lift, least, need)
+                        two = _passes(count, floor, ceiling, column + dx * deep, lift, least, need)
+                        if not (one and two):
+                            continue
+                    to[edges] = first[other] + there
+                    edges += 1
+            start[first[column] + level + 1] = edges
+    return start, to[:edges].copy()
+
+
+@njit
+def _reached(count, floor, ceiling, other, low, high, need, limits):
+    """Return the stand of another column that one step leads to; -1 for none."""
+    for n in range(count[other]):
+        goal = floor[other, n]
+        lift = max(low, goal)
+        if goal - low > limits[0] or low - goal > limits[1]:
+            continue
+        if high - lift >= need and ceiling[other, n] - lift >= need:
+            return n
+    return -1
+
+
+@njit
+def _passes(count, floor, ceiling, side, lift, least, need):
+    """Whether a body at a height may brush a column that it passes by, and would not fall there."""
+    for n in range(count[side]):
+        if least <= floor[side, n] <= lift and ceiling[side, n] - lift >= need:
+            return True
+    return False
