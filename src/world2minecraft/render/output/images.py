@@ -56,9 +56,7 @@ def depth_bytes(depth_m: np.ndarray, suffix: str, per_metre: int = PER_METRE) ->
         UsageError: another suffix.
     """
     if suffix == ".png":
-        whole = np.minimum(np.rint(depth_m.astype(np.float64) * per_metre), FARTHEST)
-        near = (depth_m > 0) & (whole < 1)  # 0 means that there is nothing.
-        return number_bytes(np.where(near, 1, whole).astype(np.uint16))
+        return number_bytes(depth_numbers(depth_m, per_metre))
     if suffix == ".exr":
         return exr_bytes({"Z": depth_m}, notes={"comments": "metres; 0 where there is nothing"})
     if suffix == ".npy":
@@ -66,6 +64,13 @@ def depth_bytes(depth_m: np.ndarray, suffix: str, per_metre: int = PER_METRE) ->
         np.lib.format.write_array(stream, depth_m.astype(np.float32), allow_pickle=False)
         return stream.getvalue()
     raise UsageError(f"depth ends in {', '.join(DEPTH_SUFFIXES)}, not {suffix!r}")
+
+
+def depth_numbers(depth_m: np.ndarray, per_metre: int = PER_METRE) -> np.ndarray:
+    """Return depth as whole parts of a metre, uint16 [H, W]: 0 for nothing, else 1 to 65535."""
+    whole = np.minimum(np.rint(depth_m.astype(np.float64) * per_metre), FARTHEST)
+    near = (depth_m > 0) & (whole < 1)  # 0 means that there is nothing.
+    return np.where(near, 1, whole).astype(np.uint16)
 
 
 def number_bytes(numbers: np.ndarray) -> bytes:
