@@ -81,7 +81,7 @@ class LabelRegion:
 
     def centers_m(self) -> np.ndarray:
         """Return the centres of all cells in the room, float64 [X, Y, Z, 3]."""
-        places = np.stack(np.indices(self.shape), axis=-1) + 0.5
+        places = np.moveaxis(np.indices(self.shape), 0, -1) + 0.5
         return apply(self.region_to_room, places * self.voxel_m)
 
 

@@ -1,0 +1,166 @@
+"""Observed free space, exactly: the empty cells that the ray of some pixel went through.
+
+A ray went through a cell where it was in it over more than ``CROSSED_M`` of depth before it met its
+surface. All pixels count, however many there are; and yet most cells cost one look: the pixel that
+a cell's middle falls on tells that it is free, or the depths around tell that all rays end before
+it. What is left is tested pixel by pixel.
+"""
+
+import numpy as np
+
+from world2minecraft.jit import inlined, lean
+from world2minecraft.render.ray import steep
+
+CROSSED_M = 0.001
+TILE = 8  # Pixels a side whose greatest depth is kept.
+
+
+@lean
+def greatest_depths(depth, tiles):
+    """Fill ``tiles`` float32 [ceil(H / TILE), ceil(W / TILE)]; 0 counts as endless."""
+    height, width = depth.shape
+    tiles[:] = 0
+    for v in range(height):
+        for u in range(width):
+            far = depth[v, u] if depth[v, u] > 0 else np.float32(np.inf)
+            if far > tiles[v // TILE, u // TILE]:
+                tiles[v // TILE, u // TILE] = far
+
+
+@lean
+def mark_free(labels, to_camera, place, lens, depth, tiles, ends, free):
+    """Mark the free cells.
+
+    Args:
+        labels: uint8 [X, Y, Z]; only what is 0 can be free.
+        to_camera: float64 [3, 4], region's cells to metres of the camera.
+        place: float64 [3, 4], back again.
+        lens: float64 [4], fx, fy, cx, cy.
+        depth: float32 [H, W], z-depth in metres, 0 where a ray meets nothing.
+        tiles: of ``greatest_depths``.
+        ends: float64 [8, 3], scratch.
+        free: bool [X, Y, Z], filled in place.
+    """
+    height, width = depth.shape
+    spread_z = (abs(to_camera[2, 0]) + abs(to_camera[2, 1]) + abs(to_camera[2, 2])) / 2
+    for i in range(labels.shape[0]):
+        for j in range(labels.shape[1]):
+            for k in range(labels.shape[2]):
+                free[i, j, k] = False
+                if labels[i, j, k] != 0:
+                    continue
+                x, y, z = _carry(to_camera, i + 0.5, j + 0.5, k + 0.5)
+                if z + spread_z <= CROSSED_M or _beside(to_camera, lens, width, height, x, y, z):
+                    continue
+                if z > 0:
+                    u, v = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
+                    inside = 0 <= u < width and 0 <= v < height
+                    if inside and crosses(place, lens, depth, int(u), int(v), i, j, k):
+                        free[i, j, k] = True
+                        continue
+                free[i, j, k] = _some_ray(
+                    to_camera, place, lens, depth, tiles, ends, i, j, k, z - spread_z
+                )
+
+
+@inlined
+def _carry(matrix, x, y, z):
+    return (
+        matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 2] * z + matrix[0, 3],
+        matrix[1, 0] * x + matrix[1, 1] * y + matrix[1, 2] * z + matrix[1, 3],
+        matrix[2, 0] * x + matrix[2, 1] * y + matrix[2, 2] * z + matrix[2, 3],
+    )
+
+
+@inlined
+def _beside(to_camera, lens, width, height, x, y, z):
+    """Tell whether a cell lies wholly beyond one side of what the camera sees."""
+    low_u, high_u, low_v, high_v = 0.0, 0.0, 0.0, 0.0
+    for axis in range(3):
+        ex, ey, ez = to_camera[0, axis] / 2, to_camera[1, axis] / 2, to_camera[2, axis] / 2
+        low_u += abs(lens[0] * ex + lens[2] * ez)
+        high_u += abs(lens[0] * ex + (lens[2] - width) * ez)
+        low_v += abs(lens[1] * ey + lens[3] * ez)
+        high_v += abs(lens[1] * ey + (lens[3] - height) * ez)
+    return (
+        lens[0] * x + lens[2] * z < -low_u
+        or lens[0] * x + (lens[2] - width) * z > high_u
+        or lens[1] * y + lens[3] * z < -low_v
+        or lens[1] * y + (lens[3] - height) * z > high_v
+    )
+
+
+@lean
+def crosses(place, lens, depth, u, v, i, j, k):
+    """Tell whether the ray of pixel (u, v) goes through cell (i, j, k) before its surface."""
+    end = np.float64(depth[v, u]) if depth[v, u] > 0 else np.inf
+    x, y = (u + 0.5 - lens[2]) / lens[0], (v + 0.5 - lens[3]) / lens[1]
+    begin = 0.0
+    for axis in range(3):
+        low = (i if axis == 0 else (j if axis == 1 else k)) - place[axis, 3]
+        d = steep(place[axis, 0] * x + place[axis, 1] * y + place[axis, 2])
+        near, far = low / d, (low + 1.0) / d
+        begin, end = max(begin, min(near, far)), min(end, max(near, far))
+    return end - begin > CROSSED_M
+
+
+@lean
+def _some_ray(to_camera, place, lens, depth, tiles, ends, i, j, k, nearest):
+    """Tell whether some pixel's ray goes through a cell; nothing of it is nearer than ``nearest``.
+
+    Only pixels count that the cell's outline surrounds, and of those no tile whose rays all end
+    before the cell.
+    """
+    left, right, top, bottom = _outline(to_camera, lens, ends, i, j, k)
+    height, width = depth.shape
+    u0, u1 = max(int(np.ceil(left - 0.5)), 0), min(int(np.floor(right - 0.5)), width - 1)
+    v0, v1 = max(int(np.ceil(top - 0.5)), 0), min(int(np.floor(bottom - 0.5)), height - 1)
+    for row in range(v0 // TILE, v1 // TILE + 1):
+        for column in range(u0 // TILE, u1 // TILE + 1):
+            if tiles[row, column] <= nearest:
+                continue
+            for v in range(max(v0, row * TILE), min(v1 + 1, (row + 1) * TILE)):
+                for u in range(max(u0, column * TILE), min(u1 + 1, (column + 1) * TILE)):
+                    if 0 < depth[v, u] <= nearest:
+                        continue
+                    if crosses(place, lens, depth, u, v, i, j, k):
+                        return True
+    return False
+
+
+@lean
+def _outline(to_camera, lens, ends, i, j, k):
+    """Return left, right, top and bottom, in pixels, of what of a cell is before the camera.
+
+    What is nearer than ``CROSSED_M`` is cut off: a ray that is in the cell there alone is not long
+    enough in it.
+    """
+    box = (np.inf, -np.inf, np.inf, -np.inf)
+    for corner in range(8):
+        a, b, c = i + corner // 4, j + corner // 2 % 2, k + corner % 2
+        ends[corner, 0], ends[corner, 1], ends[corner, 2] = _carry(to_camera, a, b, c)
+        if ends[corner, 2] >= CROSSED_M:
+            box = _with(box, lens, ends[corner, 0], ends[corner, 1], ends[corner, 2])
+    for corner in range(8):
+        for bit in (1, 2, 4):
+            other = corner | bit
+            near, far = ends[corner, 2] - CROSSED_M, ends[other, 2] - CROSSED_M
+            if corner & bit or (near >= 0) == (far >= 0):
+                continue
+            share = near / (near - far)
+            x = ends[corner, 0] + share * (ends[other, 0] - ends[corner, 0])
+            y = ends[corner, 1] + share * (ends[other, 1] - ends[corner, 1])
+            box = _with(box, lens, x, y, CROSSED_M)
+    if box[0] > box[1]:
+        return 1.0, 0.0, 1.0, 0.0
+    # Rounding must not lose a pixel, nor may a number be too large to be whole.
+    return (
+        max(box[0] - 1e-6, -1.0), min(box[1] + 1e-6, 1e6),
+        max(box[2] - 1e-6, -1.0), min(box[3] + 1e-6, 1e6),
+    )  # fmt: skip
+
+
+@inlined
+def _with(box, lens, x, y, z):
+    u, v = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
+    return min(box[0], u), max(box[1], u), min(box[2], v), max(box[3], v)
