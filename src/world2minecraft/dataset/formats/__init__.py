@@ -1,0 +1,1 @@
+"""What the exchange formats share: pickles, SSCNet's voxels, codes of depth, cameras, axes."""

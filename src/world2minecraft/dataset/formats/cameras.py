@@ -1,0 +1,130 @@
+"""Pictures for a fixed camera: cropped and resampled where a sample has another one.
+
+The loaders count pixel centres as whole numbers (they round a projection), ours lie at +0.5: half
+a pixel lies between a principal point of theirs and of ours.
+"""
+
+import math
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.coordinates import fov_deg_of_focal_px
+from world2minecraft.errors import InputError
+from world2minecraft.types import Camera
+
+WIDTH_PX, HEIGHT_PX = 640, 480
+HALF_PX = 0.5
+NYU_FOCAL_PX = 518.8579
+NYU_CAMERA = Camera(WIDTH_PX, HEIGHT_PX, NYU_FOCAL_PX, NYU_FOCAL_PX, 320 + HALF_PX, 240 + HALF_PX)
+SLACK_PX = 1.01  # So far a picture may end short of the wanted one; its edge is repeated.
+SAME_FOCAL_PX, SAME_CENTRE_PX = 0.05, 0.51
+
+
+def is_same(camera: Camera, other: Camera) -> bool:
+    """Return whether two cameras give the same picture, within half a pixel."""
+    return (
+        (camera.width_px, camera.height_px) == (other.width_px, other.height_px)
+        and abs(camera.fx_px - other.fx_px) <= SAME_FOCAL_PX
+        and abs(camera.fy_px - other.fy_px) <= SAME_FOCAL_PX
+        and abs(camera.cx_px - other.cx_px) <= SAME_CENTRE_PX
+        and abs(camera.cy_px - other.cy_px) <= SAME_CENTRE_PX
+        and not any(camera.distortion)
+    )
+
+
+def vga_camera(camera: Camera) -> Camera:
+    """Return the 640x480 camera that sees the largest middle part of a picture.
+
+    Example:
+        >>> vga_camera(Camera(1920, 1080, 1000, 1000, 960, 540)).fx_px
+        444.4444444444444
+    """
+    height = min(camera.height_px, camera.width_px * HEIGHT_PX / WIDTH_PX)
+    scale = HEIGHT_PX / height
+    left = (camera.width_px - WIDTH_PX / scale) / 2
+    top = (camera.height_px - height) / 2
+    return Camera(
+        WIDTH_PX,
+        HEIGHT_PX,
+        camera.fx_px * scale,
+        camera.fy_px * scale,
+        (camera.cx_px - left) * scale,
+        (camera.cy_px - top) * scale,
+        camera.distortion,
+    )
+
+
+class Resampler:
+    """Carries pictures of one camera to another that looks the same way from the same place."""
+
+    def __init__(self, name: str, source: Camera, target: Camera):
+        """Check that the source sees all of the target.
+
+        Raises:
+            InputError: it sees less, or one of them has a distorting lens.
+        """
+        self.same = is_same(source, target)
+        self.source, self.target = source, target
+        if self.same:
+            return
+        if any(source.distortion) or any(target.distortion):
+            raise InputError(name, "the lens distorts; render or undistort the pictures without it")
+        self.left, self.width = _span(source.fx_px, source.cx_px, target.fx_px, target.cx_px, 640)
+        self.top, self.height = _span(source.fy_px, source.cy_px, target.fy_px, target.cy_px, 480)
+        self.pad = math.ceil(max(self.width / 640, self.height / 480) * SLACK_PX) + 1
+        slack_x, slack_y = self.width / 640 * SLACK_PX, self.height / 480 * SLACK_PX
+        if (
+            min(self.left + slack_x, self.top + slack_y) < 0
+            or self.left + self.width > source.width_px + slack_x
+            or self.top + self.height > source.height_px + slack_y
+        ):
+            raise InputError(name, _too_narrow(source, target))
+
+    def colour(self, pixels: np.ndarray) -> np.ndarray:
+        """Return uint8 [480, 640, 3]: bilinear, of all pixels that fall into one."""
+        if self.same:
+            return pixels
+        pad = self.pad
+        padded = np.pad(pixels, ((pad, pad), (pad, pad), (0, 0)), mode="edge")
+        box = (
+            self.left + pad,
+            self.top + pad,
+            self.left + self.width + pad,
+            self.top + self.height + pad,
+        )
+        size = (self.target.width_px, self.target.height_px)
+        image = Image.fromarray(padded).resize(size, Image.Resampling.BILINEAR, box=box)
+        return np.asarray(image)
+
+    def depth(self, depth_m: np.ndarray) -> np.ndarray:
+        """Return float32 [480, 640] of the nearest pixels: depth is never mixed."""
+        if self.same:
+            return depth_m
+        columns = _nearest(self.left, self.width, self.target.width_px, depth_m.shape[1])
+        rows = _nearest(self.top, self.height, self.target.height_px, depth_m.shape[0])
+        return np.ascontiguousarray(depth_m[rows[:, None], columns])
+
+
+def _span(
+    source_focal: float, source_centre: float, focal: float, centre: float, side_px: int
+) -> tuple[float, float]:
+    """Return where the target's pixels begin in the source's, and how far they reach."""
+    scale = source_focal / focal
+    return source_centre - centre * scale, side_px * scale
+
+
+def _nearest(start: float, length: float, count: int, held: int) -> np.ndarray:
+    middles = start + (np.arange(count) + 0.5) * length / count
+    return np.clip(np.floor(middles).astype(np.int64), 0, held - 1)
+
+
+def _too_narrow(source: Camera, target: Camera) -> str:
+    def angles(camera: Camera) -> str:
+        across = fov_deg_of_focal_px(camera.width_px, camera.fx_px)
+        return f"{across:.1f} x {fov_deg_of_focal_px(camera.height_px, camera.fy_px):.1f}"
+
+    return (
+        f"the camera sees {angles(source)} degrees, the format wants {angles(target)}; "
+        "make the pictures with a wider field of view, or export to occscannet or npz"
+    )

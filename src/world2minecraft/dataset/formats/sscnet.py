@@ -1,0 +1,135 @@
+"""SSCNet's ``.bin``: the voxels of one NYU frame at 2 cm, as runs of equal values.
+
+A file is 3 float32 (where voxel (0, 0, 0) begins in the world), 16 float32 (the camera's pose in
+the world, row by row), then uint32 pairs of value and count: 240 x 144 x 240 voxels in C order,
+axes (x, z up, y), values 0 to 36 or 255. MonoScene's preprocessing makes 8 and 32 cm grids of it;
+here it is done the same way, all cells at once.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.errors import DamagedFileError
+from world2minecraft.files import read_bytes
+from world2minecraft.jit import njit
+
+FINE_SHAPE = (240, 144, 240)  # x, z up, y
+FINE_PER_CELL = 4
+HEADER_BYTES = 4 * (3 + 16)
+MAX_BYTES = 80 << 20  # Every voxel a run of its own takes 66 MB.
+EMPTY_SHARE = 0.95  # A cell is empty where more of its voxels than this are empty or unknown.
+
+# SSCNet's 36 classes and its empty, as the 12; the list stands in every loader of the format.
+CLASS_OF_CODE = np.array(
+    [
+        *(0, 1, 2, 3, 4, 11, 5, 6, 7, 8, 8, 10, 10, 10, 11, 11, 9, 8, 11),
+        *(11, 11, 11, 11, 11, 11, 11, 11, 10, 10, 11, 8, 10, 11, 9, 11, 11, 11),
+    ],
+    np.uint8,
+)
+# The first code of each class, but for objs, whose first is SSCNet's door.
+CODE_OF_CLASS = np.array([0, 1, 2, 3, 4, 6, 7, 8, 9, 16, 11, 14], np.uint8)
+
+
+@dataclass(frozen=True, eq=False)
+class SscnetFrame:
+    """What a ``.bin`` holds, its codes made our classes."""
+
+    labels: np.ndarray  # uint8 [240, 144, 240] as x, z up, y; 0 to 11 or 255
+    origin_m: np.ndarray  # float32 [3], minimum corner of voxel (0, 0, 0) in the world
+    camera_to_world: np.ndarray  # float32 [4, 4]
+
+
+def read_bin(path: str | Path) -> SscnetFrame:
+    """Read a ``.bin``.
+
+    Raises:
+        InputError: it is missing. LimitError: it is too large. DamagedFileError: it is none.
+    """
+    data = read_bytes(path, MAX_BYTES)
+    if len(data) < HEADER_BYTES or (len(data) - HEADER_BYTES) % 8:
+        raise DamagedFileError(path, f"has {len(data):,} bytes, which no SSCNet .bin has")
+    head = np.frombuffer(data, "<f4", 19)
+    pairs = np.frombuffer(data, "<u4", offset=HEADER_BYTES).reshape(-1, 2)
+    try:
+        codes = _expanded(pairs)
+    except ValueError as error:
+        raise DamagedFileError(path, f"{error}; it is no SSCNet .bin") from error
+    table = np.zeros(256, np.uint8)
+    table[: len(CLASS_OF_CODE)], table[UNKNOWN] = CLASS_OF_CODE, UNKNOWN
+    return SscnetFrame(table[codes].reshape(FINE_SHAPE), head[:3].copy(), head[3:].reshape(4, 4))
+
+
+def _expanded(pairs: np.ndarray) -> np.ndarray:
+    """Return the codes, uint8 [8294400], of runs whose sum is checked first."""
+    voxels, held = int(np.prod(FINE_SHAPE)), int(pairs[:, 1].sum(dtype=np.uint64))
+    if held != voxels:
+        raise ValueError(f"holds {held:,} voxels of {voxels:,}")
+    values = pairs[:, 0]
+    if np.any((values >= len(CLASS_OF_CODE)) & (values != UNKNOWN)):
+        raise ValueError(f"holds the class {int(values[values != UNKNOWN].max())}")
+    return np.repeat(values.astype(np.uint8), pairs[:, 1])
+
+
+def bin_bytes(labels: np.ndarray, origin_m: np.ndarray, camera_to_world: np.ndarray) -> bytes:
+    """Return the ``.bin`` of an 8 cm grid: each cell is 4 x 4 x 4 equal voxels.
+
+    ``downsampled(read_bin(...).labels, 4)`` gives the grid back: an equal block is all of one
+    kind, so that the rule of 95 % decides nothing.
+
+    Args:
+        labels: uint8 [60, 36, 60] as x, z up, y; 0 to 11 or 255.
+        origin_m: [3], minimum corner of cell (0, 0, 0).
+        camera_to_world: [4, 4].
+    """
+    table = np.full(256, UNKNOWN, np.uint8)
+    table[:CLASS_COUNT] = CODE_OF_CLASS
+    codes = table[labels]
+    for axis in (2, 1, 0):
+        codes = np.repeat(codes, FINE_PER_CELL, axis=axis)
+    flat = codes.reshape(-1)
+    starts = np.concatenate([[0], np.flatnonzero(flat[1:] != flat[:-1]) + 1])
+    counts = np.diff(np.append(starts, flat.size))
+    runs = np.stack([flat[starts], counts], axis=1).astype("<u4")
+    head = np.concatenate([np.ravel(origin_m), np.ravel(camera_to_world)]).astype("<f4")
+    return head.tobytes() + runs.tobytes()
+
+
+def downsampled(labels: np.ndarray, factor: int) -> np.ndarray:
+    """Return a grid with cells ``factor`` times as large, by the rule of SSCNet's loaders.
+
+    A cell of which more than 95 % is empty or unknown is the more frequent of the two (unknown
+    where they are even); any other is its most frequent class, the lower id where two are even.
+
+    Args:
+        labels: uint8 [X, Y, Z], 0 to 11 or 255, sides whole multiples of ``factor``.
+        factor: 4 makes 8 cm cells of 2 cm voxels.
+
+    Example:
+        >>> fine = np.zeros((4, 4, 4), np.uint8)
+        >>> fine[0, 0, :4] = 2
+        >>> int(downsampled(fine, 4)[0, 0, 0])
+        2
+    """
+    sides = tuple(side // factor for side in labels.shape)
+    result = np.empty(sides, np.uint8)
+    _count_blocks(np.ascontiguousarray(labels), factor, EMPTY_SHARE * factor**3, result)
+    return result
+
+
+@njit
+def _count_blocks(labels, factor, sparse, result):
+    counts = np.zeros(256, np.int32)
+    for i, j, k in np.ndindex(result.shape):
+        counts[:] = 0
+        for x in range(i * factor, (i + 1) * factor):
+            for y in range(j * factor, (j + 1) * factor):
+                for z in range(k * factor, (k + 1) * factor):
+                    counts[labels[x, y, z]] += 1
+        if counts[0] + counts[255] > sparse:
+            result[i, j, k] = 0 if counts[0] > counts[255] else 255
+        else:
+            result[i, j, k] = 1 + np.argmax(counts[1:255])

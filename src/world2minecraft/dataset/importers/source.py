@@ -1,0 +1,38 @@
+"""A data set of another format: keys, and a sample for each, read when it is asked for."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from world2minecraft.dataset.values import OccSample
+from world2minecraft.errors import UnknownNameError
+
+
+@dataclass(frozen=True)
+class ImportedSet:
+    """Samples of a folder, by key; it is read as a store is."""
+
+    path: Path
+    format: str
+    splits: dict[str, str]  # key to train, test or ""
+    read: Callable[[str], OccSample]
+    notes: tuple[str, ...] = field(default=())
+
+    def keys(self, split: str | None = None) -> list[str]:
+        """Return the keys, of one split or of all."""
+        return [key for key, of in self.splits.items() if split in (None, of)]
+
+    def samples(self, split: str | None = None) -> Iterator[OccSample]:
+        """Read the samples of one split, or all, one at a time."""
+        return (self.read(key) for key in self.keys(split))
+
+    def __getitem__(self, key: str) -> OccSample:
+        if key not in self.splits:
+            raise UnknownNameError("sample", key, self.splits)
+        return self.read(key)
+
+    def __iter__(self) -> Iterator[OccSample]:
+        return self.samples()
+
+    def __len__(self) -> int:
+        return len(self.splits)
