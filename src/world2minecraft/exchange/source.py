@@ -1,0 +1,158 @@
+"""Any build as a volume: a run's folder, its build, a world of anyone, or a file of blocks."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.exchange.cutting import Box, cropped, trimmed
+from world2minecraft.exchange.forms import read_form
+from world2minecraft.exchange.labelled import labelled, place_of_blocks
+from world2minecraft.files import read_json
+from world2minecraft.minecraft.worlds.world import read_level, read_world
+from world2minecraft.types import BlockVolume
+
+AROUND = (64, 32, 64)  # Blocks to each side of the spawn, of a world that comes without a scene,
+ABOVE = 96  # and so many over it.
+EDGE = 2  # Blocks around a scene: display entities may stand out of it.
+
+
+class Start(NamedTuple):
+    """Where the player of a world of this program starts, in world block coordinates."""
+
+    x: float
+    y: float
+    z: float
+    yaw_deg: float  # the game's
+
+
+@dataclass(eq=False)
+class Source:
+    """A volume that was read; ``notes`` say what was chosen for the user.
+
+    ``folder`` holds the ``scene.json`` that the volume has its labels or scale from, or is None.
+    """
+
+    volume: BlockVolume
+    name: str
+    path: Path
+    start: Start | None = None
+    folder: Path | None = None
+    notes: list[str] = field(default_factory=list)
+
+
+def around_spawn(world: Path) -> tuple[Box, str]:
+    """Return the blocks around a world's spawn as a box, and a note for the user."""
+    x, y, z = spawn_of(read_level(world))
+    wide, low, deep = AROUND
+    told = " ".join(str(value) for value in (x, y, z))
+    note = f"this world has no scene.json: drawing the blocks around its spawn ({told}); "
+    box = (x - wide, y - low, z - deep, x + wide, y + ABOVE, z + deep)
+    return box, note + "--box x0,y0,z0,x1,y1,z1 chooses others"
+
+
+def read_source(
+    path: Path,
+    box: Box | None = None,
+    *,
+    choose: Callable[[Path], tuple[Box, str]] = around_spawn,
+) -> Source:
+    """Read a file, a world, a run's folder or its build.
+
+    Args:
+        path: where it is.
+        box: which blocks, the last ones not included; a world of this program says so itself.
+        choose: chooses the box of another world, and a note that says so.
+
+    Raises:
+        InputError: it cannot be read, or nothing but air is there.
+        UsageError: the box lies beside the build.
+    """
+    if not path.exists():
+        raise InputError(path, "is not there")
+    blocks = place_of_blocks(path)
+    if (blocks / "level.dat").is_file():
+        source = _read_world(blocks, path, box, choose)
+    else:
+        source = _read_file(path, box)
+    source.volume = trimmed(source.volume)
+    if not source.volume.states.any():
+        where = "in the box" if box else "there"
+        raise InputError(path, f"nothing but air is {where}; choose another --box")
+    return source
+
+
+def spawn_of(level: dict[str, Any]) -> tuple[int, int, int]:
+    """Return the spawn of a level, of old and new games; the world's middle where it has none."""
+    try:
+        if "spawn" in level:  # Since 1.21.9.
+            x, y, z = (int(value) for value in level["spawn"]["pos"])
+        else:
+            x, y, z = (int(level[key]) for key in ("SpawnX", "SpawnY", "SpawnZ"))
+    except (KeyError, TypeError, ValueError):
+        return 0, 64, 0
+    return x, y, z
+
+
+def _read_file(path: Path, box: Box | None) -> Source:
+    volume = read_form(path)
+    _, folder = _scene_beside(path)
+    return Source(cropped(volume, box) if box else volume, path.stem, path, folder=folder)
+
+
+def _read_world(
+    world: Path, asked: Path, box: Box | None, choose: Callable[[Path], tuple[Box, str]]
+) -> Source:
+    """Read the box of a world that is asked for, that of its scene, or the one chosen."""
+    scene, folder = _scene_beside(asked)
+    if scene is None or folder is None:
+        chosen, note = (box, "") if box else choose(world)
+        source = Source(read_world(world, box=chosen), world.name, asked)
+        source.notes += [note] if note else []
+        return source
+    own = _box_of(scene, folder / "scene.json")
+    volume = _with_labels(read_world(world, box=box or own), scene, folder)
+    source = Source(volume, asked.resolve().stem, asked, _start_of(scene), folder)
+    if not (folder / "scene.npz").is_file():
+        source.notes.append("scene.npz is not there: classes and objects are empty")
+    return source
+
+
+def _scene_beside(path: Path) -> tuple[dict[str, Any] | None, Path | None]:
+    for folder in (path, path / "build", path.parent):
+        if (folder / "scene.json").is_file():
+            scene = read_json(folder / "scene.json")
+            if not isinstance(scene, dict):
+                raise DamagedFileError(folder / "scene.json", "is no scene (no JSON object)")
+            return scene, folder
+    return None, None
+
+
+def _box_of(scene: dict[str, Any], path: Path) -> Box:
+    try:
+        x, y, z = (int(value) for value in scene["corner"])
+        east, up, south = (int(value) for value in scene["size"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise DamagedFileError(path, f"is no scene ({error})") from error
+    return (x - EDGE, y - EDGE, z - EDGE, x + east + EDGE, y + up + EDGE, z + south + EDGE)
+
+
+def _with_labels(volume: BlockVolume, scene: dict[str, Any], folder: Path) -> BlockVolume:
+    """Return the volume with the scene's labels, or with its scale alone where they are gone."""
+    if (folder / "scene.npz").is_file():
+        return labelled(volume, folder)
+    try:
+        return replace(volume, block_to_room=np.array(scene["block_to_room"], np.float64))
+    except (KeyError, TypeError, ValueError) as error:
+        raise DamagedFileError(folder / "scene.json", f"is no scene ({error})") from error
+
+
+def _start_of(scene: dict[str, Any]) -> Start | None:
+    try:
+        x, y, z = (float(value) for value in scene["spawn"]["position"])
+        return Start(x, y, z, float(scene["spawn"]["yaw_deg"]))
+    except (KeyError, TypeError, ValueError):
+        return None
