@@ -52,7 +52,7 @@ def labelled(volume: BlockVolume, path: Path) -> BlockVolume:
 
 def with_scene(volume: BlockVolume, scene: Scene) -> BlockVolume:
     """Return the volume with a scene's labels on all blocks that are there, and its scale."""
-    ours, theirs = _common(volume, scene)
+    ours, theirs = common_cells(volume, scene)
     semantic, instance = np.zeros_like(volume.semantic), np.zeros_like(volume.instance)
     is_block = volume.states[ours] > 0
     semantic[ours] = np.where(is_block, scene.semantic[theirs], 0)
@@ -62,13 +62,13 @@ def with_scene(volume: BlockVolume, scene: Scene) -> BlockVolume:
 
 def _overlaps(volume: BlockVolume, scene: Scene) -> bool:
     """Whether most of what the scene labels is still a block: else it is another's scene."""
-    ours, theirs = _common(volume, scene)
+    ours, theirs = common_cells(volume, scene)
     wanted = int((scene.semantic > 0).sum())
     met = int(((scene.semantic[theirs] > 0) & (volume.states[ours] > 0)).sum())
     return wanted > 0 and met >= wanted / 2
 
 
-def _common(volume: BlockVolume, scene: Scene) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
+def common_cells(volume: BlockVolume, scene: Scene) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
     """Return the cells that both hold, as slices of each."""
     low = np.maximum(volume.corner, scene.corner)
     high = np.minimum(

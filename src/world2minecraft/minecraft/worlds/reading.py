@@ -51,7 +51,7 @@ def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
     """
     root = Path(folder)
     read_level(root)
-    regions = _region_files(root)
+    regions = region_files(root)
     if not regions:
         raise InputError(root, "holds no region files of an overworld; nothing to read")
     found = _gather(regions, box)
@@ -91,7 +91,7 @@ def read_level(folder: Path) -> dict[str, Any]:
     return root["Data"]
 
 
-def _region_files(root: Path) -> list[Path]:
+def region_files(root: Path) -> list[Path]:
     """The overworld's regions: beside level.dat, or from 26.1 on in a tree of dimensions."""
     for folder in (root / "region", root / "dimensions" / "minecraft" / "overworld" / "region"):
         found = sorted(folder.glob("r.*.mca"))

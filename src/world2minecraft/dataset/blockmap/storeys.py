@@ -1,0 +1,196 @@
+"""Where rooms are in a volume of blocks: floors, ceilings, walls and what lies between.
+
+In: which blocks can be structure, and the scale. Out: a zone for each block. A floor is a wide
+flat top with a roof over it under which a person stands; walls are the columns that reach from it
+to the ceiling. No label is asked, and no block by its name.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.geometry.parts import connected_parts
+
+OUTSIDE, FLOOR, CEILING, WALL, INSIDE = range(5)
+HEAD_M = 1.8  # A person stands under it; doors are 2 m.
+ROOF_M = 8.0  # A roof so high makes no room: halls are 6 m.
+FLOOR_M2 = 1.0  # The smallest floor, of a toilet.
+FURNITURE_M, FURNITURE_M2 = 1.3, 4.0  # So high, and as small as that, a flat top is a thing's.
+PLATEAU_M2 = 0.75  # A stretch of ceiling; the lintel of a door has 0.3.
+CLOSED, MOSTLY = 0.95, 0.5  # Shares of a wall's column: without and with a window that is open.
+NONE = np.int16(0x7FFF)
+
+
+@dataclass(frozen=True, eq=False)
+class Zones:
+    """``zone`` uint8 [X, Y, Z]; ``ground`` int16, the layer of the floor of a block inside."""
+
+    zone: np.ndarray
+    ground: np.ndarray
+
+
+def zones_of(building: np.ndarray, blocks_per_metre: float) -> Zones:
+    """Return the zone of each block.
+
+    Args:
+        building: bool [X, Y, Z] in block axes: what floors, walls and ceilings can be of, glass
+            and closed doors among it.
+        blocks_per_metre: the scale.
+    """
+    zone = np.zeros(building.shape, np.uint8)
+    ground = np.full(building.shape, -1, np.int16)
+    over = next_above(building)
+    roofed = _has_roofs(building, over, blocks_per_metre)
+    for level, patch in _floors(building, over, blocks_per_metre, roofed):
+        _add_storey(zone, ground, building, over, level, patch, blocks_per_metre, roofed)
+    return Zones(zone, ground)
+
+
+def next_above(filled: np.ndarray) -> np.ndarray:
+    """Return the layer of the next filled block over each, int16; ``NONE`` where there is none."""
+    layers = np.arange(filled.shape[1], dtype=np.int16)[None, :, None]
+    at = np.where(filled, layers, NONE)[:, ::-1]
+    upward = np.minimum.accumulate(at, axis=1)[:, ::-1]
+    result = np.full(filled.shape, NONE)
+    result[:, :-1] = upward[:, 1:]
+    return result
+
+
+def _stands(building: np.ndarray, over: np.ndarray, scale: float, roofed: bool) -> np.ndarray:
+    """Return the blocks that a person can stand on, under a roof where builds have one."""
+    head = max(2, int(np.ceil(HEAD_M * scale - 1e-6)))
+    layers = np.arange(building.shape[1], dtype=np.int32)[None, :, None]
+    room = over.astype(np.int32) - layers - 1
+    stands = building & (room >= head)
+    return stands & (room <= ROOF_M * scale) if roofed else stands & _enclosed(building, scale)
+
+
+def _has_roofs(building: np.ndarray, over: np.ndarray, scale: float) -> bool:
+    """Whether the build is closed above; one that is open is looked into from there."""
+    return int(_stands(building, over, scale, True).sum()) >= FLOOR_M2 * scale**2
+
+
+def _enclosed(building: np.ndarray, scale: float) -> np.ndarray:
+    """Return the blocks that see something on all four sides, one metre over them."""
+    up = max(1, round(scale))
+    result = np.ones(building.shape, bool)
+    for axis in (0, 2):
+        for flip in (slice(None), slice(None, None, -1)):
+            turned = np.swapaxes(building, 0, axis)[flip]
+            seen = np.swapaxes(np.logical_or.accumulate(turned, axis=0)[flip], 0, axis)
+            result[:, :-up] &= seen[:, up:]
+    result[:, -up:] = False
+    return result
+
+
+def _floors(building: np.ndarray, over: np.ndarray, scale: float, roofed: bool):
+    """Yield the layers that are floors, from below, with the columns one can stand on there."""
+    stands = _stands(building, over, scale, roofed)
+    least = max(2, FLOOR_M2 * scale**2)
+    below: list[tuple[int, np.ndarray]] = []
+    for level in range(building.shape[1]):
+        parts, count = connected_parts(stands[:, level], corners=False)
+        sizes = np.bincount(parts.ravel(), minlength=count + 1)
+        patch = np.zeros(parts.shape, bool)
+        for number in np.flatnonzero(sizes >= least).tolist():
+            if number and not _is_furniture(parts == number, level, below, scale):
+                patch |= parts == number
+        if patch.any():
+            below.append((level, patch))
+            yield level, patch
+
+
+def _is_furniture(
+    part: np.ndarray, level: int, below: list[tuple[int, np.ndarray]], scale: float
+) -> bool:
+    """Whether a flat top stands beside a larger floor: a bed, a counter, a landing."""
+    if part.sum() > FURNITURE_M2 * scale**2:
+        return False
+    rim = ndimage.binary_dilation(part, iterations=max(1, round(scale / 2)))
+    return any(
+        level - floor <= FURNITURE_M * scale and (floor_patch & rim).any()
+        for floor, floor_patch in below
+    )
+
+
+def _add_storey(
+    zone: np.ndarray,
+    ground: np.ndarray,
+    building: np.ndarray,
+    over: np.ndarray,
+    level: int,
+    patch: np.ndarray,
+    scale: float,
+    roofed: bool,
+) -> None:
+    """Set the zones of the rooms over one floor."""
+    tops = _ceilings(patch, over[:, level], level, scale, building.shape[1])
+    walls, hung = _walls(building, level, tops)
+    region = _region(patch, building[:, level] & ~walls, over[:, level], roofed)
+    walls &= ndimage.binary_dilation(region, np.ones((3, 3)), iterations=max(2, round(scale)))
+    layers = np.arange(building.shape[1])[None, :, None]
+    between = (layers > level) & (layers < tops[:, None, :])
+    lintel = between & (hung & region)[:, None, :] & (layers >= _hung_from(building, tops))
+    within = between & region[:, None, :] & ~lintel
+    fresh = zone == OUTSIDE
+    zone[fresh & (lintel | between & walls[:, None, :])] = WALL
+    zone[fresh & within] = INSIDE
+    ground[fresh & within] = level
+    zone[(layers == tops[:, None, :]) & region[:, None, :] & fresh] = CEILING
+    zone[:, level][region] = FLOOR
+
+
+def _ceilings(
+    patch: np.ndarray, over: np.ndarray, level: int, scale: float, most: int
+) -> np.ndarray:
+    """Return the layer of the ceiling over each column, from the nearest stretch of one, int."""
+    kept = np.zeros(patch.shape, bool)
+    least = max(3, PLATEAU_M2 * scale**2)
+    for layer in np.unique(over[patch]).tolist():
+        parts, count = connected_parts(patch & (over == layer))
+        sizes = np.bincount(parts.ravel(), minlength=count + 1)
+        kept |= (sizes >= least)[parts] & (parts > 0)
+    if not kept.any():
+        kept = patch
+    nearest = ndimage.distance_transform_edt(~kept, return_distances=False, return_indices=True)
+    tops = over[tuple(nearest)].astype(np.int64)
+    return np.where(tops < NONE, tops, min(most, level + 1 + round(2 * scale)))
+
+
+def _walls(building: np.ndarray, level: int, tops: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the columns of walls, and those of lintels between two walls, bool [X, Z]."""
+    layers = np.arange(building.shape[1])[None, :, None]
+    between = (layers > level) & (layers < tops[:, None, :])
+    share = (building & between).sum(1) / np.maximum(between.sum(1), 1)
+    x, z = np.indices(tops.shape)
+    at_top = building[x, np.clip(tops - 1, 0, building.shape[1] - 1), z] & (tops - 1 > level)
+    walls = (share >= CLOSED) | (at_top & (share >= MOSTLY))
+    hung = at_top & ~walls
+    return walls, hung & (_between(hung, walls, 0) | _between(hung, walls, 1))
+
+
+def _between(hung: np.ndarray, walls: np.ndarray, axis: int) -> np.ndarray:
+    """Whether a run of hanging columns along an axis ends at walls on both sides."""
+    result = np.ones(hung.shape, bool)
+    for flip in (slice(None), slice(None, None, -1)):
+        h, w = (np.swapaxes(one, 0, axis)[flip] for one in (hung, walls))
+        index = np.arange(h.shape[0])[:, None]
+        last = np.maximum.accumulate(np.where(h, -1, index), axis=0)
+        ended = np.take_along_axis(w, np.maximum(last, 0), 0) & (last >= 0)
+        result &= np.swapaxes(ended[flip], 0, axis)
+    return result
+
+
+def _hung_from(building: np.ndarray, tops: np.ndarray) -> np.ndarray:
+    """Return the lowest layer of what hangs without a gap under a ceiling, int [X, 1, Z]."""
+    layers = np.arange(building.shape[1])[None, :, None]
+    gaps = np.where(~building & (layers < tops[:, None, :]), layers, -1)
+    return gaps.max(1, keepdims=True) + 1
+
+
+def _region(patch: np.ndarray, ground: np.ndarray, over: np.ndarray, roofed: bool) -> np.ndarray:
+    """Return the columns of rooms: those one can stand on, and those under furniture there."""
+    mask = ground & (over < NONE) if roofed else ground
+    grown = np.asarray(ndimage.binary_propagation(patch & mask, mask=mask)) | patch
+    return grown

@@ -1,0 +1,87 @@
+"""The things inside rooms: blocks that belong together, as one piece with its measures.
+
+In: what is inside and how it is floored. Out: a number for each thing, and its measures in metres.
+Furniture stands side by side, so blocks beside each other are of one thing only where they are the
+same; blocks on one another always are. In eight generated houses at 2 to 4 blocks a metre that
+gave things as many as there are (1 to 1.4 times), of one class in 85 to 96 of 100 blocks; all that
+touches gave half as many.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage, sparse
+from scipy.sparse import csgraph
+
+from world2minecraft.dataset.blockmap.conditions import MEASURES
+
+
+@dataclass(frozen=True, eq=False)
+class Things:
+    """``parts`` int32 [X, Y, Z], 0 for none; each measure float64 [things + 1]."""
+
+    parts: np.ndarray
+    measures: dict[str, np.ndarray]
+
+
+def things_of(held: np.ndarray, blocks: np.ndarray, ground: np.ndarray, scale: float) -> Things:
+    """Return the things of a volume.
+
+    Args:
+        held: bool [X, Y, Z], the blocks inside that are part of some thing.
+        blocks: int [X, Y, Z], which block each is, whatever its properties.
+        ground: int16 [X, Y, Z], the layer of the floor under each.
+        scale: blocks per metre.
+    """
+    parts, count = joined_parts(held, blocks)
+    found = {name: np.zeros(count + 1) for name in MEASURES}
+    for number, box in enumerate(ndimage.find_objects(parts), 1):
+        if box is None:
+            continue
+        own = parts[box] == number
+        floor = int(ground[box][own].min()) + 1
+        low, high = box[1].start, box[1].stop
+        sides = sorted(s.stop - s.start for s in (box[0], box[2]))
+        columns = own.any(axis=1)
+        at_floor = own[:, max(0, floor - low) :][:, :1].any(axis=1) & (low <= floor)
+        found["height_m"][number] = (high - low) / scale
+        found["bottom_m"][number] = (low - floor) / scale
+        found["top_m"][number] = (high - floor) / scale
+        found["wide_m"][number], found["long_m"][number] = sides[0] / scale, sides[1] / scale
+        found["area_m2"][number] = columns.sum() / scale**2
+        found["filled"][number] = own.mean()
+        found["open"][number] = (columns & ~at_floor).sum() / columns.sum()
+    return Things(parts, found)
+
+
+def joined_parts(held: np.ndarray, blocks: np.ndarray) -> tuple[np.ndarray, int]:
+    """Number blocks that belong together: on one another, or beside each other and the same.
+
+    Returns:
+        int32 of the shape of ``held``, 0 outside and 1 to n inside, and n.
+    """
+    number = np.full(held.shape, -1, np.int64)
+    number[held] = np.arange(int(held.sum()))
+    pairs = []
+    for axis in range(3):
+        first = tuple(slice(0, -1) if a == axis else slice(None) for a in range(3))
+        second = tuple(slice(1, None) if a == axis else slice(None) for a in range(3))
+        joined = held[first] & held[second]
+        if axis != 1:
+            joined &= blocks[first] == blocks[second]
+        pairs.append(np.stack([number[first][joined], number[second][joined]]))
+    edges = np.concatenate(pairs, axis=1)
+    count = int(held.sum())
+    graph = sparse.coo_matrix((np.ones(edges.shape[1], bool), tuple(edges)), (count, count))
+    found, own = csgraph.connected_components(graph, directed=False)
+    parts = np.zeros(held.shape, np.int32)
+    parts[held] = own + 1
+    return parts, int(found) if count else 0
+
+
+def shares_of(parts: np.ndarray, is_kind: np.ndarray) -> np.ndarray:
+    """Return the share of each thing's blocks that are of a kind, float64 [things + 1]."""
+    count = int(parts.max(initial=0)) + 1
+    every = np.bincount(parts.ravel(), minlength=count)
+    own = np.bincount(parts[is_kind], minlength=count)
+    return own / np.maximum(every, 1)
