@@ -33,6 +33,7 @@ VERBS: dict[str, str] = {
     "furniture add": "Add a piece of your own from a schematic.",
     "furniture sheet": "Draw all furniture on one sheet.",
     "palettes": "List the palettes, or check one of your own.",
+    "dataset map": "Tell what blocks of any world stand for; export the table.",
     "render": "Draw a build: pictures, depth, ids, walks and turntables.",
     "convert": "Turn any form of a room or build into any other.",
     "clean": "Mend a built room as a person would.",

@@ -4,10 +4,10 @@ The chunks around the spawn are asked first, by the list of states that each sec
 begins with; then all others, up to a number.
 """
 
+import re
 from collections.abc import Iterable
 from fnmatch import translate
 from pathlib import Path
-import re
 
 import numpy as np
 
@@ -30,10 +30,10 @@ BUILT = (
     "*_bricks", "*_trapdoor", "*_fence", "bookshelf", "*_banner", "*_sign", "stripped_*", "iron_*",
     "sea_lantern", "flower_pot", "potted_*", "polished_*",
 )  # fmt: skip
-# ... but these stand in mines, wrecks and villages too, and alone say nothing.
+# ... but these stand in mines and ruins too: they go on with a build, and alone are none.
 WILD = ("oak_planks", "oak_fence", "rail", "mossy_stone_bricks", "stone_bricks")
 _BUILT = re.compile("|".join(translate(pattern) for pattern in BUILT))
-LEAST = 3  # Kinds of built blocks that a section must have.
+LEAST = 3  # Kinds of built blocks that some section of a build must have.
 
 
 def built_box(world: Path) -> tuple[Box, str]:
@@ -46,7 +46,7 @@ def built_box(world: Path) -> tuple[Box, str]:
     """
     spawn = spawn_of(read_level(world))
     sections, was_cut = _built_sections(world, (spawn[0] >> 4, spawn[2] >> 4))
-    if not sections:
+    if max(sections.values(), default=0) < LEAST:
         box, _ = around_spawn(world)
         return box, (
             "nothing in this world looks built, so the blocks around its spawn are taken; "
@@ -67,11 +67,14 @@ def is_built(state: str) -> bool:
         >>> is_built("minecraft:white_concrete"), is_built("minecraft:stone")
         (True, False)
     """
-    full = state.partition("[")[0]
-    namespace, _, name = full.rpartition(":")
-    if namespace not in ("", "minecraft"):
+    if state.partition(":")[0] != "minecraft":
         return True
+    name = _name(state)
     return name not in WILD and bool(_BUILT.match(name))
+
+
+def _name(state: str) -> str:
+    return state.partition("[")[0].partition(":")[2]
 
 
 def _built_sections(
@@ -90,7 +93,7 @@ def _built_sections(
             _, sections = read_chunk(data, place, path, known)
             for section in sections:
                 count = sum(_asked(state, built) for state in section.palette)
-                if count >= LEAST:
+                if count or any(_name(state) in WILD for state in section.palette):
                     found[section.place] = count
     return found, False
 
@@ -126,8 +129,9 @@ def _group(
     weight = np.array([sections[tuple(place)] for place in places.tolist()])
     sums = np.bincount(own, weight, minlength=count + 1)
     middle = np.array([spawn[0] >> 4, spawn[2] >> 4])
-    near = np.abs(places[:, [0, 2]] - middle).max(axis=1) <= NEAR
-    candidates = np.unique(own[near]) if near.any() else np.arange(1, count + 1)
+    is_meant = weight >= LEAST
+    near = is_meant & (np.abs(places[:, [0, 2]] - middle).max(axis=1) <= NEAR)
+    candidates = np.unique(own[near if near.any() else is_meant])
     best = int(candidates[np.argmax(sums[candidates])])
     return [tuple(place) for place in places[own == best].tolist()]
 

@@ -157,7 +157,8 @@ def with_unlabelled(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
 
     A player who builds on in a world of ours leaves such blocks.
     """
-    unsaid = (volume.semantic == 0) & (volume.states != 0)
+    shown = np.array([rules.meaning(state) != "empty" for state in volume.palette])
+    unsaid = (volume.semantic == 0) & (volume.states != 0) & shown[volume.states]
     if not unsaid.any():
         return volume
     told = classify(volume, rules)
@@ -169,7 +170,7 @@ def with_unlabelled(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
 
 
 def fine_classes(
-    volume: BlockVolume, design: np.ndarray, names: Sequence[str]
+    volume: BlockVolume, design: np.ndarray, names: tuple[str, ...]
 ) -> tuple[np.ndarray, tuple[FineClass, ...]]:
     """Return the fine class of every block, uint16 [X, Y, Z], and the table that it indexes.
 
@@ -180,7 +181,8 @@ def fine_classes(
     number_of = np.array([0, *(ids.index(block) + 1 for block in blocks[1:])])
     pairs = number_of[volume.states] * len(names) + np.where(volume.states > 0, design, 0)
     used, where = np.unique(pairs, return_inverse=True)
-    made = [FineClass(["", *ids][p // len(names)], names[p % len(names)]) for p in used.tolist()]
+    held, count = ("", *ids), len(names)
+    made = [FineClass(held[pair // count], names[pair % count]) for pair in used.tolist()]
     air = FineClass(blocks[0])
     order = {one: n for n, one in enumerate([air, *sorted(m for m in made if m.block)])}
     renumber = np.array([order[one] if one.block else 0 for one in made], np.uint16)

@@ -10,7 +10,7 @@ from world2minecraft.minecraft.states import known_blocks
 def block_map_json(rules: BlockMap) -> dict[str, Any]:
     """Return a map as a tree of plain values.
 
-    ``blocks`` gives each block of the game a class, or the kind whose ``rules`` say which; ``words``
+    ``blocks`` gives each block of the game a class, or the kind whose rules say which; ``words``
     says what words in names of mods mean.
     """
     blocks = {name: rules.meaning(name) for name in known_blocks()} | dict(rules.blocks)
@@ -19,7 +19,7 @@ def block_map_json(rules: BlockMap) -> dict[str, Any]:
         "about": " ".join(rules.about.split()),
         "classes": list(CLASS_NAMES),
         "blocks": dict(sorted(blocks.items())),
-        "kinds": {kind: [_rule(rule) for rule in rules.rules[kind]] for kind in rules.kinds},
+        "kinds": {kind: [_rule(rule) for rule in rules.rules[kind]] for kind in rules.rules},
         "words": [
             {"namespaces": list(words.namespaces), "words": dict(words.meanings)}
             for words in rules.words

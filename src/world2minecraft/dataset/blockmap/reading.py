@@ -152,7 +152,7 @@ def _shipped(name: str) -> dict[str, Any]:
 
 def _yaml(text: bytes, path: Path) -> Any:
     try:
-        return yaml.load(text, _Loader)  # noqa: S506  # It is a safe loader.
+        return yaml.load(text, _Loader)  # It is a safe loader.
     except (ValueError, RecursionError, yaml.YAMLError) as error:
         raise InputError(path, f"is not YAML ({' '.join(str(error).split())[:200]})") from error
 

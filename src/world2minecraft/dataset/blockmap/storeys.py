@@ -154,7 +154,8 @@ def _ceilings(
     if not kept.any():
         kept = patch
     nearest = ndimage.distance_transform_edt(~kept, return_distances=False, return_indices=True)
-    tops = over[tuple(nearest)].astype(np.int64)
+    x, z = np.asarray(nearest)
+    tops = over[x, z].astype(np.int64)
     return np.where(tops < NONE, tops, min(most, level + 1 + round(2 * scale)))
 
 

@@ -1,0 +1,326 @@
+"""Block maps: what names mean, where blocks stand, and what a user is told of a bad file."""
+
+import json
+
+import numpy as np
+import pytest
+from house_of_blocks import PLANKS, Blocks, cottage
+
+from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.dataset.blockmap import (
+    block_map_json,
+    block_map_of,
+    class_of_fine,
+    classify,
+    load_block_map,
+    read_block_map,
+    remapped,
+)
+from world2minecraft.dataset.blockmap.storeys import NONE, next_above
+from world2minecraft.dataset.blockmap.things import joined_parts
+from world2minecraft.dataset.values import FineClass
+from world2minecraft.errors import InputError, LimitError, UnknownNameError, UsageError
+from world2minecraft.minecraft.states import known_blocks
+from world2minecraft.types import Entity
+
+NYU, PAPER = load_block_map("nyu"), load_block_map("paper")
+# Table "Semantic Class Mapping" of the paper's appendix; "..." stands for any end of a name.
+PAPERS_EXAMPLES = {
+    "empty": ["tmeo_ultra:chuanglian...", "tmeo_ultra:diaodeng..."],
+    "ceiling": ["tmeo_ultra:shigaoxian...", "minecraft:birch_planks"],
+    "floor": ["tmeo_ultra:yitishilouti...", "minecraft:stone_brick_slab"],
+    "wall": ["tmeov:diantimen"],
+    "window": ["tmeov:baiyechuang"],
+    "chair": ["tmeo_ultra:changdeng_1x_3", "tmeo_ultra:bataiyizi"],
+    "bed": ["tmeo_ultra:dachuangban..."],
+    "sofa": ["tmeo_ultra:shafa_1x_2"],
+    "table": ["tmeo_ultra:canzhuoyuanxing"],
+    "tvs": ["tmeo_ultra:diaoguadianshi"],
+    "furn": ["tmeo_ultra:yigui...", "tmeov:shujia..."],
+    "objs": ["tmeov:penzai", "tmeo_ultra:yinxiang..."],
+}
+ENDS = ("", "_1x_2", "_baisezuo", "kai")
+
+
+@pytest.mark.parametrize(
+    ("name", "block"), [(n, b) for n, blocks in PAPERS_EXAMPLES.items() for b in blocks]
+)
+def test_the_papers_examples_are_of_its_classes(name, block):
+    ends = ENDS if block.endswith("...") else ("",)
+    for end in ends:
+        assert PAPER.classes_of(block.removesuffix("...") + end) == (name,)
+
+
+@pytest.mark.parametrize(
+    ("block", "nyu", "paper"),
+    [
+        ("tmeo_ultra:chuanglian_hong", "objs", "empty"),
+        ("mcwfurnitures:oak_chandelier", "objs", "empty"),
+        ("tmeov:baiyechuang", "objs", "window"),
+        ("mcwwindows:oak_blinds", "objs", "window"),
+        ("minecraft:oak_door", "objs", "wall"),
+        ("tmeo_ultra:woshimenjijian_2baisezuo", "objs", "wall"),
+        ("refurbished_furniture:oak_kitchen_sink", "furn", "furn"),
+        ("minecraft:water_cauldron", "furn", "furn"),
+        ("handcrafted:oak_nightstand", "furn", "furn"),
+        ("another_furniture:oak_bench", "chair", "chair"),
+        ("refurbished_furniture:red_sofa", "sofa", "sofa"),
+        ("pfm:oak_classic_chair", "chair", "chair"),
+        ("minecraft:bookshelf", "furn", "furn"),
+        ("minecraft:red_bed", "bed", "bed"),
+        ("minecraft:barrier", "empty", "empty"),
+        ("minecraft:light", "empty", "empty"),
+    ],
+)
+def test_names_tell_classes(block, nyu, paper):
+    assert NYU.classes_of(block) == (nyu,)
+    assert PAPER.classes_of(block) == (paper,)
+
+
+def test_properties_and_full_shapes_tell_kinds():
+    assert NYU.meaning("minecraft:white_concrete") == "surface"
+    assert NYU.meaning("mod:strange_thing") == NYU.meaning("minecraft:quartz_block") == "surface"
+    assert NYU.meaning("minecraft:oak_slab[type=bottom,waterlogged=false]") == "slab"
+    assert NYU.meaning("minecraft:black_stained_glass_pane[east=true]") == NYU.meaning(
+        "black_stained_glass_pane"
+    )
+
+
+@pytest.mark.parametrize("rules", [NYU, PAPER], ids=["nyu", "paper"])
+def test_every_block_of_the_game_has_a_class(rules):
+    for block in known_blocks():
+        assert set(rules.classes_of(block)) <= set(CLASS_NAMES)
+
+
+def test_planks_are_floor_ceiling_and_wall_by_where_they_are():
+    made = classify(cottage().volume(), NYU)
+    told = made.semantic
+    assert set(np.unique(told[2:10, 1, 2:8])) == {2}
+    assert set(np.unique(told[2:10, 5, 2:8])) == {1}
+    walls = cottage().states[:, 2:5] == 1
+    walls[2:10, :, 2:8] = False
+    assert set(np.unique(told[:, 2:5][walls])) == {3}
+    assert set(np.unique(told[4:6, 3, 1])) == {4}
+
+
+def test_furniture_of_players_is_known():
+    told = classify(cottage().volume(), NYU).semantic
+    names = {
+        "chair": [(2, 2, 2)],
+        "sofa": [(2, 2, 5), (2, 2, 6)],
+        "table": [(5, 2, 4), (5, 3, 4)],
+        "bed": [(8, 2, 3), (9, 2, 3)],
+        "furn": [(9, 2, 6), (9, 3, 6), (4, 2, 2)],
+        "objs": [(3, 2, 7), (9, 4, 2), (8, 2, 8), (8, 3, 8)],
+    }
+    for name, places in names.items():
+        assert [CLASS_NAMES[told[place]] for place in places] == [name] * len(places)
+
+
+def test_air_is_empty_and_objects_are_numbered():
+    volume = cottage().volume()
+    made = classify(volume, NYU)
+    assert (made.semantic[volume.states == 0] == 0).all()
+    assert ((made.instance > 0) == (made.semantic > 4)).all()
+    assert made.instance[2, 2, 5] == made.instance[2, 2, 6] != made.instance[2, 2, 2]
+
+
+@pytest.mark.parametrize("axes", [(2, 1, 0), (0, 1, 2)])
+@pytest.mark.parametrize("flip", [1, -1])
+def test_turning_a_build_turns_its_classes(axes, flip):
+    made = cottage()
+    told = classify(made.volume(), NYU).semantic
+    made.states = np.ascontiguousarray(made.states.transpose(axes)[::flip])
+    turned = classify(made.volume(), NYU).semantic
+    np.testing.assert_array_equal(turned, told.transpose(axes)[::flip])
+
+
+def test_a_build_without_a_roof_has_floors_and_walls():
+    made = cottage()
+    made.states[:, 5] = 0
+    told = classify(made.volume(), NYU).semantic
+    assert (told[2:10, 1, 2:8] == 2).mean() > 0.9
+    assert (told[1, 2:5, 2:8] == 3).all()
+
+
+def test_two_storeys_have_a_ceiling_and_a_floor_each():
+    made = Blocks(12, 12, 10)
+    made.put(np.s_[1:11, 1:11, 1:9], PLANKS)
+    made.states[2:10, 2:5, 2:8] = 0
+    made.states[2:10, 7:10, 2:8] = 0
+    told = classify(made.volume(), NYU).semantic
+    assert [int(told[5, y, 5]) for y in (1, 5, 6, 10)] == [2, 1, 2, 1]
+    made.put(np.s_[1:11, 1:11, 1:9], PLANKS)
+    made.states[2:10, 2:5, 2:8] = 0
+    made.states[2:10, 6:9, 2:8] = 0
+    assert classify(made.volume(), NYU).semantic[5, 5, 5] == 2  # One walks on a thin slab.
+
+
+def test_entities_get_classes_too():
+    volume = cottage().volume()
+    picture = Entity((3.0, 63.0, 2.0), "minecraft:painting")
+    made = classify(type(volume)(**{**volume.__dict__, "entities": (picture,)}), NYU)
+    assert CLASS_NAMES[made.entities[0].class_id] == "objs"
+
+
+def test_an_empty_volume_stays_empty():
+    assert not classify(Blocks(3, 3, 3).volume(), NYU).semantic.any()
+
+
+def test_next_above_is_what_a_loop_finds():
+    filled = np.random.default_rng(3).random((4, 9, 5)) < 0.3
+    found = next_above(filled)
+    for x, y, z in np.ndindex(filled.shape):
+        over = [h for h in range(y + 1, 9) if filled[x, h, z]]
+        assert found[x, y, z] == (over[0] if over else NONE)
+
+
+def test_joined_parts_are_what_a_walk_finds():
+    rng = np.random.default_rng(5)
+    held, blocks = rng.random((5, 4, 5)) < 0.6, rng.integers(0, 2, (5, 4, 5))
+    parts, count = joined_parts(held, blocks)
+    assert ((parts > 0) == held).all() and parts.max() == count
+    for place in zip(*np.nonzero(held), strict=True):
+        seen, queue = {place}, [place]
+        while queue:
+            here = queue.pop()
+            for axis, step in ((a, s) for a in range(3) for s in (1, -1)):
+                there = tuple(v + step * (a == axis) for a, v in enumerate(here))
+                if any(v < 0 or v >= n for v, n in zip(there, held.shape, strict=True)):
+                    continue
+                same = axis == 1 or blocks[here] == blocks[there]
+                if held[there] and same and there not in seen:
+                    seen.add(there)
+                    queue.append(there)
+        assert seen == set(zip(*np.nonzero(parts == parts[place]), strict=True))
+
+
+# Our own fine classes.
+
+FINE = (
+    FineClass("minecraft:air"),
+    FineClass("minecraft:red_banner", "curtain_single"),
+    FineClass("minecraft:oak_stairs", "chair_cafe"),
+    FineClass("minecraft:oak_stairs"),
+    FineClass("minecraft:oak_door"),
+    FineClass("minecraft:birch_planks"),
+    FineClass("minecraft:water_cauldron", "sink_unit"),
+)
+
+
+def test_the_papers_map_applies_to_our_own_fine_classes():
+    told = [class_of_fine(one, PAPER) for one in FINE[1:]]
+    assert told == [0, None, 2, 3, None, 10]
+
+
+def test_remapping_changes_what_the_map_tells_and_nothing_else():
+    labels = np.array([[0, 11, 5, 11], [11, 2, 10, 255]], np.uint8)
+    fine = np.array([[0, 1, 2, 3], [4, 5, 6, 0]], np.uint16)
+    found = remapped(labels, fine, FINE, PAPER)
+    assert found.tolist() == [[0, 0, 5, 2], [3, 2, 10, 255]]
+    assert remapped(labels[:0], fine[:0], FINE, PAPER).shape == (0, 4)
+
+
+def test_remapping_by_nyu_keeps_what_is_by_nyu():
+    labels = np.array([0, 11, 5, 11, 11, 2, 10], np.uint8)
+    assert remapped(labels, np.arange(7, dtype=np.uint16), FINE, NYU).tolist() == labels.tolist()
+
+
+def test_remapping_refuses_what_does_not_fit():
+    with pytest.raises(UsageError, match="one shape"):
+        remapped(np.zeros(3, np.uint8), np.zeros(2, np.uint16), FINE, PAPER)
+    with pytest.raises(UsageError, match="fine goes to 9, there are 7 classes"):
+        remapped(np.zeros(1, np.uint8), np.full(1, 9, np.uint16), FINE, PAPER)
+
+
+# Files.
+
+MINE = """
+name: mine
+extends: nyu
+blocks: {gold_block: table}
+words: [{namespaces: [tmeo], words: {yigui: sofa}}]
+kinds: {warm: ["red_*"]}
+rules: {warm: [{class: floor, where: [floor]}, thing]}
+"""
+
+
+def test_a_map_of_ones_own_comes_before_the_one_it_extends(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text(MINE)
+    mine = load_block_map(path)
+    assert mine.classes_of("gold_block") == ("table",)
+    assert mine.classes_of("tmeo_ultra:yigui_1x_2") == ("sofa",)
+    assert mine.classes_of("tmeo_ultra:chuanglian") == ("objs",)
+    assert mine.meaning("red_wool") == "warm" and mine.meaning("blue_wool") == "cloth"
+    assert [rule.class_name for rule in mine.rules["warm"]][:2] == ["floor", "tvs"]
+
+
+def test_json_holds_every_block_and_rule(tmp_path):
+    tree = json.loads(json.dumps(block_map_json(PAPER)))
+    assert set(known_blocks()) <= set(tree["blocks"])
+    assert tree["kinds"][tree["blocks"]["minecraft:birch_planks"]] == [{"class": "ceiling"}]
+    known = {*CLASS_NAMES, *tree["kinds"]}
+    assert set(tree["blocks"].values()) <= known
+
+
+BAD = {
+    "[]": "a block map must be keys with values, not []",
+    "a: 1": "a block map has no 'a'; it has: name, about, extends, blocks, words, kinds, whole, "
+    "other, structure, apart, rules, designs, unless_known, entities",
+    "about: x": "a block map needs a name, such as name: mine",
+    "{name: m, extends: lyu}": "extends must be one of nyu, paper, not 'lyu'",
+    "{name: m, blocks: {stone: rock}}": "block stone is 'rock', which is none of empty, ceiling, "
+    "floor, wall, window, chair, bed, sofa, table, tvs, furn, objs",
+    "{name: m, kinds: {k: [a]}}": "kind k has no rules; add k under rules",
+    "{name: m, rules: {k: [wall]}}": "rules speak of k, which is no kind; kinds: ",
+    "{name: m, rules: {wall: [wall]}}": "rules speak of wall, which is a class; give the kind "
+    "another name",
+    "{name: m, kinds: {k: [a]}, rules: {k: [{class: wall, where: [floor]}]}}": "the last rule of "
+    "k must hold everywhere: a class without where",
+    "{name: m, kinds: {k: [a]}, rules: {k: [k]}}": "rules of k come round to k again",
+    "{name: m, kinds: {k: [a]}, rules: {k: [{class: wall, top_m: 3}, wall]}}": "top_m of k must "
+    "be two numbers, such as [0.3, 0.6], not 3",
+    "{name: m, extends: nyu, kinds: {k: [a]}, rules: {k: [{class: wall, where: [up]}, wall]}}":
+    "where of k is 'up', which is none of floor, ceiling, wall, inside, outside, under_floor, "
+    "wall_line, over_ceiling, covers_ground, air_above, air_below, on_floor, at_wall, "
+    "under_ceiling, turned, coarse, in_row, climbs",
+    "{name: m, words: [{words: {a: wall}}]}": "words need namespaces, such as namespaces: [my_mod]",
+    "{name: m, kinds: {k: a}}": "kind k must be a list of 8192 at most, not 'a'",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "told"), BAD.items(), ids=range(len(BAD)))
+def test_a_bad_file_is_told_in_one_line(tmp_path, text, told):
+    path = tmp_path / "bad.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        read_block_map(path)
+    assert str(caught.value) == f"{path}: {told}"
+
+
+def test_files_that_are_no_yaml_too_large_or_full_of_aliases_are_refused(tmp_path):
+    path = tmp_path / "bad.yaml"
+    path.write_text("a: [1\n")
+    with pytest.raises(InputError, match="is not YAML"):
+        read_block_map(path)
+    path.write_text("name: &n m\nabout: *n\n")
+    with pytest.raises(InputError, match=r"is not YAML \(aliases \(\*name\) are not read\)"):
+        read_block_map(path)
+    path.write_text("name: !!python/object:os.system x")
+    with pytest.raises(InputError, match="is not YAML"):
+        read_block_map(path)
+    path.write_text("[" * 5000)
+    with pytest.raises(InputError, match="is not YAML"):
+        read_block_map(path)
+    path.write_text("#" * (300 << 10))
+    with pytest.raises(LimitError):
+        read_block_map(path)
+    with pytest.raises(UnknownNameError, match="did you mean 'paper'"):
+        load_block_map("papers")
+    with pytest.raises(InputError):
+        load_block_map(tmp_path / "none.yaml")
+
+
+def test_a_tree_without_extends_needs_nothing_else():
+    assert block_map_of({"name": "m"}).classes_of("minecraft:stone") == ("wall",)
