@@ -1,0 +1,77 @@
+"""The distinct cells of a world that pictures of it hold, however many pictures hold each.
+
+Cells are kept as bits in blocks of 32 a side, so that a scene takes about a bit a cell and a
+hundred thousand pictures no more than the worlds that they show.
+"""
+
+import numpy as np
+
+from world2minecraft.coordinates import apply
+from world2minecraft.dataset.values import LabelRegion
+
+SIDE = 32
+_CELLS = SIDE**3
+
+
+class WorldCells:
+    """A growing set of cells of one world."""
+
+    def __init__(self) -> None:
+        self._blocks: dict[tuple[int, int, int], np.ndarray] = {}  # bits, uint8 [SIDE**3 / 8]
+        self._phase: np.ndarray | None = None  # Where centres lie in a cell, of a cell's side.
+        self._voxel_m = 0.0
+
+    def add(self, region: LabelRegion, chosen: np.ndarray) -> None:
+        """Add the chosen cells of a region.
+
+        Cells of all regions count on one grid, that of the first. A region that is turned by other
+        than quarter turns has each of its cells counted as the nearest of that grid.
+
+        Args:
+            region: of a picture of this world.
+            chosen: bool [X, Y, Z] of it.
+
+        Raises:
+            ValueError: its cells have another size than those of the regions before.
+        """
+        places = np.argwhere(chosen)
+        if not len(places):
+            return
+        centers = apply(region.region_to_room, (places + 0.5) * region.voxel_m) / region.voxel_m
+        phase = self._phase
+        if phase is None:
+            phase, self._voxel_m = centers[0] - np.floor(centers[0]), region.voxel_m
+            self._phase = phase
+        if abs(region.voxel_m - self._voxel_m) > 1e-9:
+            sizes = f"{self._voxel_m} m and {region.voxel_m} m"
+            raise ValueError(f"cells of one world must have one size, not {sizes}")
+        cells = np.rint(centers - phase).astype(np.int64)
+        blocks, inside = cells // SIDE, cells % SIDE
+        numbers = (inside[:, 0] * SIDE + inside[:, 1]) * SIDE + inside[:, 2]
+        keys, which = np.unique(blocks, axis=0, return_inverse=True)
+        for n, key in enumerate(keys):
+            self._put((int(key[0]), int(key[1]), int(key[2])), numbers[which.reshape(-1) == n])
+
+    def merge(self, other: "WorldCells") -> None:
+        """Add the cells of another set of the same world, whose grid must be the same."""
+        if other._phase is None:
+            return
+        if self._phase is None:
+            self._phase, self._voxel_m = other._phase, other._voxel_m
+        apart = (other._phase - self._phase + 0.5) % 1 - 0.5
+        if np.abs(apart).max() > 1e-3 or abs(other._voxel_m - self._voxel_m) > 1e-9:
+            raise ValueError("cells of one world must lie on one grid")
+        for key, bits in other._blocks.items():
+            held = self._blocks.get(key)
+            self._blocks[key] = bits.copy() if held is None else held | bits
+
+    def count(self) -> int:
+        """Return how many cells there are."""
+        return sum(int(np.bitwise_count(bits).sum()) for bits in self._blocks.values())
+
+    def _put(self, key: tuple[int, int, int], numbers: np.ndarray) -> None:
+        flags = np.zeros(_CELLS, np.bool_)
+        flags[numbers] = True
+        bits = np.packbits(flags)
+        held = self._blocks.get(key)
+        self._blocks[key] = bits if held is None else held | bits
