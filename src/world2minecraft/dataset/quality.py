@@ -4,25 +4,28 @@ The paper measures 100 pictures of each set, chosen by chance, and names no vari
 figure says its own: the NIQE model, the kernel of the Laplacian, the size of the pictures.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from itertools import islice
 from typing import Any
 
 import numpy as np
 from PIL import Image
 
-from world2minecraft.dataset.statistics.paper import PAPER, PUBLISHED_QUALITY
+from world2minecraft.dataset.statistics.paper import PAPER, PUBLISHED_QUALITY, PublishedQuality
 from world2minecraft.dataset.statistics.tables import columns
 from world2minecraft.errors import UsageError
-from world2minecraft.metrics.image_quality import NiqeModel, laplacian_variance, niqe, piqe
+from world2minecraft.metrics.image_quality import NiqeModel, laplacian_variance, piqe
+from world2minecraft.metrics.image_quality.niqe import distance, has_patches, patch_features
 from world2minecraft.progress import Progress, silent
 
 KERNELS = (1, 5)
-PAPER_KERNEL = 5  # See metrics/image_quality/sharpness.py.
+PAPER_KERNEL, PAPER_VARIANT = 5, "skvideo"  # Inferred: see CAVEATS.
 NATIVE = "native"
+MOST_PX = 16_384  # Of a side that pictures are resized to.
 CAVEATS = (
     "NIQE and PIQE model photographs; drawn pictures, above all of blocks, are no photographs.",
-    "LV grows with resolution and by hundreds with the kernel (k), and takes block edges for detail.",
+    "LV depends on the kernel (k) by hundreds and on the size, and takes block edges for detail.",
     "The paper names no variant; its values are such as scikit-video's NIQE and LV at k=5 give.",
 )
 
@@ -58,24 +61,54 @@ class QualityReport:
     sizes_px: tuple[str, ...]  # of the pictures as they are
 
 
-def choose(keys: Sequence[str], count: int, seed: int) -> list[str]:
+def choose(
+    keys: Sequence[str], count: int, seed: int, is_wanted: Callable[[str], bool] | None = None
+) -> list[str]:
     """Return a sample of keys, all where there are no more; the same for the same seed.
+
+    Args:
+        keys: in any order.
+        count: how many.
+        seed: which.
+        is_wanted: whether a key may be taken; any may where None. Few are asked.
 
     Example:
         >>> choose(["a", "b", "c", "d"], 2, seed=0)
-        ['a', 'd']
+        ['a', 'c']
     """
     if count < 1:
         raise UsageError(f"--sample must be 1 or more, not {count}")
     ordered = sorted(keys)
-    chosen = np.random.default_rng(seed).permutation(len(ordered))[:count]
-    return [ordered[n] for n in sorted(chosen)]
+    shuffled = (ordered[n] for n in np.random.default_rng(seed).permutation(len(ordered)))
+    return sorted(islice((key for key in shuffled if not is_wanted or is_wanted(key)), count))
 
 
-def picture_quality(picture: np.ndarray, models: Iterable[NiqeModel]) -> PictureQuality:
+def size_of(text: str) -> tuple[int, int] | None:
+    """Return the width and height that a text says, None for ``none``.
+
+    Raises:
+        UsageError: it says none.
+
+    Example:
+        >>> size_of("640x480"), size_of("none")
+        ((640, 480), None)
+    """
+    if text == "none":
+        return None
+    width, _, height = text.partition("x")
+    try:
+        size = (int(width), int(height))
+    except ValueError:
+        size = (0, 0)
+    if min(size) < 1 or max(size) > MOST_PX:
+        raise UsageError(f"--resize is WIDTHxHEIGHT, such as 640x480, or none, not {text!r}")
+    return size
+
+
+def picture_quality(picture: np.ndarray, models: Sequence[NiqeModel]) -> PictureQuality:
     """Return the figures of a picture, uint8 [H, W, 3]; NIQE is nan where it has none."""
     return PictureQuality(
-        {model.name: _niqe(picture, model) for model in models},
+        _niqe(picture, models),
         piqe(picture),
         {kernel: laplacian_variance(picture, kernel) for kernel in KERNELS},
     )
@@ -134,13 +167,14 @@ def resized(picture: np.ndarray, size: tuple[int, int]) -> np.ndarray:
 
 def quality_text(report: QualityReport) -> str:
     """Return the table, the paper's rows above, and what to heed in reading it."""
-    head = ["data set", "size", "pictures", *(f"NIQE {name}" for name in report.variants)]
+    shown = _shown(report)
+    head = ["data set", "size", "pictures", *(f"NIQE {name}" for name in shown)]
     head += ["PIQE", *(f"LV k={kernel}" for kernel in KERNELS)]
     rows = [tuple(head)]
-    rows += [_published_row(row.name, report) for row in PUBLISHED_QUALITY]
+    rows += [_published_row(row, shown) for row in PUBLISHED_QUALITY]
     for row in report.rows:
-        size = ", ".join(report.sizes_px) if row.size == NATIVE else row.size
-        figures = [_figure(row.niqe[name], 2) for name in report.variants]
+        size = _sizes(report.sizes_px) if row.size == NATIVE else row.size
+        figures = [_figure(row.niqe.get(name), 2) for name in shown]
         figures += [_figure(row.piqe, 2), *(_figure(row.laplacian[k], 0) for k in KERNELS)]
         rows.append((report.name, size, f"{row.pictures:,}", *figures))
     lines = [*columns(rows), ""]
@@ -160,11 +194,13 @@ def quality_json(report: QualityReport) -> dict[str, Any]:
     }
 
 
-def _niqe(picture: np.ndarray, model: NiqeModel) -> float:
-    try:
-        return niqe(picture, model)
-    except ValueError:  # Too small: told in the table.
-        return float("nan")
+def _niqe(picture: np.ndarray, models: Sequence[NiqeModel]) -> dict[str, float]:
+    """Return NIQE by model; what models have in common is computed once."""
+    if has_patches(picture):
+        manners = {model.manner for model in models}
+        features = {manner: patch_features(picture, manner)[0] for manner in manners}
+        return {model.name: distance(features[model.manner], model) for model in models}
+    return {model.name: float("nan") for model in models}  # Too small: told below the table.
 
 
 def _row(size: str, figures: Sequence[PictureQuality], variants: Sequence[str]) -> QualityRow:
@@ -185,13 +221,20 @@ def _mean(values: Sequence[float]) -> float | None:
     return float(np.mean(known)) if known else None
 
 
-def _published_row(name: str, report: QualityReport) -> tuple[str, ...]:
-    """Return a row of the paper: NIQE under scikit-video's variant where that is measured."""
-    row = next(row for row in PUBLISHED_QUALITY if row.name == name)
-    at = "skvideo" if "skvideo" in report.variants else report.variants[-1]
-    scores = [f"{row.niqe:.2f}" if variant == at else "-" for variant in report.variants]
+def _shown(report: QualityReport) -> tuple[str, ...]:
+    """Return the variants that have a column: what is measured, and what the paper's is like."""
+    more = () if PAPER_VARIANT in report.variants else (PAPER_VARIANT,)
+    return (*report.variants, *more)
+
+
+def _published_row(row: PublishedQuality, shown: Sequence[str]) -> tuple[str, ...]:
+    scores = [f"{row.niqe:.2f}" if variant == PAPER_VARIANT else "-" for variant in shown]
     values = [f"{row.laplacian:,.0f}" if k == PAPER_KERNEL else "-" for k in KERNELS]
-    return (name, "?", "100", *scores, f"{row.piqe:.2f}", *values)
+    return (row.name, "?", "100", *scores, f"{row.piqe:.2f}", *values)
+
+
+def _sizes(sizes_px: Sequence[str]) -> str:
+    return sizes_px[0] if len(sizes_px) == 1 else f"{len(sizes_px)} sizes"
 
 
 def _figure(value: float | None, digits: int) -> str:

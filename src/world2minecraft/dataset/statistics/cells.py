@@ -10,7 +10,6 @@ from world2minecraft.coordinates import apply
 from world2minecraft.dataset.values import LabelRegion
 
 SIDE = 32
-_CELLS = SIDE**3
 
 
 class WorldCells:
@@ -46,11 +45,13 @@ class WorldCells:
             sizes = f"{self._voxel_m} m and {region.voxel_m} m"
             raise ValueError(f"cells of one world must have one size, not {sizes}")
         cells = np.rint(centers - phase).astype(np.int64)
-        blocks, inside = cells // SIDE, cells % SIDE
-        numbers = (inside[:, 0] * SIDE + inside[:, 1]) * SIDE + inside[:, 2]
-        keys, which = np.unique(blocks, axis=0, return_inverse=True)
-        for n, key in enumerate(keys):
-            self._put((int(key[0]), int(key[1]), int(key[2])), numbers[which.reshape(-1) == n])
+        low, high = cells.min(axis=0) // SIDE, cells.max(axis=0) // SIDE + 1
+        flags = np.zeros((high - low) * SIDE, np.bool_)
+        flags[tuple((cells - low * SIDE).T)] = True
+        for at in np.ndindex(*(high - low)):
+            part = flags[tuple(slice(SIDE * n, SIDE * (n + 1)) for n in at)]
+            if part.any():
+                self._put((int(low[0]) + at[0], int(low[1]) + at[1], int(low[2]) + at[2]), part)
 
     def merge(self, other: "WorldCells") -> None:
         """Add the cells of another set of the same world, whose grid must be the same."""
@@ -69,9 +70,7 @@ class WorldCells:
         """Return how many cells there are."""
         return sum(int(np.bitwise_count(bits).sum()) for bits in self._blocks.values())
 
-    def _put(self, key: tuple[int, int, int], numbers: np.ndarray) -> None:
-        flags = np.zeros(_CELLS, np.bool_)
-        flags[numbers] = True
+    def _put(self, key: tuple[int, int, int], flags: np.ndarray) -> None:
         bits = np.packbits(flags)
         held = self._blocks.get(key)
         self._blocks[key] = bits if held is None else held | bits

@@ -180,10 +180,9 @@ def _told(statistics: DatasetStatistics) -> list[str]:
     if statistics.fine is None:
         lines.append("classes          the 12 and unknown; this set names no fine classes")
     else:
-        lines.append(
-            f"classes          {statistics.fine_classes:,} of {len(statistics.fine):,} fine classes are "
-            f"seen by {ENOUGH_PIXELS} pixels in {ENOUGH_PICTURES} pictures or more;"
-        )
+        counted = f"{statistics.fine_classes:,} of {len(statistics.fine):,} fine classes"
+        rule = f"{ENOUGH_PIXELS} pixels in {ENOUGH_PICTURES} pictures or more"
+        lines.append(f"classes          {counted} are seen by {rule};")
         present = len(statistics.classes_present)
         lines.append(f"                 {present} of the 11 classes that are not empty are there")
     if statistics.rooms is None:

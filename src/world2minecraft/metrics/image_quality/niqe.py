@@ -69,7 +69,11 @@ def niqe(picture: np.ndarray, model: NiqeModel) -> float:
     Raises:
         ValueError: the picture has less than two patches, or another shape or type.
     """
-    features, _ = patch_features(picture, model.manner)
+    return distance(patch_features(picture, model.manner)[0], model)
+
+
+def distance(features: np.ndarray, model: NiqeModel) -> float:
+    """Return how far features, float64 [P, 36] of the model's manner, lie from it; see ``niqe``."""
     usable = features[np.isfinite(features).all(axis=1)]
     if len(usable) < 2:
         return float("nan")
@@ -95,7 +99,7 @@ def patch_features(picture: np.ndarray, manner: Manner = AUTHORS) -> tuple[np.nd
     """
     grey = to_grey(picture)
     rows, columns = grey.shape[0] // PATCH_PX, grey.shape[1] // PATCH_PX
-    if rows * columns < 2:
+    if not has_patches(grey):
         height, width = grey.shape
         raise ValueError(
             f"NIQE needs two patches of {PATCH_PX} pixels a side; the picture has {width}x{height}"
@@ -110,6 +114,11 @@ def patch_features(picture: np.ndarray, manner: Manner = AUTHORS) -> tuple[np.nd
     coarse_features = _features(_patches(coarse, PATCH_PX // 2), manner)
     sharp = _patches(deviation, PATCH_PX).mean(axis=(1, 2))
     return np.hstack([fine_features, coarse_features]), sharp
+
+
+def has_patches(picture: np.ndarray) -> bool:
+    """Return whether a picture is large enough for NIQE."""
+    return (picture.shape[0] // PATCH_PX) * (picture.shape[1] // PATCH_PX) >= 2
 
 
 def _patches(values: np.ndarray, side: int) -> np.ndarray:

@@ -1,0 +1,94 @@
+"""``w2m dataset stats``: what a data set holds, beside the data sets of the paper."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from world2minecraft.dataset.statistics import DatasetStatistics
+
+EXAMPLES = """\
+w2m dataset stats DATA                             the paper's table, with DATA below it
+w2m dataset stats DATA --split test --jobs 8       a split, counted by eight processes
+w2m dataset stats DATA --json stats.json           every figure
+w2m dataset stats DATA --latex table.tex --plots PLOTS
+"""
+
+
+DataPath = Annotated[Path, typer.Argument(help="A data set that w2m dataset build made.")]
+Split = Annotated[str | None, typer.Option("--split", help="Only train, or only test.")]
+JsonFile = Annotated[
+    Path | None, typer.Option("--json", help="Write every figure.", metavar="FILE")
+]
+LatexFile = Annotated[
+    Path | None, typer.Option("--latex", help="Write the table for a paper.", metavar="FILE")
+]
+Plots = Annotated[
+    Path | None, typer.Option("--plots", help="Draw charts as PNG files.", metavar="FOLDER")
+]
+Jobs = Annotated[
+    int | None, typer.Option("--jobs", "-j", help="Processes; one for each core.", min=1)
+]
+
+
+def run(
+    path: DataPath,
+    split: Split = None,
+    json_file: JsonFile = None,
+    latex_file: LatexFile = None,
+    plots: Plots = None,
+    jobs: Jobs = None,
+) -> None:
+    """Count pictures, scenes, rooms, classes and voxels, as the paper's table does.
+
+    Semantic voxels are counted as the paper counts: over all pictures, the occupied cells of the
+    region whose centres fall into the picture, so that a cell counts for each picture that holds
+    it. The distinct cells of the worlds are told beside. A fine class is a block, or a piece of
+    furniture whatever it is made of; it counts once 3 pictures see it by 100 pixels.
+
+    Args:
+        path: the data set.
+        split: of it; all where None.
+        json_file: to write.
+        latex_file: to write.
+        plots: folder of charts to write.
+        jobs: processes that count.
+
+    Raises:
+        InputError: it is no data set, or damaged. UsageError: there is no such split.
+    """
+    from os import cpu_count
+
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.dataset.statistics import statistics_text
+    from world2minecraft.dataset.statistics.reading import store_statistics
+
+    with shown() as progress:
+        statistics = store_statistics(path, split, jobs=jobs or cpu_count() or 1, progress=progress)
+    print(statistics_text(statistics))
+    print()
+    for place in _written(statistics, json_file, latex_file, plots):
+        print(f"  wrote  {place}")
+    print(f"  next   w2m dataset quality {path}      how natural and how sharp its pictures are")
+
+
+def _written(
+    statistics: "DatasetStatistics",
+    json_file: Path | None,
+    latex_file: Path | None,
+    plots: Path | None,
+) -> list[Path]:
+    """Write what is asked for, and return where it lies."""
+    from world2minecraft.dataset.statistics import statistics_json, statistics_latex
+    from world2minecraft.dataset.statistics.plots import write_plots
+    from world2minecraft.files import write_json, write_text
+
+    written = []
+    if json_file is not None:
+        write_json(json_file, statistics_json(statistics))
+        written.append(json_file)
+    if latex_file is not None:
+        write_text(latex_file, statistics_latex(statistics) + "\n")
+        written.append(latex_file)
+    return [*written, *(write_plots(statistics, plots) if plots is not None else ())]

@@ -1,0 +1,189 @@
+import json
+import re
+from dataclasses import replace
+
+import pytest
+from PIL import Image
+from tests.dataset.samples import occ_labels, random_labels, sample
+
+from world2minecraft.dataset.statistics import (
+    DatasetStatistics,
+    count_samples,
+    statistics_json,
+    statistics_latex,
+    statistics_text,
+)
+from world2minecraft.dataset.statistics.paper import PUBLISHED_SETS
+from world2minecraft.dataset.statistics.plots import write_plots
+from world2minecraft.dataset.statistics.reading import rooms_of, store_statistics
+from world2minecraft.dataset.statistics.tables import class_shares, columns, escape, short
+from world2minecraft.dataset.statistics.values import FineCount, SceneCount
+from world2minecraft.dataset.store import write_store
+from world2minecraft.errors import InputError, UsageError
+
+SMALL = DatasetStatistics(
+    "houses & more",
+    8,
+    (SceneCount("a", 5, 30_000, 9_000, 4), SceneCount("b", 3, 31_234, 8_000, 7)),
+    (200_000, 5_000, 20_000, 20_234, 0, 5_000, 1_000, 0, 4_000, 0, 5_000, 1_000),
+    (
+        FineCount("minecraft:oak_planks", 90_000, 8, 8),
+        FineCount("design:chair_cafe", 9_000, 6, 4),
+        FineCount("minecraft:torch", 50, 1, 0),
+    ),
+    {"1920x1129": 8},
+    {"test": 2, "train": 6},
+    "60x60x36 cells of 0.08 m",
+)
+TEXT = """\
+data set              pictures  scenes   rooms  classes  semantic voxels  voxels a scene  resolution
+NYUv2                    1,449     464       -       13       10,786,528           23.2K     640x480
+OccScanNet              65,119     674       -       13      201,215,233          298.5K     640x480
+MinecraftOcc (paper)   100,165     156  ~1,000    1,452      733,280,256            4.7M   1920x1129
+houses & more                8       2      11        2           61,234           30.6K   1920x1129
+
+semantic voxels  as the paper counts: over all pictures, the occupied cells of the region
+                 (60x60x36 cells of 0.08 m) whose centres fall into the picture
+distinct cells   17,000 of the worlds themselves; each is in 3.6 pictures
+classes          2 of 3 fine classes are seen by 100 pixels in 3 pictures or more;
+                 8 of the 11 classes that are not empty are there
+splits           test 2, train 6
+
+class    voxels  share  NYUv2 train
+ceiling   5,000   8.2%         1.3%  ######
+floor    20,000  32.7%        17.8%  ########################
+wall     20,234  33.0%        15.1%  ########################
+window        0   0.0%         1.9%
+chair     5,000   8.2%         3.0%  ######
+bed       1,000   1.6%         7.3%  #
+sofa          0   0.0%         4.7%
+table     4,000   6.5%         4.2%  #####
+tvs           0   0.0%         0.5%
+furn      5,000   8.2%        30.0%  ######
+objs      1,000   1.6%        14.2%  #
+
+fine class            pixels  pictures
+minecraft:oak_planks  90,000         8
+design:chair_cafe      9,000         6"""
+
+
+def test_the_text_is_the_papers_table_and_what_it_cannot_say():
+    assert statistics_text(SMALL) == TEXT
+
+
+def test_the_papers_rows_are_consistent_in_themselves():
+    per_scene = [short(row.voxels_per_scene) for row in PUBLISHED_SETS]
+    assert per_scene == ["23.2K", "298.5K", "4.7M"]  # As printed there.
+
+
+def test_json_holds_every_figure_and_is_json():
+    told = json.loads(json.dumps(statistics_json(SMALL), allow_nan=False))
+    assert (told["voxels"], told["distinct_cells"], told["rooms"]) == (61_234, 17_000, 11)
+    assert (told["fine_classes"], told["class_voxels"]["floor"]) == (2, 20_000)
+    assert sum(told["class_shares"].values()) == pytest.approx(1)
+    assert told["published"]["sets"][2]["voxels"] == 733_280_256
+
+
+def test_latex_has_a_row_of_eight_cells_for_each_set_and_escapes_names():
+    lines = statistics_latex(SMALL).splitlines()
+    rows = [line for line in lines if line.endswith(r"\\")]
+    assert [len(re.findall(r"(?<!\\)&", row)) for row in rows] == [7] * 5
+    assert rows[-1].startswith(r"houses \& more & 8 & 2 & 11 & 2 & 61,234 & 30.6K & $1920 \times")
+    assert lines[1] == r"\toprule" and lines[-2] == r"\bottomrule"
+    assert escape(r"a_b\c%") == r"a\_b\textbackslash{}c\%"
+
+
+def test_a_set_without_fine_classes_rooms_and_cells_says_so():
+    bare = replace(
+        SMALL, fine=None, scenes=(SceneCount("a", 8, 61_234),), sizes_px={"9x9": 5, "8x8": 3}
+    )
+    text = statistics_text(bare)
+    assert "the 12 and unknown; this set names no fine classes" in text
+    assert "rooms            not told by every scene" in text
+    assert "resolutions      9x9 (5), 8x8 (3)" in text
+    assert "distinct cells" not in text
+
+
+def test_many_fine_classes_are_told_from_both_ends():
+    fine = tuple(FineCount(f"minecraft:b{n:03d}", 9_000 - n, 9, 9) for n in range(50))
+    text = statistics_text(replace(SMALL, fine=fine))
+    assert "minecraft:b007" in text and "minecraft:b042" in text
+    assert "minecraft:b008" not in text
+    assert "... 34 more ..." in text
+
+
+def test_shares_of_nothing_are_nothing_and_columns_line_up():
+    assert class_shares([7] + [0] * 11) == [0.0] * 11
+    assert columns([("a", "bb"), ("ccc", "d")]) == ["a    bb", "ccc   d"]
+
+
+@pytest.mark.parametrize(
+    "statistics",
+    [SMALL, replace(SMALL, fine=(), scenes=(), class_voxels=(0,) * 12)],
+    ids=["some", "nothing"],
+)
+def test_plots_are_pictures_and_the_same_each_time(tmp_path, statistics):
+    first = write_plots(statistics, tmp_path / "a")
+    second = write_plots(statistics, tmp_path / "b")
+    assert [place.name for place in first] == (
+        ["classes.png", "fine_classes.png", "scenes.png"]
+        if statistics.fine
+        else ["classes.png", "scenes.png"]
+    )
+    for one, other in zip(first, second, strict=True):
+        assert one.read_bytes() == other.read_bytes()
+        assert Image.open(one).size[0] == 1520
+
+
+def test_the_longest_bar_is_the_commonest_classs(tmp_path):
+    place = write_plots(SMALL, tmp_path)[0]
+    picture = Image.open(place).convert("RGB")
+    row = [picture.getpixel((x, 2 * (66 + 15))) for x in range(picture.width)]
+    assert row.count((158, 216, 229)) > 600  # Wall, by its colour, in the first row.
+
+
+@pytest.fixture
+def store(tmp_path):
+    samples = [
+        sample(n, f"house_{n // 4:04d}", random_labels(n), "test" if n >= 8 else "train")
+        for n in range(12)
+    ]
+    write_store(tmp_path / "data", samples)
+    return tmp_path / "data", samples
+
+
+def test_a_store_has_the_numbers_of_its_samples(store):
+    folder, samples = store
+    assert store_statistics(folder) == count_samples(samples).result("data")
+    test = store_statistics(folder, "test")
+    assert test == replace(count_samples(samples[8:]).result("data, test"))
+
+
+def test_processes_count_what_one_counts(store, monkeypatch):
+    from world2minecraft.dataset.statistics import reading
+
+    monkeypatch.setattr(reading, "PART", 5)
+    assert store_statistics(store[0], jobs=2) == store_statistics(store[0])
+
+
+def test_what_is_no_store_and_no_split_is_told(store, tmp_path):
+    with pytest.raises(InputError, match="is no data set"):
+        store_statistics(tmp_path / "nothing")
+    with pytest.raises(UsageError, match="the splits of .* are test, train, not 'val'"):
+        store_statistics(store[0], "val")
+
+
+def test_rooms_come_from_the_scenes_that_tell_them():
+    scenes = [
+        {"scene_id": "a", "rooms": 4},
+        {"scene_id": "b"},
+        "c",
+        {"scene_id": "d", "rooms": "x"},
+    ]
+    assert rooms_of({"scenes": scenes}) == {"a": 4}
+    assert rooms_of({}) == {}
+
+
+def test_empty_labels_are_a_picture_without_voxels():
+    statistics = count_samples([sample(occ=occ_labels())]).result("x")
+    assert (statistics.pictures, statistics.voxels, statistics.distinct_cells) == (1, 0, 0)
