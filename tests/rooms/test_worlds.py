@@ -4,27 +4,37 @@ import numpy as np
 import pytest
 
 from world2minecraft.classes import SemanticClass
+from world2minecraft.errors import UnknownNameError
 from world2minecraft.exchange.scene import read_scene
 from world2minecraft.furniture import TEMPLATES, template
+from world2minecraft.minecraft.rules.stability import unstable
+from world2minecraft.minecraft.worlds.reading import read_level
 from world2minecraft.minecraft.worlds.world import read_world
 from world2minecraft.rooms.worlds import generate_world, write_worlds
+from world2minecraft.rooms.worlds.reach import reached, reached_floors, standing
+from world2minecraft.types import BlockVolume
+
+GONE = ("falls", "pops off", "breaks", "flows")  # What a block does that cannot stay.
 
 
 @pytest.fixture(scope="module")
 def house():
-    return generate_world(5, rooms=5, storeys=1)
+    return generate_world(5, rooms=6, storeys=1)
+
+
+@pytest.fixture(scope="module")
+def tall():
+    return generate_world(9, rooms=7, storeys=2)
 
 
 def test_the_same_seed_gives_the_same_world(house):
-    again = generate_world(5, rooms=5, storeys=1)
+    again = generate_world(5, rooms=6, storeys=1)
     assert again.volume.palette == house.volume.palette
     assert np.array_equal(again.volume.states, house.volume.states)
+    assert np.array_equal(again.volume.instance, house.volume.instance)
     assert np.array_equal(again.design, house.design)
-    assert not np.array_equal(
-        generate_world(6, rooms=5, storeys=1).volume.states.shape, house.volume.states.shape
-    ) or not np.array_equal(
-        generate_world(6, rooms=5, storeys=1).volume.states, house.volume.states
-    )
+    other = generate_world(6, rooms=6, storeys=1).volume
+    assert other.palette != house.volume.palette
 
 
 def test_designs_are_of_the_library_and_of_their_class(house):
@@ -43,7 +53,60 @@ def test_a_house_has_structure_and_furniture(house):
     wanted = (SemanticClass.FLOOR, SemanticClass.WALL, SemanticClass.CEILING, SemanticClass.WINDOW)
     assert {int(one) for one in wanted} <= classes
     assert len(classes) >= 9
-    assert len(house.things) >= 5 * 4
+    assert len(house.things) >= 6 * 5
+
+
+@pytest.mark.parametrize("which", ["house", "tall"])
+def test_every_room_is_reached_on_foot_from_the_spawn(which, request):
+    made = request.getfixturevalue(which)
+    counts = reached_floors(made.volume, made.house, made.spawn.position)
+    assert len(counts) == len(made.house.rooms)
+    for there, places in counts:
+        assert there >= 0.7 * places > 0
+    assert sum(a for a, _ in counts) > 0.9 * sum(b for _, b in counts)
+
+
+def test_nothing_falls_or_breaks(tall):
+    assert not [one for one in unstable(tall.volume) if one.reason.startswith(GONE)]
+
+
+def test_other_scales_are_made(house):
+    small = generate_world(5, rooms=6, storeys=1, blocks_per_metre=2.0)
+    assert small.volume.blocks_per_metre == pytest.approx(2.0)
+    assert small.volume.states.size < house.volume.states.size / 4
+    assert len(small.things) > 20
+
+
+def test_rooms_stand_where_the_room_frame_says(house):
+    to_room, corner = house.volume.block_to_room, np.array(house.volume.corner)
+    floor = np.argwhere(house.volume.semantic == SemanticClass.FLOOR) + corner
+    middle = (to_room[:3, :3] @ (floor + 0.5).T).T + to_room[:3, 3]
+    assert middle[:, 2].max() < 0
+    assert middle[:, :2].min() > -0.3
+    high = np.array(house.house.size) / house.house.blocks_per_metre
+    assert (middle[:, :2].max(axis=0) <= high + 0.3).all()
+
+
+def test_a_jump_is_one_block_and_a_fence_too_high():
+    palette = ("minecraft:air", "minecraft:stone", "minecraft:oak_fence")
+    states = np.zeros((6, 6, 1), np.uint16)
+    states[:, 0] = 1
+    states[3, 1] = 1  # A step that is jumped on; the one behind it is two high.
+    states[5, 1:3] = 1
+    volume = BlockVolume(
+        states, palette, np.zeros(states.shape, np.uint8), np.zeros(states.shape, np.uint16),
+        (0, 0, 0), np.eye(4),
+    )  # fmt: skip
+    found = reached(volume, (0.5, 1.0, 0.5))
+    assert found[2, 1, 0]
+    assert found[3, 2, 0]
+    assert found[4, 1, 0]
+    assert not found[5].any()
+    states = states.copy()
+    states[3, 1] = 2
+    fenced = BlockVolume(states, palette, volume.semantic, volume.instance, (0, 0, 0), np.eye(4))
+    assert not reached(fenced, (0.5, 1.0, 0.5))[4:].any()
+    assert not standing(fenced)[0][3, 2, 0]
 
 
 def test_written_worlds_are_read_back(tmp_path):
@@ -54,13 +117,25 @@ def test_written_worlds_are_read_back(tmp_path):
     assert scene.designs[0] == ""
     assert int(scene.design.max()) == len(scene.designs) - 1
     assert set(scene.light) == {"hour", "lamps"}
-    volume = read_world(folder / "world")
-    assert volume.states.any()
-
-
-def test_a_scene_without_designs_is_read(tmp_path):
-    (folder,) = write_worlds(tmp_path, 1, 3)
+    assert read_world(folder / "world").states.any()
+    assert (
+        read_level(folder / "world")["DayTime"] == round((scene.light["hour"] - 6) * 1000) % 24000
+    )
     with np.load(folder / "scene.npz") as arrays:
         kept = {name: arrays[name] for name in ("semantic", "instance")}
     np.savez(folder / "scene.npz", **kept)
     assert read_scene(folder).design is None
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "text"),
+    [
+        ({"seed": -1}, ValueError, "seed must be 0 or more, not -1"),
+        ({"rooms": 2}, ValueError, "rooms must be from 3 to 14 on 1 storeys, not 2"),
+        ({"blocks_per_metre": 12.5}, ValueError, "blocks_per_metre must be from 2 to under 6"),
+        ({"style": "modrn"}, UnknownNameError, "did you mean 'modern'?"),
+    ],
+)
+def test_wrong_numbers_are_told(given, error, text):
+    with pytest.raises(error, match=text.replace("?", r"\?")):
+        generate_world(**{"seed": 1, **given})

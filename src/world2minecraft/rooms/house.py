@@ -27,7 +27,7 @@ def generate_house(seed: int, *, rooms: int = 5, storeys: int = 1, clutter: floa
     Raises:
         ValueError: a number is out of its range.
     """
-    _check(seed, rooms, storeys, clutter)
+    check_house(seed, rooms, storeys, clutter)
     rng = np.random.default_rng([seed, rooms, storeys])
     plan = plan_house(rooms, storeys, rng)
     gaps = house_gaps(plan, rng)
@@ -49,7 +49,8 @@ def generate_house(seed: int, *, rooms: int = 5, storeys: int = 1, clutter: floa
     )
 
 
-def _check(seed: int, rooms: int, storeys: int, clutter: float) -> None:
+def check_house(seed: int, rooms: int, storeys: int, clutter: float) -> None:
+    """Raise ``ValueError`` where a number of a house is out of its range."""
     if seed < 0:
         raise ValueError(f"seed must be 0 or more, not {seed}")
     if not STOREYS[0] <= storeys <= STOREYS[1]:

@@ -1,5 +1,6 @@
 """One house as a world: planned, furnished and lit, from a seed to blocks with exact labels."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -7,16 +8,24 @@ import numpy as np
 
 from world2minecraft.build.lights import put_lights
 from world2minecraft.build.spawn import Spawn, find_spawn
+from world2minecraft.errors import UnknownNameError
+from world2minecraft.rooms.house import check_house
 from world2minecraft.rooms.house_rooms import furnish_cells
+from world2minecraft.rooms.place import Item
 from world2minecraft.rooms.style import choose_style
 from world2minecraft.rooms.worlds.canvas import WorldCanvas
+from world2minecraft.rooms.worlds.dressing import dress_windows, hang_lamps, hang_leaves, lay_rugs
 from world2minecraft.rooms.worlds.furnishing import Furnisher, Thing
-from world2minecraft.rooms.worlds.house import BlockHouse, plan_block_house
-from world2minecraft.rooms.worlds.looks import draw_look, styles
+from world2minecraft.rooms.worlds.house import BlockHouse, BlockRoom, plan_block_house
+from world2minecraft.rooms.worlds.kinds import OWN, Task, furnish_more, with_own_kinds
+from world2minecraft.rooms.worlds.looks import RoomLook, Style, draw_look, styles
 from world2minecraft.rooms.worlds.shell import put_shell, put_stairs
+from world2minecraft.rooms.worlds.showing import Show
+from world2minecraft.rooms.worlds.wares import Deck
+from world2minecraft.rooms.worlds.ways import Ways
 from world2minecraft.types import BlockVolume
 
-SCALES = (2.0, 6.0)  # Blocks per metre: designs are made of blocks from two to six.
+SCALES = (2.0, 6.0)  # Blocks per metre that the library's designs are made for in blocks.
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +50,7 @@ def generate_world(
     style: str | None = None,
     blocks_per_metre: float = 4.0,
     clutter: float = 0.3,
+    deck: tuple[int, int] | None = None,
 ) -> HouseWorld:
     """Return the world of a seed: the same seed and numbers give the same blocks.
 
@@ -51,53 +61,101 @@ def generate_world(
         style: one of ``styles()``; drawn where none is given.
         blocks_per_metre: 2 to 6.
         clutter: 0 (tidy) to 1.
+        deck: the seed of the order of wares and how many were dealt before; drawn where None.
 
     Raises:
         ValueError: a number is out of its range. UnknownNameError: no style has this name.
     """
-    names = list(styles())
+    check_house(seed, rooms, storeys, clutter)
+    _check(blocks_per_metre, style)
     rng = np.random.default_rng([seed, rooms, storeys, 3])
-    drawn = names[int(rng.integers(len(names)))]
+    drawn = list(styles())[int(rng.integers(len(styles())))]
     chosen = styles()[style or drawn]
-    house = plan_block_house((seed, 2), rooms, storeys, blocks_per_metre)
-    canvas = WorldCanvas(house)
+    plan = plan_block_house((seed, 2), rooms, storeys, blocks_per_metre)
+    house = with_own_kinds(plan, rng)
     looks = tuple(draw_look(chosen, room.kind, rng) for room in house.rooms)
+    canvas, ways = WorldCanvas(house), Ways(house)
     put_shell(canvas, house, looks)
-    furnisher = Furnisher(canvas, house)
-    if house.flight is not None:
-        first = furnisher.next_instance()
-        furnisher.next_instance()
-        put_stairs(canvas, house, looks[0], first)
-    _furnish(furnisher, looks, clutter, (seed, rooms, storeys, 4))
+    furnisher = Furnisher(canvas, house, looks, ways)
+    dealt = Deck(*(deck or (seed, int(rng.integers(1000)))))
+    show = Show(furnisher, dealt, np.random.default_rng([seed, rooms, storeys, 6]))
+    _put_flight(furnisher, house, looks[0])
+    hang_leaves(furnisher, house.gaps, rng)
+    _furnish(furnisher, show, clutter, (seed, rooms, storeys, 4))
     canvas.settle()
-    shape = canvas.states.shape[:2]
-    footprints = tuple(
-        np.any(
-            [
-                np.pad(room.floor(house.size), canvas.margin)
-                for room in house.rooms
-                if room.storey == storey
-            ],
-            axis=0,
-        ).reshape(shape)
-        for storey in range(storeys)
-    )
-    put_lights(canvas, footprints)
+    put_lights(canvas, _footprints(canvas, house))
     volume, design, designs = canvas.finished()
-    hour = chosen.hours[int(rng.integers(len(chosen.hours)))]
-    light = {"hour": hour, "lamps": True}
+    light = {"hour": _hour(chosen, rng), "lamps": True}
     spawn = find_spawn(volume)
-    return HouseWorld(
-        volume, design, designs, house, tuple(furnisher.things), spawn, chosen.name, light
-    )
+    things = tuple(furnisher.things)
+    return HouseWorld(volume, design, designs, house, things, spawn, chosen.name, light)
 
 
-def _furnish(furnisher: Furnisher, looks, clutter: float, seed: tuple[int, ...]) -> None:
+def _check(blocks_per_metre: float, style: str | None) -> None:
+    if not SCALES[0] <= blocks_per_metre < SCALES[1]:
+        low, high = SCALES
+        raise ValueError(
+            f"blocks_per_metre must be from {low:g} to under {high:g}, not {blocks_per_metre:g}"
+        )
+    if style is not None and style not in styles():
+        raise UnknownNameError("style", style, styles())
+
+
+def _hour(style: Style, rng: np.random.Generator) -> int:
+    return style.hours[int(rng.integers(len(style.hours)))]
+
+
+def _put_flight(furnisher: Furnisher, house: BlockHouse, look: RoomLook) -> None:
+    """Set the stairs, and keep the ways to their foot and from their head."""
+    flight = house.flight
+    if flight is None:
+        return
+    lower, upper = house.rooms[0], next(room for room in house.rooms if room.storey == 1)
+    first = furnisher.next_instance()
+    furnisher.next_instance()
+    put_stairs(furnisher.canvas, house, look, first)
+    box = (flight.x0, flight.y0, flight.x1, flight.y0 + flight.steps)
+    for room in (lower, upper):
+        furnisher.ways.close(room, box)
+    foot = (flight.x0, flight.y0 - 1, flight.x1, flight.y0)
+    head = (flight.x0, flight.y0 + flight.steps, flight.x1, flight.y0 + flight.steps + 1)
+    furnisher.ways.end(lower, foot)
+    furnisher.ways.end(upper, head)
+
+
+def _furnish(furnisher: Furnisher, show: Show, clutter: float, seed: Sequence[int]) -> None:
+    """Furnish each room: the metric kinds by their layout first, the others by their recipe."""
     house = furnisher.house
     rng = np.random.default_rng(seed)
     metric = [choose_style(rng) for _ in house.plan.cells]
-    items, _ = furnish_cells(house.plan, house.gaps_m, metric, clutter, seed)
+    items, _ = furnish_cells(house.plan, house.gaps_m, metric, clutter, tuple(seed))
     for room, held in zip(house.rooms, items, strict=True):
         own = np.random.default_rng([*seed, room.number])
-        for item in sorted(held, key=lambda item: (item.z_m, -item.model.size_m[0])):
-            furnisher.put_item(item, room, looks[room.number], own)
+        task = Task(furnisher, show, room, own)
+        if room.kind in OWN:
+            hang_lamps(furnisher, room, own)
+            OWN[room.kind](task)
+        else:
+            _put_items(furnisher, room, held, own)
+            hang_lamps(furnisher, room, own)
+        dress_windows(furnisher, room, own)
+        if room.kind not in OWN:
+            furnish_more(task)
+        lay_rugs(furnisher, room, own)
+
+
+def _put_items(
+    furnisher: Furnisher, room: BlockRoom, held: Sequence[Item], rng: np.random.Generator
+) -> None:
+    for item in sorted(held, key=lambda item: (item.z_m, -item.model.size_m[0])):
+        if item.model.name != "curtain":
+            furnisher.put_item(item, room, rng)
+
+
+def _footprints(canvas: WorldCanvas, house: BlockHouse) -> tuple[np.ndarray, ...]:
+    """Return the columns of each storey's rooms, bool [X, Y] of the canvas."""
+    floors = []
+    for storey in range(len(house.grounds)):
+        rooms = [room.floor(house.size) for room in house.rooms if room.storey == storey]
+        floors.append(np.pad(np.any(rooms, axis=0), canvas.margin))
+    return tuple(floors)

@@ -10,7 +10,8 @@ from world2minecraft.minecraft.worlds.world import write_world
 from world2minecraft.progress import Progress, silent
 from world2minecraft.rooms.worlds.making import HouseWorld, generate_world
 
-ROOMS, STOREYS_SHARE = (4, 9), 0.35
+ROOMS, STOREYS_SHARE = (4, 9), 0.35  # 156 houses have about 1,000 rooms.
+WARES_A_HOUSE = 37  # By so many the order of wares is further on from house to house.
 
 
 def write_house(
@@ -65,4 +66,5 @@ def house_of(seed: int, number: int) -> HouseWorld:
     rng = np.random.default_rng([seed, number])
     rooms = int(rng.integers(ROOMS[0], ROOMS[1] + 1))
     storeys = 2 if rng.random() < STOREYS_SHARE else 1
-    return generate_world(int(rng.integers(1 << 31)), rooms=rooms, storeys=storeys)
+    deck = (seed, number * WARES_A_HOUSE)
+    return generate_world(int(rng.integers(1 << 31)), rooms=rooms, storeys=storeys, deck=deck)
