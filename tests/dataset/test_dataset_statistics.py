@@ -6,6 +6,7 @@ import pytest
 from tests.dataset.samples import FINE, occ_labels, random_labels, sample
 
 from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.dataset.importers.labelled import CLASS_KINDS
 from world2minecraft.dataset.statistics import (
     StatisticsCounter,
     count_samples,
@@ -58,6 +59,8 @@ def test_counts_are_those_of_the_slow_reference(samples):
     }
     assert statistics.voxels == sum(voxels.values()) - voxels["empty"]
     assert statistics.splits == {"train": 7, "test": 1}
+    whole = sum(int((one.occ.occupied).sum()) for one in samples)
+    assert statistics.uncut_voxels == whole > statistics.voxels
     assert (statistics.pictures, statistics.resolution) == (8, "640x480")
     assert [scene.pictures for scene in statistics.scenes] == [4, 4]
     assert statistics.voxels_per_scene == statistics.voxels / 2
@@ -149,3 +152,16 @@ def test_cells_of_two_sizes_in_one_world_are_refused():
 
 def test_a_fine_class_without_a_design_is_its_block():
     assert FineClass("minecraft:glass").name == "minecraft:glass"
+
+
+def test_rooms_of_the_pictures_count_where_the_scene_tells_none(samples):
+    told = [replace(one, facts={"room": n % 3}) for n, one in enumerate(samples)]
+    assert [scene.rooms for scene in count_samples(told).result("x").scenes] == [3, 3]
+    assert count_samples(told, rooms={"house_0001": 9}).result("x").rooms == 12
+    one_silent = [*told[:7], samples[7]]
+    assert [scene.rooms for scene in count_samples(one_silent).result("x").scenes] == [3, None]
+
+
+def test_the_twelve_classes_are_no_fine_classes():
+    twelve = replace(sample(0), fine_classes=CLASS_KINDS)
+    assert count_samples([twelve]).result("x").fine is None

@@ -4,8 +4,12 @@ from dataclasses import replace
 
 import pytest
 from PIL import Image
+from tests.dataset.exchange import synthetic
 from tests.dataset.samples import occ_labels, random_labels, sample
 
+from world2minecraft.coordinates import invert_rigid
+from world2minecraft.dataset.exporters import export_samples
+from world2minecraft.dataset.formats.boxes import cells_in_image
 from world2minecraft.dataset.statistics import (
     DatasetStatistics,
     count_samples,
@@ -15,7 +19,7 @@ from world2minecraft.dataset.statistics import (
 )
 from world2minecraft.dataset.statistics.paper import PUBLISHED_SETS
 from world2minecraft.dataset.statistics.plots import write_plots
-from world2minecraft.dataset.statistics.reading import rooms_of, store_statistics
+from world2minecraft.dataset.statistics.reading import rooms_of, statistics_of, store_statistics
 from world2minecraft.dataset.statistics.tables import class_shares, columns, escape, short
 from world2minecraft.dataset.statistics.values import FineCount, SceneCount
 from world2minecraft.dataset.store import write_store
@@ -26,6 +30,7 @@ SMALL = DatasetStatistics(
     8,
     (SceneCount("a", 5, 30_000, 9_000, 4), SceneCount("b", 3, 31_234, 8_000, 7)),
     (200_000, 5_000, 20_000, 20_234, 0, 5_000, 1_000, 0, 4_000, 0, 5_000, 1_000),
+    90_500,
     (
         FineCount("minecraft:oak_planks", 90_000, 8, 8),
         FineCount("design:chair_cafe", 9_000, 6, 4),
@@ -43,7 +48,8 @@ MinecraftOcc (paper)   100,165     156  ~1,000    1,452      733,280,256        
 houses & more                8       2      11        2           61,234           30.6K   1920x1129
 
 semantic voxels  as the paper counts: over all pictures, the occupied cells of the region
-                 (60x60x36 cells of 0.08 m) whose centres fall into the picture
+                 (60x60x36 cells of 0.08 m) whose centres fall into the picture;
+                 of whole regions 90,500, as NYUv2's row seems to count
 distinct cells   17,000 of the worlds themselves; each is in 3.6 pictures
 classes          2 of 3 fine classes are seen by 100 pixels in 3 pictures or more;
                  8 of the 11 classes that are not empty are there
@@ -187,3 +193,31 @@ def test_rooms_come_from_the_scenes_that_tell_them():
 def test_empty_labels_are_a_picture_without_voxels():
     statistics = count_samples([sample(occ=occ_labels())]).result("x")
     assert (statistics.pictures, statistics.voxels, statistics.distinct_cells) == (1, 0, 0)
+
+
+def in_frustum(one):
+    """The sample with the frustum of its camera."""
+    region = one.occ.region
+    region_to_camera = invert_rigid(one.camera_to_room) @ region.region_to_room
+    inside, _, _ = cells_in_image(region.shape, region.voxel_m, region_to_camera, one.camera)
+    return replace(one, occ=replace(one.occ, in_frustum=inside), facts={})
+
+
+def test_exports_of_a_set_have_its_numbers(tmp_path):
+    keys, splits = ("house_0001-t0-00000", "house_0001-t0-00001"), ("train", "test")
+    samples = [
+        in_frustum(synthetic.sample(key, frame=n, split=split))
+        for n, (key, split) in enumerate(zip(keys, splits, strict=True))
+    ]
+    whole = count_samples(samples).result("npz")
+    for format in ("npz", "nyu"):
+        export_samples(samples, format, tmp_path / format)
+    again = statistics_of(tmp_path / "npz")
+    assert again == replace(whole, fine=again.fine)
+    assert sum(one.pixels for one in again.fine) == sum(one.pixels for one in whole.fine)
+    nyu = statistics_of(tmp_path / "nyu", format="nyu")
+    assert (nyu.pictures, nyu.fine, nyu.splits) == (2, None, {"test": 1, "train": 1})
+    assert (nyu.voxels, nyu.uncut_voxels) == (whole.voxels, whole.uncut_voxels)
+    assert statistics_of(tmp_path / "npz", "test").pictures == 1
+    with pytest.raises(InputError, match="has no pictures of the split 'val'"):
+        statistics_of(tmp_path / "npz", "val")

@@ -11,13 +11,17 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 w2m dataset stats DATA                             the paper's table, with DATA below it
 w2m dataset stats DATA --split test --jobs 8       a split, counted by eight processes
+w2m dataset stats NYUv2                            a data set of others
 w2m dataset stats DATA --json stats.json           every figure
 w2m dataset stats DATA --latex table.tex --plots PLOTS
 """
 
 
-DataPath = Annotated[Path, typer.Argument(help="A data set that w2m dataset build made.")]
+DataPath = Annotated[Path, typer.Argument(help="A data set: ours, NYUv2, OccScanNet ...")]
 Split = Annotated[str | None, typer.Option("--split", help="Only train, or only test.")]
+Format = Annotated[
+    str | None, typer.Option("--format", help="nyu, occscannet, embodied or npz; found out.")
+]
 JsonFile = Annotated[
     Path | None, typer.Option("--json", help="Write every figure.", metavar="FILE")
 ]
@@ -35,6 +39,7 @@ Jobs = Annotated[
 def run(
     path: DataPath,
     split: Split = None,
+    format: Format = None,
     json_file: JsonFile = None,
     latex_file: LatexFile = None,
     plots: Plots = None,
@@ -50,6 +55,7 @@ def run(
     Args:
         path: the data set.
         split: of it; all where None.
+        format: of a data set of others.
         json_file: to write.
         latex_file: to write.
         plots: folder of charts to write.
@@ -62,10 +68,12 @@ def run(
 
     from world2minecraft.cli.progress import shown
     from world2minecraft.dataset.statistics import statistics_text
-    from world2minecraft.dataset.statistics.reading import store_statistics
+    from world2minecraft.dataset.statistics.reading import statistics_of
 
     with shown() as progress:
-        statistics = store_statistics(path, split, jobs=jobs or cpu_count() or 1, progress=progress)
+        statistics = statistics_of(
+            path, split, format=format, jobs=jobs or cpu_count() or 1, progress=progress
+        )
     print(statistics_text(statistics))
     print()
     for place in _written(statistics, json_file, latex_file, plots):

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from world2minecraft.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.dataset.importers.labelled import CLASS_KINDS
 from world2minecraft.dataset.statistics.cells import WorldCells
 from world2minecraft.dataset.statistics.values import (
     ENOUGH_PIXELS,
@@ -29,7 +30,9 @@ class PictureCounts:
     size_px: str  # "640x480"
     region: str
     class_voxels: np.ndarray  # int64 [12], cells in the frustum by class
+    uncut_voxels: int  # occupied cells, in the frustum or not
     fine_pixels: Mapping[str, int] | None  # FineClass.name to pixels; None where not known
+    room: int | None = None  # Its number in the scene, where the sample tells it.
 
 
 def picture_counts(sample: OccSample) -> PictureCounts:
@@ -40,7 +43,9 @@ def picture_counts(sample: OccSample) -> PictureCounts:
         f"{sample.camera.width_px}x{sample.camera.height_px}",
         region_text(sample.occ.region.shape, sample.occ.region.voxel_m),
         class_voxels(sample.occ),
+        int(np.count_nonzero(sample.occ.occupied)),
         fine_pixels(sample.occ, sample.fine_classes),
+        room if isinstance(room := sample.facts.get("room"), int) else None,
     )
 
 
@@ -49,8 +54,13 @@ def class_voxels(occ: OccLabels) -> np.ndarray:
     return np.bincount(occ.labels[occ.in_frustum], minlength=UNKNOWN + 1)[:CLASS_COUNT]
 
 
-def fine_pixels(occ: OccLabels, classes: tuple[FineClass, ...]) -> dict[str, int]:
-    """Return the pixels that see each fine class. Empty cells, the first class, are left out."""
+def fine_pixels(occ: OccLabels, classes: tuple[FineClass, ...]) -> dict[str, int] | None:
+    """Return the pixels that see each fine class. Empty cells, the first class, are left out.
+
+    None where the fine classes are no more than the 12, as those of imported sets are.
+    """
+    if set(classes) <= set(CLASS_KINDS):
+        return None
     seen = np.bincount(occ.fine[occ.visible], weights=occ.hits[occ.visible], minlength=len(classes))
     pixels: Counter[str] = Counter()
     for number in np.flatnonzero(seen):
@@ -80,7 +90,14 @@ class _Fine:
 class _Scene:
     pictures: int = 0
     voxels: int = 0
-    rooms: int | None = None
+    rooms: int | None = None  # As told of the scene.
+    rooms_seen: set[int | None] = field(default_factory=set)  # As pictures tell.
+
+    def count_rooms(self) -> int | None:
+        """Return the rooms as told, or else those of the pictures if each tells its own."""
+        if self.rooms is not None or None in self.rooms_seen:
+            return self.rooms
+        return len(self.rooms_seen)
 
 
 @dataclass
@@ -88,6 +105,7 @@ class StatisticsCounter:
     """The sums over the pictures so far."""
 
     pictures: int = 0
+    uncut_voxels: int = 0
     class_voxels: np.ndarray = field(default_factory=lambda: np.zeros(CLASS_COUNT, np.int64))
     _scenes: dict[str, _Scene] = field(default_factory=lambda: defaultdict(_Scene))
     _cells: dict[str, WorldCells] = field(default_factory=lambda: defaultdict(WorldCells))
@@ -100,10 +118,12 @@ class StatisticsCounter:
     def add(self, counts: PictureCounts) -> None:
         """Add one picture's numbers."""
         self.pictures += 1
+        self.uncut_voxels += counts.uncut_voxels
         self.class_voxels += counts.class_voxels
         scene = self._scenes[counts.scene_id]
         scene.pictures += 1
         scene.voxels += int(counts.class_voxels[1:].sum())
+        scene.rooms_seen.add(counts.room)
         self._sizes[counts.size_px] += 1
         self._splits[counts.split or "none"] += 1
         self._regions[counts.region] += 1
@@ -126,12 +146,14 @@ class StatisticsCounter:
     def merge(self, other: "StatisticsCounter") -> None:
         """Add the sums of other pictures of the same data set."""
         self.pictures += other.pictures
+        self.uncut_voxels += other.uncut_voxels
         self.class_voxels += other.class_voxels
         for name, theirs in other._scenes.items():
             ours = self._scenes[name]
             ours.pictures += theirs.pictures
             ours.voxels += theirs.voxels
             ours.rooms = theirs.rooms if ours.rooms is None else ours.rooms
+            ours.rooms_seen |= theirs.rooms_seen
         for name, cells in other._cells.items():
             self._cells[name].merge(cells)
         for name, fine in other._fine.items():
@@ -152,6 +174,7 @@ class StatisticsCounter:
             self.pictures,
             tuple(scenes),
             tuple(int(count) for count in self.class_voxels),
+            self.uncut_voxels,
             None if self._without_fine else self._fine_counts(),
             dict(sorted(self._sizes.items())),
             dict(sorted(self._splits.items())),
@@ -161,13 +184,19 @@ class StatisticsCounter:
     def _scene(self, key: str) -> SceneCount:
         held = self._scenes[key]
         cells = self._cells[key].count() if key in self._cells else None
-        return SceneCount(key, held.pictures, held.voxels, cells, held.rooms)
+        return SceneCount(key, held.pictures, held.voxels, cells, held.count_rooms())
 
     def _fine_counts(self) -> tuple[FineCount, ...]:
         counts = (
             FineCount(name, one.pixels, one.pictures, one.clear) for name, one in self._fine.items()
         )
         return tuple(sorted(counts, key=lambda one: (-one.pixels, one.name)))
+
+
+def add_sample(counter: StatisticsCounter, sample: OccSample) -> None:
+    """Add a sample to a counter, its distinct cells too."""
+    counter.add(picture_counts(sample))
+    counter.add_cells(sample.scene_id, sample.occ)
 
 
 def count_samples(
@@ -181,8 +210,7 @@ def count_samples(
     """
     counter = StatisticsCounter()
     for sample in samples:
-        counter.add(picture_counts(sample))
-        counter.add_cells(sample.scene_id, sample.occ)
+        add_sample(counter, sample)
     for scene_id, count in (rooms or {}).items():
         counter.set_rooms(scene_id, count)
     return counter

@@ -1,4 +1,7 @@
-"""Counting a stored data set: its labels are read, its pictures are not, by several processes."""
+"""Counting a data set on disk, a picture at a time.
+
+A stored one is counted by several processes, and its pictures are not read.
+"""
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -6,13 +9,51 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.dataset.statistics.counting import StatisticsCounter, count_samples
+from world2minecraft.dataset.importers.opening import IMPORTED, open_occupancy
+from world2minecraft.dataset.statistics.counting import StatisticsCounter, add_sample, count_samples
 from world2minecraft.dataset.statistics.values import DatasetStatistics
 from world2minecraft.dataset.store import OccStore, open_store
-from world2minecraft.errors import WorkerError
+from world2minecraft.dataset.store.layout import META
+from world2minecraft.errors import InputError, WorkerError
 from world2minecraft.progress import Progress, silent
 
 PART = 200  # Pictures that a process counts at once: two seconds of work.
+
+
+def statistics_of(
+    path: str | Path,
+    split: str | None = None,
+    *,
+    format: str | None = None,
+    jobs: int = 1,
+    progress: Progress = silent,
+) -> DatasetStatistics:
+    """Return the statistics of a data set on disk, of ours or of others.
+
+    Args:
+        path: a stored data set, or a folder that ``w2m dataset import`` takes.
+        split: its name; all where None.
+        format: of a folder of others; found out where None.
+        jobs: how many processes count a stored one.
+        progress: told the pictures that are counted.
+
+    Raises:
+        InputError: it is no data set, or has no such split. DamagedFileError: a sample cannot be
+        read. UsageError: there is no such split or format. WorkerError: a process ended.
+    """
+    place = Path(path)
+    if format is None and ((place / META).is_file() or not _is_imported(place)):
+        return store_statistics(place, split, jobs=jobs, progress=progress)
+    found = open_occupancy(place, format)
+    keys = found.keys(split)
+    if not keys:
+        raise InputError(place, f"has no pictures of the split {split!r}")
+    counter = StatisticsCounter()
+    for done, sample in enumerate(found.samples(split)):
+        progress("count", done, len(keys))
+        add_sample(counter, sample)
+    progress("count", len(keys), len(keys))
+    return counter.result(_named(place, split))
 
 
 def store_statistics(
@@ -45,8 +86,7 @@ def store_statistics(
         progress("count", counter.pictures, len(keys), f"{pictures:,} pictures")
     for scene_id, rooms in rooms_of(store.meta).items():
         counter.set_rooms(scene_id, rooms)
-    name = store.folder.resolve().name
-    return counter.result(f"{name}, {split}" if split else name)
+    return counter.result(_named(store.folder, split))
 
 
 def rooms_of(meta: dict[str, Any]) -> dict[str, int]:
@@ -57,6 +97,15 @@ def rooms_of(meta: dict[str, Any]) -> dict[str, int]:
         if isinstance(rooms, int) and rooms > 0:
             found[str(scene.get("scene_id"))] = rooms
     return found
+
+
+def _named(folder: Path, split: str | None) -> str:
+    name = folder.resolve().name
+    return f"{name}, {split}" if split else name
+
+
+def _is_imported(place: Path) -> bool:
+    return place.exists() and any(kind.is_at(place) for kind in IMPORTED.values())
 
 
 def _parts(

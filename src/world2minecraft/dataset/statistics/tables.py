@@ -54,6 +54,7 @@ def statistics_json(statistics: DatasetStatistics) -> dict[str, Any]:
         "fine_rule": {"pixels": ENOUGH_PIXELS, "pictures": ENOUGH_PICTURES},
         "voxels": statistics.voxels,
         "voxels_per_scene": statistics.voxels_per_scene,
+        "uncut_voxels": statistics.uncut_voxels,
         "distinct_cells": statistics.distinct_cells,
         "resolution": statistics.resolution,
         "sizes_px": dict(statistics.sizes_px),
@@ -167,9 +168,11 @@ def _or_dash(count: int | None, about: str = "") -> str:
 
 def _told(statistics: DatasetStatistics) -> list[str]:
     """Return what the row of the data set cannot say."""
+    uncut = f"{statistics.uncut_voxels:,}"
     lines = [
         "semantic voxels  as the paper counts: over all pictures, the occupied cells of the region",
-        f"                 ({statistics.region}) whose centres fall into the picture",
+        f"                 ({statistics.region}) whose centres fall into the picture;",
+        f"                 of whole regions {uncut}, as NYUv2's row seems to count",
     ]
     if statistics.distinct_cells is not None:
         share = statistics.voxels / max(statistics.distinct_cells, 1)

@@ -48,6 +48,7 @@ class DatasetStatistics:
     pictures: int
     scenes: tuple[SceneCount, ...]  # by id
     class_voxels: tuple[int, ...]  # of the 12 classes
+    uncut_voxels: int  # occupied cells of the whole regions, in the frustum or not
     fine: tuple[FineCount, ...] | None  # most pixels first; None where pixels are not known
     sizes_px: Mapping[str, int]  # "640x480" to its number of pictures
     splits: Mapping[str, int]
