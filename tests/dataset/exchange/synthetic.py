@@ -4,6 +4,7 @@ import numpy as np
 
 from world2minecraft.classes import CLASS_COLOURS
 from world2minecraft.coordinates import apply, look_at, rotation_about_z
+from world2minecraft.dataset.formats.boxes import cells_in_image
 from world2minecraft.dataset.formats.cameras import NYU_CAMERA
 from world2minecraft.dataset.values import FineClass, LabelRegion, OccLabels, OccSample
 from world2minecraft.render.voxels import cast_voxels
@@ -50,7 +51,9 @@ def sample(
     pose = look_at(np.array(eye_m), np.array(target_m))
     hits = cast_voxels(CELLS, camera, pose, voxel_m=VOXEL_M, origin_m=ORIGIN_M)
     region = _region(eye_m, quarters, turn_deg)
-    labels, inside = _labels(region)
+    labels = _labels(region)
+    to_camera = np.linalg.inv(pose) @ region.region_to_room
+    in_view = cells_in_image(region.shape, VOXEL_M, to_camera, camera)[0]
     seen = _first_seen(hits, region, camera, pose)
     counts = np.bincount(seen[seen >= 0], minlength=labels.size).reshape(labels.shape)
     met = CELLS.reshape(-1)[np.maximum(hits.voxel_index, 0)]
@@ -61,7 +64,7 @@ def sample(
         labels,
         np.where((labels > 0) & (labels < 12), 1, 0).astype(np.uint16),
         np.zeros(labels.shape, np.uint16),
-        inside,
+        in_view,
         counts.astype(np.uint32),
         np.zeros(labels.shape, bool),
     )
@@ -82,12 +85,11 @@ def _region(eye_m, quarters: int, turn_deg: float) -> LabelRegion:
     return LabelRegion((60, 60, 36), VOXEL_M, region_to_room, "free" if turn_deg else "axis")
 
 
-def _labels(region: LabelRegion) -> tuple[np.ndarray, np.ndarray]:
+def _labels(region: LabelRegion) -> np.ndarray:
     cells = np.floor((region.centers_m() - ORIGIN_M) / VOXEL_M).astype(int)
     inside = np.all((cells >= 0) & (cells < CELLS.shape), axis=-1)
     safe = np.where(inside[..., None], cells, 0)
-    labels = np.where(inside, CELLS[tuple(np.moveaxis(safe, -1, 0))], 255).astype(np.uint8)
-    return labels, inside
+    return np.where(inside, CELLS[tuple(np.moveaxis(safe, -1, 0))], 255).astype(np.uint8)
 
 
 def _first_seen(hits, region: LabelRegion, camera: Camera, pose: np.ndarray) -> np.ndarray:

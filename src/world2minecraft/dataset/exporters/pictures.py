@@ -1,20 +1,16 @@
 """Colour as the JPEGs that the loaders open."""
 
-import io
-
 import numpy as np
-from PIL import Image
 
 from world2minecraft.dataset.exporters.rules import JPEG_QUALITY
 from world2minecraft.dataset.values import OccSample
 from world2minecraft.errors import InputError
+from world2minecraft.render.output.images import colour_bytes
 
 
 def jpeg_bytes(pixels: np.ndarray) -> bytes:
     """Return uint8 [H, W, 3] as a JPEG, its colours at full resolution."""
-    stream = io.BytesIO()
-    Image.fromarray(pixels).save(stream, "JPEG", quality=JPEG_QUALITY, subsampling=0)
-    return stream.getvalue()
+    return colour_bytes(pixels, ".jpg", JPEG_QUALITY)
 
 
 def colour_of(sample: OccSample) -> np.ndarray:

@@ -6,12 +6,11 @@ millimetres up to 8.191 m are written, times eight, and both read them alike; wh
 written as a hole. OccScanNet's PNGs hold millimetres.
 """
 
-import io
 from typing import Literal
 
 import numpy as np
-from PIL import Image
 
+from world2minecraft.render.output.images import number_bytes
 from world2minecraft.scan.depth import DepthEncoding
 
 NYU_FAR_MM = 8191
@@ -27,9 +26,7 @@ def depth_png(depth_m: np.ndarray, code: Code) -> bytes:
     far = NYU_FAR_MM if code == "nyu" else MM_FAR
     millimetres[(millimetres < 0) | (millimetres > far)] = 0
     values = millimetres * 8 if code == "nyu" else millimetres
-    stream = io.BytesIO()
-    Image.fromarray(values.astype(np.uint16)).save(stream, "PNG", compress_level=3)
-    return stream.getvalue()
+    return number_bytes(values.astype(np.uint16))
 
 
 def metres_of(raw: np.ndarray, code: Code) -> np.ndarray:

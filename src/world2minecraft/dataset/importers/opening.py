@@ -19,8 +19,23 @@ class Kind(NamedTuple):
     open: Callable[[Path], ImportedSet]
 
 
+def _is_store(path: Path) -> bool:
+    return (path / "dataset.json").is_file()
+
+
+def _open_store(path: Path) -> ImportedSet:
+    """Open a data set of ours; only then what reads it is loaded."""
+    from world2minecraft.dataset.store import open_store  # noqa: PLC0415
+
+    store = open_store(path)
+    columns = store.index()
+    splits = dict(zip(columns["key"].tolist(), columns["split"].tolist(), strict=True))
+    return ImportedSet(path, "store", splits, store.sample)
+
+
 # In the order in which they are tried: embodied holds occscannet.
 IMPORTED: dict[str, Kind] = {
+    "store": Kind(_is_store, _open_store),
     "embodied": Kind(is_embodied, open_embodied),
     "nyu": Kind(is_nyu, open_nyu),
     "occscannet": Kind(is_occscannet, open_occscannet),
@@ -31,11 +46,11 @@ IMPORTED: dict[str, Kind] = {
 def open_occupancy(
     path: str | Path, format: str | None = None, *, labels: str | Path | None = None
 ) -> ImportedSet:
-    """Open an occupancy data set of others, or an export of ours.
+    """Open an occupancy data set: of others, an export of ours, or a store of ours.
 
     Args:
         path: a folder in one of the formats; a single ``.bin`` or ``.npz`` does as well.
-        format: nyu, occscannet, embodied or npz; found out by default.
+        format: store, nyu, occscannet, embodied or npz; found out by default.
         labels: nyu: where MonoScene's preprocessed ``base/`` lies, if not beside the frames.
 
     Raises:
@@ -49,8 +64,8 @@ def open_occupancy(
         if format is None:
             raise InputError(
                 place,
-                "is no occupancy data set: NYUtrain/, gathered_data/, scene_occ/ or SPLIT/KEY.npz "
-                "was expected",
+                "is no occupancy data set: it has no dataset.json, NYUtrain/, gathered_data/, "
+                "scene_occ/ or train/KEY.npz",
             )
     if format not in IMPORTED:
         raise UnknownNameError("format", format, IMPORTED)

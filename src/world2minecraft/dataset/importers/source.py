@@ -1,5 +1,6 @@
 """A data set of another format: keys, and a sample for each, read when it is asked for."""
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,6 +22,12 @@ class ImportedSet:
     def keys(self, split: str | None = None) -> list[str]:
         """Return the keys, of one split or of all."""
         return [key for key, of in self.splits.items() if split in (None, of)]
+
+    def described(self) -> str:
+        """Return format and counts in words, such as ``nyu, 3 samples (1 test, 2 train)``."""
+        counts = Counter(self.splits.values())
+        told = ", ".join(f"{counts[one]:,} {one or 'of no split'}" for one in sorted(counts))
+        return f"{self.format}, {len(self):,} samples ({told})"
 
     def samples(self, split: str | None = None) -> Iterator[OccSample]:
         """Read the samples of one split, or all, one at a time."""

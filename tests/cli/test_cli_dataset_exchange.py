@@ -1,0 +1,120 @@
+"""``w2m dataset export``, ``import`` and ``show``: from one format to another by command."""
+
+import numpy as np
+import pytest
+from PIL import Image
+from tests.dataset.exchange import page_loader, synthetic
+
+from world2minecraft.cli import run as w2m
+from world2minecraft.dataset.exporters import export_samples
+from world2minecraft.dataset.importers import open_occupancy
+
+KEY = "house_0001-t0-00000"
+
+
+@pytest.fixture(scope="module")
+def made():
+    sample = synthetic.sample()
+    sample.facts.clear()
+    return sample
+
+
+@pytest.fixture(scope="module")
+def npz(made, tmp_path_factory):
+    out = tmp_path_factory.mktemp("npz")
+    export_samples([made], "npz", out)
+    return out
+
+
+@pytest.fixture(scope="module")
+def store(npz, tmp_path_factory):
+    out = tmp_path_factory.mktemp("store") / "DATA"
+    assert w2m(["dataset", "import", str(npz), "--out", str(out)]) == 0
+    return out
+
+
+def test_a_data_set_is_imported_and_exported(made, store, tmp_path, capsys):
+    found = open_occupancy(store)
+    assert found.described() == "store, 1 samples (1 train)"
+    out = tmp_path / "NYU"
+    words = ["dataset", "export", str(store), "--format", "nyu", "--out", str(out)]
+    assert w2m(words) == 0
+    said = capsys.readouterr().out
+    assert said == (
+        f"1 samples written to {out}\n"
+        f"use:  NYU_root={out} NYU_preprocess_root={out} for MonoScene\n"
+        f"next: w2m dataset show {out}\n"
+    )
+    loaded = page_loader.load_nyu(out, "train", KEY)
+    assert np.array_equal(loaded.target, made.occ.labels)
+    assert w2m(words) == 0
+    assert "0 samples written to" in capsys.readouterr().out
+
+
+def test_the_store_keeps_what_was_imported(made, store):
+    found = open_occupancy(store)[KEY]
+    assert np.array_equal(found.occ.labels, made.occ.labels)
+    assert np.array_equal(found.occ.hits, made.occ.hits)
+    assert found.camera == made.camera
+    assert np.allclose(found.camera_to_room, made.camera_to_room)
+
+
+def test_nyu_is_imported_from_its_files(made, tmp_path, capsys):
+    export_samples([made], "nyu", tmp_path / "NYU")
+    out = tmp_path / "DATA"
+    assert w2m(["dataset", "import", str(tmp_path / "NYU"), "--out", str(out)]) == 0
+    assert "nyu, 1 samples (1 train)" in capsys.readouterr().out
+    assert np.array_equal(open_occupancy(out)[KEY].occ.labels, made.occ.labels)
+
+
+def test_a_sample_is_shown(store, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert w2m(["dataset", "show", str(store)]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0] == f"{store}: store, 1 samples (1 train)"
+    assert said[1] == "100.0% of the depth within the region lies in labelled cells"
+    assert said[2] == f"picture: {KEY}.png"
+    assert Image.open(tmp_path / f"{KEY}.png").width > 1000
+
+
+def test_wrong_axes_are_seen_in_the_figure(made):
+    from dataclasses import replace
+
+    from world2minecraft.dataset.showing import seen_in_cells
+
+    turned = np.ascontiguousarray(made.occ.labels.transpose(1, 0, 2))
+    wrong = replace(made, occ=replace(made.occ, labels=turned))
+    assert seen_in_cells(made) > 0.999
+    assert seen_in_cells(wrong) < 0.9
+
+
+def test_samples_without_pictures_are_shown_too(made):
+    from dataclasses import replace
+
+    from world2minecraft.dataset.showing import sample_picture
+
+    assert sample_picture(replace(made, colour=None, depth_m=None)).shape[2] == 3
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "text"),
+    [
+        (["show", "{npz}", "house"], 2, "no sample is named 'house'"),
+        (["show", "{npz}/none"], 3, "is not there"),
+        (["export", "{npz}", "--format", "nyuv2", "--out", "{out}"], 2, "did you mean 'nyu'?"),
+        (["export", "{npz}", "--format", "npz"], 2, "missing option '--out'"),
+        (
+            ["export", "{npz}", "--format", "npz", "--out", "{out}", "--split", "test"],
+            2,
+            "there is no sample to export in test",
+        ),
+        (["import", "{npz}", "--out", "{out}", "--split", "val"], 2, "has no sample in val"),
+        (["import", "{out}", "--out", "{out}"], 3, "is not there"),
+    ],
+)
+def test_wrong_words_are_answered_in_one_line(words, code, text, npz, tmp_path, capsys):
+    places = {"npz": npz, "out": tmp_path / "new"}
+    assert w2m(["dataset", *(word.format(**places) for word in words)]) == code
+    said = capsys.readouterr().err
+    assert said.startswith("error: ") or "error: " in said
+    assert text in said
