@@ -16,8 +16,9 @@ from world2minecraft.dataset.blockmap import (
     read_block_map,
     remapped,
 )
+from world2minecraft.dataset.blockmap.rules import Rule
 from world2minecraft.dataset.blockmap.storeys import NONE, next_above
-from world2minecraft.dataset.blockmap.things import joined_parts
+from world2minecraft.dataset.blockmap.things import column_heights, joined_parts
 from world2minecraft.dataset.values import FineClass
 from world2minecraft.errors import InputError, LimitError, UnknownNameError, UsageError
 from world2minecraft.minecraft.states import known_blocks
@@ -79,7 +80,7 @@ def test_names_tell_classes(block, nyu, paper):
 
 def test_properties_and_full_shapes_tell_kinds():
     assert NYU.meaning("minecraft:white_concrete") == "surface"
-    assert NYU.meaning("mod:strange_thing") == NYU.meaning("minecraft:quartz_block") == "surface"
+    assert NYU.meaning("mod:strange_thing") == NYU.meaning("minecraft:bricks") == "surface"
     assert NYU.meaning("minecraft:oak_slab[type=bottom,waterlogged=false]") == "slab"
     assert NYU.meaning("minecraft:black_stained_glass_pane[east=true]") == NYU.meaning(
         "black_stained_glass_pane"
@@ -175,10 +176,23 @@ def test_next_above_is_what_a_loop_finds():
         assert found[x, y, z] == (over[0] if over else NONE)
 
 
+def test_column_heights_are_what_a_loop_finds():
+    blocks = np.random.default_rng(4).integers(0, 2, (3, 8, 4))
+    found = column_heights(blocks)
+    for x, y, z in np.ndindex(blocks.shape):
+        low = high = y
+        while low > 0 and blocks[x, low - 1, z] == blocks[x, y, z]:
+            low -= 1
+        while high < 7 and blocks[x, high + 1, z] == blocks[x, y, z]:
+            high += 1
+        assert found[x, y, z] == high - low + 1
+
+
 def test_joined_parts_are_what_a_walk_finds():
     rng = np.random.default_rng(5)
     held, blocks = rng.random((5, 4, 5)) < 0.6, rng.integers(0, 2, (5, 4, 5))
-    parts, count = joined_parts(held, blocks)
+    alone = rng.random(held.shape) < 0.2
+    parts, count = joined_parts(held, blocks, alone)
     assert ((parts > 0) == held).all() and parts.max() == count
     for place in zip(*np.nonzero(held), strict=True):
         seen, queue = {place}, [place]
@@ -188,7 +202,8 @@ def test_joined_parts_are_what_a_walk_finds():
                 there = tuple(v + step * (a == axis) for a, v in enumerate(here))
                 if any(v < 0 or v >= n for v, n in zip(there, held.shape, strict=True)):
                     continue
-                same = axis == 1 or blocks[here] == blocks[there]
+                same = blocks[here] == blocks[there]
+                same |= axis == 1 and not (alone[here] or alone[there])
                 if held[there] and same and there not in seen:
                     seen.add(there)
                     queue.append(there)
@@ -253,7 +268,7 @@ def test_a_map_of_ones_own_comes_before_the_one_it_extends(tmp_path):
     assert mine.classes_of("tmeo_ultra:yigui_1x_2") == ("sofa",)
     assert mine.classes_of("tmeo_ultra:chuanglian") == ("objs",)
     assert mine.meaning("red_wool") == "warm" and mine.meaning("blue_wool") == "cloth"
-    assert [rule.class_name for rule in mine.rules["warm"]][:2] == ["floor", "tvs"]
+    assert mine.rules["warm"] == (Rule("floor", ("floor",)), *mine.rules["thing"])
 
 
 def test_json_holds_every_block_and_rule(tmp_path):
@@ -267,7 +282,7 @@ def test_json_holds_every_block_and_rule(tmp_path):
 BAD = {
     "[]": "a block map must be keys with values, not []",
     "a: 1": "a block map has no 'a'; it has: name, about, extends, blocks, words, kinds, whole, "
-    "other, structure, apart, rules, designs, unless_known, entities",
+    "other, structure, apart, sheets, rules, designs, unless_known, entities",
     "about: x": "a block map needs a name, such as name: mine",
     "{name: m, extends: lyu}": "extends must be one of nyu, paper, not 'lyu'",
     "{name: m, blocks: {stone: rock}}": "block stone is 'rock', which is none of empty, ceiling, "

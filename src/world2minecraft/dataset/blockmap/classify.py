@@ -49,7 +49,7 @@ def classes_of(volume: BlockVolume, rules: BlockMap) -> np.ndarray:
     scale = volume.blocks_per_metre
     ids = [state.partition("[")[0] for state in volume.palette]
     blocks = np.unique(ids, return_inverse=True)[1][volume.states]
-    parts = (rules.structure, rules.apart, blocks, turned[volume.states], scale)
+    parts = (rules.structure, rules.apart, rules.sheets, blocks, turned[volume.states], scale)
     context = Context(kinds, names, *parts)
     flat = semantic.reshape(-1)
     for name in asked:

@@ -27,6 +27,7 @@ class Context:
         names: the name of each number.
         structure: the kinds that floors, walls and ceilings can be of.
         apart: what is no part of the things that it touches.
+        sheets_of: what curtains are of.
         blocks: int [X, Y, Z], a number for each block's id.
         turned: bool [X, Y, Z], blocks that are upside down.
         scale: blocks per metre.
@@ -38,6 +39,7 @@ class Context:
         names: tuple[str, ...],
         structure: frozenset[str],
         apart: frozenset[str],
+        sheets_of: frozenset[str],
         blocks: np.ndarray,
         turned: np.ndarray,
         scale: float,
@@ -47,7 +49,8 @@ class Context:
         self.building = np.isin(kinds, self._numbers(structure))
         self.zones = zones_of(self.building, scale)
         held = self.filled & (self.zones.zone == INSIDE) & ~np.isin(kinds, self._numbers(apart))
-        self.things = things_of(held, blocks, self.zones.ground, scale)
+        sheets = np.isin(kinds, self._numbers(sheets_of))
+        self.things = things_of(held, blocks, sheets, self.zones.ground, scale)
         self._found: dict[str, np.ndarray] = {
             "turned": turned,
             "coarse": np.full(kinds.shape, scale < COARSE),

@@ -23,10 +23,10 @@ MAX_NAMES = 8192
 LONGEST = 120
 KEYS = (
     "name", "about", "extends", "blocks", "words", "kinds", "whole", "other", "structure", "apart",
-    "rules", "designs", "unless_known", "entities",
+    "sheets", "rules", "designs", "unless_known", "entities",
 )  # fmt: skip
 _TABLES = ("blocks", "kinds", "rules", "designs", "entities")
-_LISTS = ("structure", "apart", "unless_known")
+_LISTS = ("structure", "apart", "sheets", "unless_known")
 SPAN_SIZE = 2
 
 
@@ -100,6 +100,7 @@ def block_map_of(raw: Any) -> BlockMap:
         other=_known("other", whole.get("other", "objs"), known),
         structure=frozenset(_known("structure", k, kinds) for k in _names("structure", whole)),
         apart=frozenset(_known("apart", k, known) for k in _names("apart", whole)),
+        sheets=frozenset(_known("sheets", k, kinds) for k in _names("sheets", whole)),
         rules=rules,
         designs=_pairs("design", _table(whole, "designs")),
         unless_known=frozenset(
@@ -174,7 +175,7 @@ def _rules(kind: str, table: dict[str, Any], kinds: Iterable[str]) -> tuple[Rule
     asked, left = {kind}, [*_list(f"rules of {kind}", table[kind])]
     while left:
         one = left.pop(0)
-        if isinstance(one, str) and one in kinds:
+        if isinstance(one, str) and one in table:
             if one in asked:
                 raise ValueError(f"rules of {kind} come round to {one} again")
             asked.add(one)

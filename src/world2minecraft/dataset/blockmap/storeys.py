@@ -137,7 +137,7 @@ def _add_storey(
     zone[fresh & (lintel | between & walls[:, None, :])] = WALL
     zone[fresh & within] = INSIDE
     ground[fresh & within] = level
-    zone[(layers == tops[:, None, :]) & region[:, None, :] & fresh] = CEILING
+    zone[(layers == tops[:, None, :]) & (region & ~hung)[:, None, :] & fresh] = CEILING
     zone[:, level][region] = FLOOR
 
 

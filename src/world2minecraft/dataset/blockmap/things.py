@@ -15,6 +15,9 @@ from scipy.sparse import csgraph
 
 from world2minecraft.dataset.blockmap.conditions import MEASURES
 
+SHEET_M = 1.0  # A curtain over a sofa's back is no part of it.
+TALL_M = 1.4
+
 
 @dataclass(frozen=True, eq=False)
 class Things:
@@ -24,16 +27,21 @@ class Things:
     measures: dict[str, np.ndarray]
 
 
-def things_of(held: np.ndarray, blocks: np.ndarray, ground: np.ndarray, scale: float) -> Things:
+def things_of(
+    held: np.ndarray, blocks: np.ndarray, sheets: np.ndarray, ground: np.ndarray, scale: float
+) -> Things:
     """Return the things of a volume.
 
     Args:
         held: bool [X, Y, Z], the blocks inside that are part of some thing.
         blocks: int [X, Y, Z], which block each is, whatever its properties.
+        sheets: bool [X, Y, Z], those that curtains are of.
         ground: int16 [X, Y, Z], the layer of the floor under each.
         scale: blocks per metre.
     """
-    parts, count = joined_parts(held, blocks)
+    tall = sheets & (column_heights(blocks) >= SHEET_M * scale)
+    parts, count = joined_parts(held, 2 * blocks.astype(np.int64) + tall, tall)
+    parts, count = _abreast(parts, count, max(2, round(TALL_M * scale)))
     found = {name: np.zeros(count + 1) for name in MEASURES}
     for number, box in enumerate(ndimage.find_objects(parts), 1):
         if box is None:
@@ -54,8 +62,38 @@ def things_of(held: np.ndarray, blocks: np.ndarray, ground: np.ndarray, scale: f
     return Things(parts, found)
 
 
-def joined_parts(held: np.ndarray, blocks: np.ndarray) -> tuple[np.ndarray, int]:
+def _abreast(parts: np.ndarray, count: int, tall: int) -> tuple[np.ndarray, int]:
+    """Join tall things that touch and are of one height: the doors of a wardrobe of two woods."""
+    low, high = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
+    for number, box in enumerate(ndimage.find_objects(parts), 1):
+        if box is not None:
+            low[number], high[number] = box[1].start, box[1].stop
+    pairs = []
+    for axis in (0, 2):
+        first, second = (
+            np.take(parts, np.arange(a, parts.shape[axis] - 1 + a), axis) for a in (0, 1)
+        )
+        met = (first > 0) & (second > 0) & (first != second)
+        pairs.append(np.stack([first[met], second[met]]))
+    one, other = np.unique(np.concatenate(pairs, axis=1), axis=1)
+    alike = (low[one] == low[other]) & (high[one] == high[other]) & (high[one] - low[one] >= tall)
+    edges = (one[alike], other[alike])
+    graph = sparse.coo_matrix((np.ones(len(edges[0]), bool), edges), (count + 1, count + 1))
+    found, own = csgraph.connected_components(graph, directed=False)
+    order = np.zeros(found, np.int32)  # Nothing, 0, is joined to none; it keeps its number.
+    order[own[0]] = 0
+    rest = np.setdiff1d(np.arange(found), own[:1])
+    order[rest] = np.arange(1, found)
+    return order[own][parts], found - 1
+
+
+def joined_parts(held: np.ndarray, blocks: np.ndarray, alone: np.ndarray) -> tuple[np.ndarray, int]:
     """Number blocks that belong together: on one another, or beside each other and the same.
+
+    Args:
+        held: bool [X, Y, Z], the blocks.
+        blocks: int [X, Y, Z], which each is.
+        alone: bool [X, Y, Z], those that belong to nothing else that is under or over them.
 
     Returns:
         int32 of the shape of ``held``, 0 outside and 1 to n inside, and n.
@@ -67,8 +105,8 @@ def joined_parts(held: np.ndarray, blocks: np.ndarray) -> tuple[np.ndarray, int]
         first = tuple(slice(0, -1) if a == axis else slice(None) for a in range(3))
         second = tuple(slice(1, None) if a == axis else slice(None) for a in range(3))
         joined = held[first] & held[second]
-        if axis != 1:
-            joined &= blocks[first] == blocks[second]
+        same = blocks[first] == blocks[second]
+        joined &= same | ~(alone[first] | alone[second]) if axis == 1 else same
         pairs.append(np.stack([number[first][joined], number[second][joined]]))
     edges = np.concatenate(pairs, axis=1)
     count = int(held.sum())
@@ -77,6 +115,17 @@ def joined_parts(held: np.ndarray, blocks: np.ndarray) -> tuple[np.ndarray, int]
     parts = np.zeros(held.shape, np.int32)
     parts[held] = own + 1
     return parts, int(found) if count else 0
+
+
+def column_heights(blocks: np.ndarray) -> np.ndarray:
+    """Return how many of the same block stand on one another where each is, int [X, Y, Z]."""
+    layers = np.arange(blocks.shape[1])[None, :, None]
+    begins, ends = np.ones(blocks.shape, bool), np.ones(blocks.shape, bool)
+    begins[:, 1:] = blocks[:, 1:] != blocks[:, :-1]
+    ends[:, :-1] = begins[:, 1:]
+    first = np.maximum.accumulate(np.where(begins, layers, 0), axis=1)
+    last = np.where(ends, layers, blocks.shape[1])[:, ::-1]
+    return np.minimum.accumulate(last, axis=1)[:, ::-1] - first + 1
 
 
 def shares_of(parts: np.ndarray, is_kind: np.ndarray) -> np.ndarray:
