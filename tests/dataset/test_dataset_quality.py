@@ -130,3 +130,12 @@ def test_what_has_no_pictures_is_told(tmp_path):
     source = pictures_at(tmp_path / "data")
     with pytest.raises(InputError, match="has labels alone, no picture"):
         source.read(source.keys[0])
+
+
+def test_pictures_of_the_size_asked_for_have_one_row():
+    alike = measure_quality("x", ["a"], lambda _: noise(1), [OWN], (300, 200))
+    assert [row.size for row in alike.rows] == ["native"]
+    mixed = {"a": noise(1), "b": noise(2, 240, 320)}
+    report = measure_quality("x", ["a", "b"], mixed.__getitem__, [OWN], (300, 200))
+    assert [row.size for row in report.rows] == ["native", "300x200"]
+    assert report.sizes_px == ("300x200", "320x240")

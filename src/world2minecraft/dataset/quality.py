@@ -142,10 +142,12 @@ def measure_quality(
         sizes.add(size)
         found[NATIVE].append(picture_quality(picture, models))
         if resize is not None:
-            small = picture if size == resize else resized(picture, resize)
-            named = "x".join(map(str, resize))
-            found.setdefault(named, []).append(picture_quality(small, models))
+            same = size == resize
+            small = found[NATIVE][-1] if same else picture_quality(resized(picture, resize), models)
+            found.setdefault("x".join(map(str, resize)), []).append(small)
     progress("quality", len(keys), len(keys))
+    if resize is not None and sizes == {resize}:
+        del found["x".join(map(str, resize))]  # It would say the same again.
     variants = tuple(model.name for model in models)
     rows = tuple(_row(size, figures, variants) for size, figures in found.items())
     return QualityReport(name, rows, variants, tuple(f"{w}x{h}" for w, h in sorted(sizes)))
