@@ -54,8 +54,8 @@ demo: $(STAMP)  ## Scan the embedded room and build it as a Minecraft world in O
 forge:  ## Build SceneForge's page from its TypeScript (needs Node 20 and npm).
 	@cd src/world2minecraft/forge/web && npm ci --no-audit --no-fund --silent && npm run --silent build
 
-test: $(STAMP)  ## Run the tests (TESTS=tests/fuse for a part).
-	@$(BIN)/python -m pytest $(TESTS)
+test: $(STAMP)  ## Run the tests, a file a core (TESTS=tests/fuse for a part).
+	@$(BIN)/python -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile $(TESTS)
 
 test-live: $(STAMP)  ## Load a built world into a real server and walk in it (needs Node and npm).
 	@$(BIN)/python -m pytest -m live tests/live
