@@ -121,7 +121,8 @@ def _parts(
         tasks = {pool.submit(_count, str(store.folder), part): len(part) for part in parts}
         try:
             for task in as_completed(tasks):
-                yield task.result(), tasks[task]
+                pictures = tasks.pop(task)  # Else every part would be held to the end.
+                yield task.result(), pictures
         except RuntimeError as error:  # A broken pool is one.
             raise WorkerError(f"a process that counts has ended ({error}); try --jobs 1") from error
         finally:

@@ -186,6 +186,9 @@ def _told(statistics: DatasetStatistics) -> list[str]:
         counted = f"{statistics.fine_classes:,} of {len(statistics.fine):,} fine classes"
         rule = f"{ENOUGH_PIXELS} pixels in {ENOUGH_PICTURES} pictures or more"
         lines.append(f"classes          {counted} are seen by {rule};")
+        pieces = sum(one.is_furniture for one in statistics.fine if one.is_seen_enough)
+        blocks = (statistics.fine_classes or 0) - pieces
+        lines.append(f"                 {blocks:,} blocks, {pieces:,} pieces of furniture;")
         present = len(statistics.classes_present)
         lines.append(f"                 {present} of the 11 classes that are not empty are there")
     if statistics.rooms is None:

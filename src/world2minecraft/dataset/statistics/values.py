@@ -19,6 +19,11 @@ class FineCount:
     clear_pictures: int  # that see it by ENOUGH_PIXELS or more
 
     @property
+    def is_furniture(self) -> bool:
+        """Whether it is a piece of furniture, not a block."""
+        return self.name.startswith("design:")
+
+    @property
     def is_seen_enough(self) -> bool:
         """Whether it counts as a class of the data set."""
         return self.clear_pictures >= ENOUGH_PICTURES
