@@ -28,11 +28,15 @@ NEEDED = ("x", "y", "z", "yaw", "pitch")
 
 @dataclass(frozen=True)
 class TourPose:
-    """A line of the file: the pose, its time, and its own camera where it says one."""
+    """A line of the file: the pose, its time, its camera and its names, where it says them."""
 
     pose: GamePose
     t_s: float = 0.0
     camera: Camera | None = None
+    frame: int | None = None
+    tour_id: str = ""
+    scene_id: str = ""
+    image: str = ""  # A file's name, relative to the tour's folder.
 
 
 def read_tour(path: str | Path) -> list[TourPose]:
@@ -111,7 +115,9 @@ def _pose(row: Mapping[str, Any], number: int, source: Path) -> TourPose:
     try:
         x, y, z, yaw, pitch = (float(row[key]) for key in NEEDED)
         pose = GamePose(x, y, z, yaw, pitch, row.get("at", "eye"))
-        return TourPose(pose, float(row.get("t", 0.0)), _camera(row))
+        frame = int(row["frame"]) if row.get("frame") is not None else None
+        names = [str(row.get(key) or "") for key in ("tour_id", "scene_id", "image")]
+        return TourPose(pose, float(row.get("t", 0.0)), _camera(row), frame, *names)
     except (TypeError, ValueError, OverflowError, UsageError) as error:
         raise DamagedFileError(source, f"line {number} is no pose ({error})") from error
 

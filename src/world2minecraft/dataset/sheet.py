@@ -1,0 +1,100 @@
+"""A sheet of many pictures side by side, each with a line under it: what a person looks at."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from world2minecraft.errors import UsageError
+from world2minecraft.render.lamps import DAY
+from world2minecraft.render.light import LookLight
+from world2minecraft.render.scene import BlockScene
+from world2minecraft.render.views.frames import DrawOptions, frames
+from world2minecraft.types import Camera
+
+GAP_PX, LINE_PX = 6, 16
+PAPER, INK = (250, 250, 248), (40, 42, 46)
+MOST_PX = 60_000_000  # Of a sheet.
+
+
+def picture_sheet(
+    pictures: Iterable[tuple[np.ndarray, str]], columns: int = 6, tile_px: int = 240
+) -> np.ndarray:
+    """Return a sheet of pictures with captions, uint8 [H, W, 3].
+
+    Args:
+        pictures: uint8 [h, w, 3] each, and its caption; they may differ in size.
+        columns: pictures a row.
+        tile_px: the width of a picture on the sheet.
+
+    Raises:
+        UsageError: there is no picture, or the sheet would be too large.
+    """
+    tiles = [(_shrunk(colour, tile_px), caption) for colour, caption in pictures]
+    if not tiles:
+        raise UsageError("a sheet needs one picture or more")
+    tall = max(tile.height for tile, _ in tiles) + LINE_PX + GAP_PX
+    columns = min(columns, len(tiles))
+    size = (columns * (tile_px + GAP_PX) + GAP_PX, -(-len(tiles) // columns) * tall + GAP_PX)
+    if size[0] * size[1] > MOST_PX:
+        raise UsageError(f"a sheet of {size[0]}x{size[1]} pixels is too large; ask for fewer")
+    page = Image.new("RGB", size, PAPER)
+    drawn, font = ImageDraw.Draw(page), ImageFont.load_default(12)
+    for number, (tile, caption) in enumerate(tiles):
+        row, column = divmod(number, columns)
+        x, y = GAP_PX + column * (tile_px + GAP_PX), GAP_PX + row * tall
+        page.paste(tile, (x, y))
+        drawn.text((x, y + tile.height + 1), caption, INK, font)
+    return np.asarray(page)
+
+
+def spread(count: int, most: int) -> list[int]:
+    """Return up to ``most`` numbers below ``count``, evenly spread.
+
+    Example:
+        >>> spread(10, 4)
+        [0, 3, 6, 9]
+    """
+    if count <= most:
+        return list(range(count))
+    return [int(n) for n in np.round(np.linspace(0, count - 1, most))]
+
+
+def drawn_views(
+    scene: BlockScene,
+    views: Sequence[tuple[Camera, np.ndarray]],
+    width_px: int,
+    light: LookLight = DAY,
+) -> Iterable[np.ndarray]:
+    """Draw views small, uint8 [h, width_px, 3] each.
+
+    Args:
+        scene: ``prepare_scene`` of a volume.
+        views: cameras, and ``camera_to_room`` float64 [4, 4].
+        width_px: how wide.
+        light: how it is lit.
+    """
+    cameras = [scaled_camera(camera, width_px) for camera, _ in views]
+    options = DrawOptions(outputs=("colour",), light=light, samples=2)
+    for picture in frames(scene, cameras, [pose for _, pose in views], options):
+        yield np.asarray(picture.colour)
+
+
+def scaled_camera(camera: Camera, width_px: int) -> Camera:
+    """Return a camera that sees the same with other numbers of pixels."""
+    height_px = max(1, round(camera.height_px * width_px / camera.width_px))
+    across, down = width_px / camera.width_px, height_px / camera.height_px
+    return Camera(
+        width_px,
+        height_px,
+        camera.fx_px * across,
+        camera.fy_px * down,
+        camera.cx_px * across,
+        camera.cy_px * down,
+    )
+
+
+def _shrunk(colour: np.ndarray, width_px: int) -> Image.Image:
+    picture = Image.fromarray(colour)
+    height_px = max(1, round(picture.height * width_px / picture.width))
+    return picture.resize((width_px, height_px), Image.Resampling.BOX)

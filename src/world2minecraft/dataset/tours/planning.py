@@ -1,0 +1,66 @@
+"""``plan_views``: walks through all rooms of a volume, and the views of them that are worth it."""
+
+from world2minecraft.dataset.tours.rooms import find_rooms, shared
+from world2minecraft.dataset.tours.tourist import Kinds, Tourist
+from world2minecraft.dataset.tours.values import PlannedView, TourRule
+from world2minecraft.dataset.tours.walks import Grounds, subgraph
+from world2minecraft.errors import UsageError
+from world2minecraft.progress import Progress, silent
+from world2minecraft.render.scene import BlockScene, prepare_scene
+from world2minecraft.types import BlockVolume
+from world2minecraft.walk.graph import solid_of, walk_graph
+
+
+def plan_views(
+    volume: BlockVolume,
+    count: int,
+    seed: int = 0,
+    rule: TourRule | None = None,
+    *,
+    scene: BlockScene | None = None,
+    progress: Progress = silent,
+) -> list[PlannedView]:
+    """Return views of the rooms of a volume, tour after tour; the same for the same seed.
+
+    Fewer come back where the rooms do not give as many that differ.
+
+    Args:
+        volume: the blocks, with their classes.
+        count: how many views.
+        seed: 0 or more.
+        rule: the camera and all choices.
+        scene: ``prepare_scene`` of the volume, where the caller has it already.
+        progress: told of the views found.
+
+    Raises:
+        UsageError: the count is below 1, or nobody can stand anywhere in the volume.
+    """
+    how = rule or TourRule()
+    if count < 1:
+        raise UsageError(f"a plan has one view or more, not {count}")
+    graph, solid = walk_graph(volume), solid_of(volume)
+    rooms = find_rooms(volume, graph, solid, how)
+    if not rooms:
+        raise UsageError("nobody can stand anywhere in this world, so there is no view to plan")
+    ready, kinds = scene or prepare_scene(volume), Kinds()
+    tourists = []
+    for room in rooms:
+        grounds = Grounds(subgraph(graph, room.places), solid, volume.corner)
+        tourists.append(Tourist(volume, ready, room, grounds, how, seed, kinds))
+    _fill(tourists, count, progress)
+    return [view for tourist in tourists for view in tourist.views()]
+
+
+def _fill(tourists: list[Tourist], count: int, progress: Progress) -> None:
+    """Let rooms find their shares; what one cannot give is asked of the others."""
+    progress("views", 0, count)
+    left = count
+    while left > 0:
+        open_ones = [one for one in tourists if not one.is_done]
+        if not open_ones:
+            break
+        for one, share in zip(open_ones, shared([t.room for t in open_ones], left), strict=True):
+            one.find(share)
+            progress("views", min(count, sum(t.count for t in tourists)), count)
+        left = count - sum(one.count for one in tourists)
+    progress("views", count, count)

@@ -1,0 +1,142 @@
+"""One walk through a room: from stop to stop over its free floor, smooth, and never into anything.
+
+Stops are spread: each lies far from those before it. Ways keep away from walls where there is room.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from world2minecraft.walk.body import HEIGHT, STEP_HEIGHT
+from world2minecraft.walk.columns import Solid
+from world2minecraft.walk.fits import bodies_fit
+from world2minecraft.walk.graph import WalkGraph
+from world2minecraft.walk.paths import distances_m, elbow_room_m, parts, shortest_path
+
+STOP_M2 = 2.0  # Of floor for each stop,
+STOPS = (2, 10)  # and so many of them.
+ELBOW_M = 0.5  # One keeps so far from walls where there is room,
+NARROW_COST = 3.0  # for what is at a wall is so much farther.
+SAMPLE_M = 0.05
+SMOOTH_M = 0.35  # Corners are rounded so much.
+ROUNDS = 6  # Of taking back what was rounded through something.
+ELBOW_EYE_M = 0.12  # Eyes keep so far from what is beside them.
+
+
+@dataclass(frozen=True, eq=False)
+class Grounds:
+    """The floor of one room: its part of the graph, and what bodies must not meet."""
+
+    graph: WalkGraph
+    solid: Solid
+    corner: tuple[int, int, int]
+
+    @cached_property
+    def part(self) -> np.ndarray:
+        """Int32 [N]: what hangs together."""
+        return parts(self.graph)
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """Float64 [N]: how much longer a metre counts, the nearer to a wall."""
+        return 1 + NARROW_COST * np.maximum(0.0, 1 - elbow_room_m(self.graph) / ELBOW_M)
+
+    @property
+    def cell_m2(self) -> float:
+        """The floor that one place stands for."""
+        return (self.graph.spacing / self.graph.blocks_per_metre) ** 2
+
+
+def subgraph(graph: WalkGraph, places: np.ndarray) -> WalkGraph:
+    """Return the graph of some places alone, in their order, with the steps between them."""
+    number = np.full(len(graph), -1, np.int32)
+    number[places] = np.arange(len(places))
+    kept = (number[graph.edge_from] >= 0) & (number[graph.edge_to] >= 0)
+    begins, ends = number[graph.edge_from[kept]], number[graph.edge_to[kept]]
+    order = np.argsort(begins, kind="stable")
+    counts = np.bincount(begins, minlength=len(places))
+    return WalkGraph(
+        graph.feet[places],
+        graph.headroom[places],
+        graph.ground[places],
+        np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        ends[order],
+        graph.edge_m[kept][order],
+        graph.scale,
+        graph.blocks_per_metre,
+        graph.spacing,
+    )
+
+
+def plan_walk(grounds: Grounds, rng: np.random.Generator) -> np.ndarray:
+    """Return a smooth walk, the feet every ``SAMPLE_M``, float64 [N, 3] in world blocks."""
+    stops = _stops(grounds, rng)
+    feet = [grounds.graph.feet[stops[:1]]]
+    for a, b in pairwise(_in_order(grounds.graph, stops)):
+        path = shortest_path(grounds.graph, a, b, grounds.weights)
+        if path is not None:
+            feet.append(path.feet[1:])
+    if len(feet) == 1:
+        return feet[0]
+    first = grounds.graph.feet[[_in_order(grounds.graph, stops)[0]]]
+    way = np.concatenate([first, *feet[1:]])
+    return _smoothed(grounds, _sampled(way, SAMPLE_M * grounds.graph.blocks_per_metre))
+
+
+def _stops(grounds: Grounds, rng: np.random.Generator) -> np.ndarray:
+    """Return places of one part that are spread over it; large parts are drawn more often."""
+    sizes = np.bincount(grounds.part).astype(float)
+    sizes[sizes < max(sizes.max() / 4, 2)] = 0  # A nook that no way leads to is left out.
+    if not sizes.any():
+        sizes = np.bincount(grounds.part).astype(float)
+    own = np.flatnonzero(grounds.part == rng.choice(len(sizes), p=sizes / sizes.sum()))
+    count = int(np.clip(round(len(own) * grounds.cell_m2 / STOP_M2), *STOPS))
+    stops = [int(rng.choice(own))]
+    near = distances_m(grounds.graph, stops[0])[own]
+    while len(stops) < min(count, len(own)):
+        worth = np.where(np.isfinite(near), near, 0.0) * rng.uniform(0.5, 1.0, len(own))
+        stops.append(int(own[worth.argmax()]))
+        near = np.minimum(near, distances_m(grounds.graph, stops[-1])[own])
+    return np.array(stops)
+
+
+def _in_order(graph: WalkGraph, stops: np.ndarray) -> list[int]:
+    """Return stops in the order of a short walk: on to the nearest that is left."""
+    order, left = [int(stops[0])], [int(stop) for stop in stops[1:]]
+    while left:
+        away = np.linalg.norm(graph.feet[left] - graph.feet[order[-1]], axis=1)
+        order.append(left.pop(int(away.argmin())))
+    return order
+
+
+def _sampled(points: np.ndarray, spacing: float) -> np.ndarray:
+    """Return points of a polyline at even distances, its ends among them."""
+    along = np.r_[0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    places = np.linspace(0, along[-1], max(2, int(np.ceil(along[-1] / spacing)) + 1))
+    return np.column_stack([np.interp(places, along, column) for column in points.T])
+
+
+def _smoothed(grounds: Grounds, feet: np.ndarray) -> np.ndarray:
+    """Return a way with its corners rounded, but where that leads through something."""
+    sigma = SMOOTH_M / SAMPLE_M
+    best = gaussian_filter1d(feet, sigma, axis=0, mode="nearest")
+    share = np.ones(len(feet))
+    for _ in range(ROUNDS):
+        mixed = share[:, None] * best + (1 - share[:, None]) * feet
+        free = fits_at(grounds, mixed)
+        if free.all():
+            return mixed
+        share[~free] = 0
+        share = np.minimum(share, gaussian_filter1d(share, sigma / 3, mode="nearest"))
+    return feet
+
+
+def fits_at(grounds: Grounds, feet: np.ndarray) -> np.ndarray:
+    """Tell where a body fits over what it would step up on, bool [N]."""
+    scale, blocks = grounds.graph.scale, grounds.graph.blocks_per_metre
+    half = 0.3 * scale - 0.02 * blocks
+    heights = (STEP_HEIGHT * scale, HEIGHT * scale)
+    return bodies_fit(grounds.solid, grounds.corner, feet, half, heights)
