@@ -16,7 +16,7 @@ from world2minecraft.minecraft.displays import display_cubes
 from world2minecraft.render.elements import Element, LookSource
 from world2minecraft.types import BlockVolume, Camera
 
-SLACK_M, THICK_M, INWARD_M, REACH_M, CROSSED_M = 0.001, 0.004, 5e-5, 0.006, 0.001
+SLACK_M, THICK_M, AROUND_M, REACH_M, CROSSED_M = 0.001, 0.004, 5e-5, 0.006, 0.001
 
 
 def solid_parts(volume: BlockVolume, looks: LookSource) -> Iterator[tuple[tuple, np.ndarray]]:
@@ -103,21 +103,42 @@ def scene_cells_seen(
 ) -> np.ndarray:
     """Return the cell of the scene that each pixel sees, int64 [H, W, 3]; -1 for none."""
     place, ways = rays(camera, camera_to_room)
-    inward = INWARD_M * ways / np.linalg.norm(ways, axis=-1, keepdims=True)
-    at = (place + depth_m[..., None].astype(float) * ways + inward - voxels.origin_m) / (
-        voxels.voxel_m
+    depth = depth_m[..., None].astype(float)
+    before, behind = (
+        (place + (depth + around) * ways - voxels.origin_m) / voxels.voxel_m
+        for around in (-AROUND_M, AROUND_M)
     )
-    own = np.floor(at).astype(np.int64)
+    first, last = np.floor(before).astype(np.int64), np.floor(behind).astype(np.int64)
+    moves = first != last
+    share = np.where(
+        moves, (np.maximum(first, last) - before) / np.where(moves, behind - before, 1), np.inf
+    )
+    order = np.argsort(share, axis=-1, kind="stable")
+    found, cell = np.full(first.shape, -1, np.int64), first.copy()
+    for number in range(3):  # The way crosses three borders at most.
+        axis = order[..., number, None]
+        step = np.take_along_axis(last, axis, -1)
+        np.put_along_axis(cell, axis, step, -1)
+        entered = np.take_along_axis(moves, axis, -1)[..., 0]
+        _keep(found, entered & (_at(voxels.fine, cell) > 0), cell)
+    _keep(found, _at(voxels.fine, first) > 0, first)
     best = np.full(depth_m.shape, np.inf)
-    found = np.full(own.shape, -1, np.int64)
-    for step in sorted(product((-1, 0, 1), repeat=3), key=lambda step: np.abs(step).sum()):
-        cell = own + step
-        aside = np.maximum(np.maximum(cell - at, at - (cell + 1)), 0)
+    lost, nearest = (found < 0).all(axis=-1), found.copy()
+    for step in product((-1, 0, 1), repeat=3):
+        cell = last + step
+        aside = np.maximum(np.maximum(cell - behind, behind - (cell + 1)), 0)
         away = np.sqrt((aside**2).sum(axis=-1))
-        near = (_at(voxels.fine, cell) > 0) & (away < best) & (away < REACH_M / voxels.voxel_m)
-        near &= (depth_m > 0) & (np.array(step).any() | (away == 0))
-        best[near], found[near] = away[near], cell[near]
-    return found
+        near = lost & (away < best) & (away < REACH_M / voxels.voxel_m)
+        near &= _at(voxels.fine, cell) > 0
+        best[near], nearest[near] = away[near], cell[near]
+    nearest[depth_m <= 0] = -1
+    return nearest
+
+
+def _keep(found: np.ndarray, which: np.ndarray, cells: np.ndarray) -> None:
+    """Put cells where none is found yet."""
+    which = which & (found < 0).all(axis=-1)
+    found[which] = cells[which]
 
 
 def _at(values: np.ndarray, cells: np.ndarray) -> np.ndarray:

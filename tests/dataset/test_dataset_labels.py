@@ -84,6 +84,24 @@ def test_masks_are_laws(world, kind):
         assert np.array_equal(np.sum(parts, axis=0) == 1, occ.in_frustum)
 
 
+def test_a_turned_region_has_samples_of_the_scene_and_of_its_hits(world):
+    volume, scene, voxels = world
+    (pose,) = poses_in(volume, 1, 3)
+    depth_m = render_volume(scene, CAMERA, pose, outputs=()).depth_m
+    region = region_in(voxels, pose, RegionRule("free", (14, 15, 9)))
+    occ = label_image(voxels, region, CAMERA, pose, depth_m)
+    seen = reference.scene_cells_seen(voxels, CAMERA, pose, depth_m)
+    counts = np.zeros(voxels.labels.shape, int)
+    np.add.at(counts, tuple(seen[(seen >= 0).all(axis=-1)].T), 1)
+    cells = np.floor((region.centers_m() - voxels.origin_m) / voxels.voxel_m).astype(int)
+    assert np.array_equal(occ.hits, reference._at(counts, cells))
+    assert np.array_equal(occ.labels, reference.labels_of(voxels, region))
+    pixels = cells_of_pixels(voxels, region, CAMERA, pose, depth_m)
+    shown = pixels >= 0
+    own = cells.reshape(-1, 3)[pixels[shown]]
+    assert np.array_equal(own, seen[shown])
+
+
 def test_pixels_sum_up(world):
     volume, scene, voxels = world
     (pose,) = poses_in(volume, 1, 2)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from label_worlds import poses_in, room_of_things
 
 from world2minecraft.coordinates import apply, invert, look_at, rotation_about_z
-from world2minecraft.dataset.labels import _gathered
+from world2minecraft.dataset.labels import gathered, is_on_cells
 from world2minecraft.dataset.region import RegionRule, floor_under, region_in, region_of
 from world2minecraft.dataset.voxels import scene_voxels
 from world2minecraft.errors import UnknownNameError, UsageError
@@ -93,9 +93,8 @@ def test_a_copy_is_what_slices_and_quarter_turns_give(yaw_deg):
     voxels = scene_voxels(room_of_things())
     pose = looking(yaw_deg, eye=np.array([1.0, 0.9, 1.0]))
     region = region_in(voxels, pose, RegionRule(shape=(12, 12, 9)))
-    to_room = region.region_to_room.copy()
-    to_room[:3, :3] *= region.voxel_m
-    own = _gathered(voxels, region, to_room)[0][1:-1, 1:-1, 1:-1]
+    assert is_on_cells(region, voxels)
+    own, to_room = gathered(voxels, region)[0], region.region_to_room
     ends = apply(region.region_to_room, np.array([np.zeros(3), region.shape]) * region.voxel_m)
     first = np.round((ends.min(axis=0) - voxels.origin_m) / voxels.voxel_m).astype(int)
     wide = np.pad(voxels.labels, 40, constant_values=255)

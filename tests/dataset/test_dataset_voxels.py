@@ -18,7 +18,7 @@ MARGIN = 2e-4
 
 @pytest.mark.parametrize(("scale", "voxel_m"), [(4.0, 0.08), (2.0, 0.11), (12.5, 0.08), (4, None)])
 def test_cells_are_those_of_the_slow_reference(scale, voxel_m):
-    volume = room_of_things(scale)
+    volume = room_of_things(scale, share=0.04 if scale == 2.0 else 0.1)
     voxels = scene_voxels(volume, designs_of(volume), voxel_m=voxel_m)
     assert voxels.voxel_m == (voxel_m or 1 / scale)
     parts = reference.solid_parts(volume, OwnLooks(16))

@@ -71,59 +71,124 @@ def mark_in_frustum(to_camera, lens, width, height, marked):
 
 
 @lean
-def count_hits(solid, place, lens, depth, inward, reach, hits, cells):
+def count_hits(solid, place, lens, depth, around, reach, hits, cells):
     """Count the pixels that see each cell first.
 
-    A pixel's point, moved ``inward`` along its ray, counts for the cell that holds it, where that
-    is solid, else for the nearest solid one within ``reach``.
+    A pixel's ray is followed from ``around`` before its point to as much behind it: the first solid
+    cell that it enters there counts, else the one that it was in; where none is solid, the nearest
+    within ``reach``.
 
     Args:
         solid: uint16 [X + 2, Y + 2, Z + 2], not 0 where a cell holds something; one cell more on
-            each side than the region.
-        place: the camera, in cells of the region.
+            each side than are counted.
+        place: the camera, in cells.
         lens: of the camera.
         depth: float32 [H, W].
-        inward: metres along the ray.
-        reach: cells.
+        around: metres of depth.
+        reach: cells, less than half of one.
         hits: uint32 [X, Y, Z], added to.
-        cells: int32 [H, W], the C-order number of the cell each pixel sees, -1 for none in the
-            region; or of no size where that is not wanted.
+        cells: int32 [H, W], the C-order number of the cell each pixel sees, -1 for none; or of no
+            size where that is not wanted.
     """
     nx, ny, nz = hits.shape
-    height, width = depth.shape
     wanted = cells.size > 0
-    for v in range(height):
+    counts = hits.reshape(-1)
+    li, lj, lk, there, cell = -1, -1, -1, False, -1
+    run, length = -1, 0
+    ox, oy, oz = place[0, 3] + 1.0, place[1, 3] + 1.0, place[2, 3] + 1.0
+    for v in range(depth.shape[0]):
         y = (v + 0.5 - lens[3]) / lens[1]
-        for u in range(width):
+        rx = place[0, 1] * y + place[0, 2]
+        ry = place[1, 1] * y + place[1, 2]
+        rz = place[2, 1] * y + place[2, 2]
+        for u in range(depth.shape[1]):
             if wanted:
                 cells[v, u] = -1
-            t = depth[v, u]
+            t = np.float64(depth[v, u])
             if t <= 0:
                 continue
             x = (u + 0.5 - lens[2]) / lens[0]
-            t = t + inward / np.sqrt(x * x + y * y + 1.0)
-            px = t * (place[0, 0] * x + place[0, 1] * y + place[0, 2]) + place[0, 3] + 1.0
-            py = t * (place[1, 0] * x + place[1, 1] * y + place[1, 2]) + place[1, 3] + 1.0
-            pz = t * (place[2, 0] * x + place[2, 1] * y + place[2, 2]) + place[2, 3] + 1.0
-            if not (0 <= px < nx + 2 and 0 <= py < ny + 2 and 0 <= pz < nz + 2):
+            dx, dy, dz = place[0, 0] * x + rx, place[1, 0] * x + ry, place[2, 0] * x + rz
+            t -= around
+            ax, ay, az = ox + t * dx, oy + t * dy, oz + t * dz
+            t += 2 * around
+            bx, by, bz = ox + t * dx, oy + t * dy, oz + t * dz
+            if not (0 <= bx < nx + 2 and 0 <= by < ny + 2 and 0 <= bz < nz + 2):
                 continue
-            i, j, k = int(px), int(py), int(pz)
-            if solid[i, j, k] == 0:
-                i, j, k = nearest_solid(solid, px, py, pz, reach)
-            if not (1 <= i <= nx and 1 <= j <= ny and 1 <= k <= nz):
+            if not (0 <= ax < nx + 2 and 0 <= ay < ny + 2 and 0 <= az < nz + 2):
                 continue
-            hits[i - 1, j - 1, k - 1] += 1
+            i, j, k = int(bx), int(by), int(bz)
+            if i != int(ax) or j != int(ay) or k != int(az):
+                i, j, k = first_entered(solid, ax, ay, az, bx, by, bz)
+            if i != li or j != lj or k != lk:  # Neighbours mostly see one cell.
+                li, lj, lk = i, j, k
+                there = solid[i, j, k] != 0
+                cell = number_of(i, j, k, nx, ny, nz)
+            own = cell
+            if not there:
+                i, j, k = nearest_solid(solid, bx, by, bz, reach)
+                own = number_of(i, j, k, nx, ny, nz)
+            if own != run:
+                if run >= 0:
+                    counts[run] += length
+                run, length = own, 0
+            length += 1
             if wanted:
-                cells[v, u] = ((i - 1) * ny + j - 1) * nz + k - 1
+                cells[v, u] = own
+    if run >= 0:
+        counts[run] += length
+
+
+@inlined
+def number_of(i, j, k, nx, ny, nz):
+    """Return the C-order number of a cell of the inner part, -1 for one that is around it."""
+    inside = 1 <= i <= nx and 1 <= j <= ny and 1 <= k <= nz
+    return ((i - 1) * ny + j - 1) * nz + k - 1 if inside else -1
+
+
+@lean
+def first_entered(solid, ax, ay, az, bx, by, bz):
+    """Return the first solid cell that a short way from a to b enters, else the one that a is in.
+
+    Each coordinate crosses one border at most.
+    """
+    i, j, k = int(ax), int(ay), int(az)
+    tx, ty, tz = _crossing(ax, bx), _crossing(ay, by), _crossing(az, bz)
+    p, q, r = i, j, k
+    for _ in range(3):
+        near = min(tx, ty, tz)
+        if near > 1:
+            break
+        if near == tx:
+            p, tx = int(bx), np.inf
+        elif near == ty:
+            q, ty = int(by), np.inf
+        else:
+            r, tz = int(bz), np.inf
+        if solid[p, q, r] != 0:
+            return p, q, r
+    return i, j, k
+
+
+@inlined
+def _crossing(a, b):
+    """Return where, from 0 to 1, a way from a to b crosses a border of cells; infinity for none."""
+    first, last = int(a), int(b)
+    return np.inf if first == last else (max(first, last) - a) / (b - a)
 
 
 @lean
 def nearest_solid(solid, px, py, pz, reach):
-    """Return the solid cell nearest to a point, of those around the point's own; or -1, -1, -1."""
+    """Return the solid cell nearest to a point, of those within ``reach``; or -1, -1, -1."""
     i, j, k = int(px), int(py), int(pz)
+    sx, sy, sz = _side(px - i, reach), _side(py - j, reach), _side(pz - k, reach)
     best, a, b, c = reach * reach, -1, -1, -1
-    for number in range(27):
-        di, dj, dk = number // 9 - 1, number // 3 % 3 - 1, number % 3 - 1
+    if abs(sx) + abs(sy) + abs(sz) == 1:  # As it mostly is.
+        p, q, r = i + sx, j + sy, k + sz
+        if 0 <= p < solid.shape[0] and 0 <= q < solid.shape[1] and 0 <= r < solid.shape[2]:
+            return (p, q, r) if solid[p, q, r] != 0 else (a, b, c)
+    for number in range(1, 8):
+        di, dj, dk = (number & 1) * sx, (number >> 1 & 1) * sy, (number >> 2) * sz
         p, q, r = i + di, j + dj, k + dk
         if not (0 <= p < solid.shape[0] and 0 <= q < solid.shape[1] and 0 <= r < solid.shape[2]):
             continue
@@ -136,8 +201,37 @@ def nearest_solid(solid, px, py, pz, reach):
 
 
 @inlined
+def _side(at, reach):
+    """Return to which neighbour a place in a cell is near: -1, 1, or 0 for none."""
+    if at < reach:
+        return -1
+    return 1 if at > 1.0 - reach else 0
+
+
+@inlined
 def _aside(at, step):
     """Return how far a place in a cell is from the neighbour at a step."""
     if step == 0:
         return 0.0
     return 1.0 - at if step > 0 else at
+
+
+@lean
+def sources(to_box, shape, found):
+    """Tell which cell of a box the middle of each cell of a region lies in.
+
+    Args:
+        to_box: float64 [3, 4], region's cells to the box's.
+        shape: of the box.
+        found: int32 [X, Y, Z], filled in place: the box's cell in C order, -1 outside.
+    """
+    nx, ny, nz = shape
+    for i in range(found.shape[0]):
+        for j in range(found.shape[1]):
+            for k in range(found.shape[2]):
+                a = int(np.floor(_row(to_box, 0, i + 0.5, j + 0.5, k + 0.5)))
+                b = int(np.floor(_row(to_box, 1, i + 0.5, j + 0.5, k + 0.5)))
+                c = int(np.floor(_row(to_box, 2, i + 0.5, j + 0.5, k + 0.5)))
+                found[i, j, k] = -1
+                if 0 <= a < nx and 0 <= b < ny and 0 <= c < nz:
+                    found[i, j, k] = (a * ny + b) * nz + c

@@ -5,23 +5,33 @@ labels are the scene's own. Masks follow from the camera and from the depth alon
 has an image's files can make them again:
 
 - in the frustum: the cell's middle is before the camera and falls into the image (the paper's);
-- hit: how many pixels' points lie in the cell. A point is moved ``INWARD_M`` along its ray; where
-  it is in no solid cell then, the nearest within ``REACH_M`` counts;
+- hit: how many pixels' points lie in the cell. Along a pixel's ray, from ``AROUND_M`` before its
+  point to as much behind it, the first solid cell that is entered counts, else the one that it was
+  in; where none of them is solid, the nearest to the point within ``REACH_M``;
 - free: empty, and some pixel's ray was in it over more than a millimetre before its surface.
 
 The first surface counts, be it glass: what lies behind a window is occluded.
+
+A region that does not stand on the scene's cells, as one that turns with the view, has them sampled
+at its own cells' middles: labels and hits alike.
 """
 
 import numpy as np
 
+from world2minecraft.coordinates import apply, invert
 from world2minecraft.dataset.free_kernels import TILE, greatest_depths, mark_free
-from world2minecraft.dataset.label_kernels import count_hits, gather, mark_in_frustum
+from world2minecraft.dataset.label_kernels import (
+    count_hits,
+    gather,
+    mark_in_frustum,
+    sources,
+)
 from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.values import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.render import BlockScene, render_volume
 from world2minecraft.types import Camera
 
-INWARD_M = 5e-5  # Far more than depth is rounded by, far less than shapes are thick.
+AROUND_M = 5e-5  # Far more than depth is rounded by, far less than shapes are thick.
 REACH_M = 0.006  # A point so far from a solid cell is rounding at a shape's edge.
 LABEL_WIDTH_PX = 640  # Of an image that is cast for labels alone.
 
@@ -43,8 +53,7 @@ def label_image(
         depth_m: float32 [H, W], z-depth of the first surface, 0 where there is none.
     """
     view = _View(voxels, region, camera, camera_to_room, depth_m)
-    labels, fine, instance = (values[1:-1, 1:-1, 1:-1] for values in view.around)
-    labels, fine, instance = map(np.ascontiguousarray, (labels, fine, instance))
+    labels, fine, instance = gathered(voxels, region)
     in_frustum, free = np.empty(region.shape, bool), np.empty(region.shape, bool)
     height, width = view.depth_m.shape
     mark_in_frustum(view.to_camera, view.lens, width, height, in_frustum)
@@ -152,36 +161,84 @@ class _View:
         size = (camera.height_px, camera.width_px)
         if depth_m.shape != size:
             raise ValueError(f"depth of {depth_m.shape} is not of a camera with {size} pixels")
-        cells_to_room = region.region_to_room.copy()
-        cells_to_room[:3, :3] *= region.voxel_m
-        place = np.linalg.inv(cells_to_room) @ camera_to_room
-        self.region, self.depth_m = region, np.ascontiguousarray(depth_m, np.float32)
-        self.place = np.ascontiguousarray(place[:3])
-        self.to_camera = np.ascontiguousarray(np.linalg.inv(place)[:3])
+        self.voxels, self.region, self.camera_to_room = voxels, region, camera_to_room
+        self.depth_m = np.ascontiguousarray(depth_m, np.float32)
         self.lens = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
-        self.around = _gathered(voxels, region, cells_to_room)
+        self.place = _place(region, camera_to_room)
+        self.to_camera = np.ascontiguousarray(invert(np.vstack([self.place, [0, 0, 0, 1]]))[:3])
 
     def hits(self, cells_wanted: bool) -> tuple[np.ndarray, np.ndarray]:
         """Return the hits of each cell, and the cell of each pixel where that is wanted."""
-        hits = np.zeros(self.region.shape, np.uint32)
-        cells = np.empty(self.depth_m.shape if cells_wanted else (0, 0), np.int32)
-        # Of a turned region the cells are samples: a surface may pass between two solid ones.
-        free_kind = self.region.kind == "free"
-        reach = 1.0 if free_kind else REACH_M / self.region.voxel_m
-        count_hits(
-            self.around[1], self.place, self.lens, self.depth_m, INWARD_M, reach, hits, cells
+        box = (
+            self.region if is_on_cells(self.region, self.voxels) else _box(self.region, self.voxels)
         )
-        return hits, cells
+        hits = np.zeros(box.shape, np.uint32)
+        cells = np.empty(self.depth_m.shape if cells_wanted else (0, 0), np.int32)
+        count_hits(
+            gathered(self.voxels, box, 1)[1], _place(box, self.camera_to_room), self.lens,
+            self.depth_m, AROUND_M, REACH_M / box.voxel_m, hits, cells,
+        )  # fmt: skip
+        return (hits, cells) if box is self.region else _sampled(self.region, box, hits, cells)
 
 
-def _gathered(
-    voxels: SceneVoxels, region: LabelRegion, cells_to_room: np.ndarray
+def gathered(
+    voxels: SceneVoxels, region: LabelRegion, more: int = 0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return labels, fine classes and objects of a region and of one cell more on each side."""
-    shape = tuple(side + 2 for side in region.shape)
-    around = (np.empty(shape, np.uint8), np.empty(shape, np.uint16), np.empty(shape, np.uint16))
-    to_scene = cells_to_room[:3].copy()
-    to_scene[:, 3] -= voxels.origin_m
-    to_scene /= voxels.voxel_m
-    gather(voxels.labels, voxels.fine, voxels.instance, to_scene, np.array([-1, -1, -1]), *around)
-    return around
+    """Return what a region's cells hold: labels, fine classes and objects, [X, Y, Z].
+
+    Args:
+        voxels: the scene.
+        region: its cells hold what the scene has at their middles; 255, 0 and 0 outside of it.
+        more: so many cells more on each side.
+    """
+    shape = tuple(side + 2 * more for side in region.shape)
+    found = (np.empty(shape, np.uint8), np.empty(shape, np.uint16), np.empty(shape, np.uint16))
+    to_scene = _to_cells_of(voxels.origin_m, voxels.voxel_m, region)
+    gather(voxels.labels, voxels.fine, voxels.instance, to_scene, np.full(3, -more), *found)
+    return found
+
+
+def is_on_cells(region: LabelRegion, voxels: SceneVoxels) -> bool:
+    """Tell whether a region's cells are the scene's, turned by quarter turns or not at all."""
+    to_scene = _to_cells_of(voxels.origin_m, voxels.voxel_m, region)
+    return bool(np.abs(to_scene - np.round(to_scene)).max() < 1e-4)
+
+
+def _to_cells_of(origin_m: np.ndarray, voxel_m: float, region: LabelRegion) -> np.ndarray:
+    """Return float64 [3, 4]: a region's cells to those of an upright grid of the room."""
+    to_cells = region.region_to_room[:3].copy()
+    to_cells[:, :3] *= region.voxel_m
+    to_cells[:, 3] -= origin_m
+    return np.ascontiguousarray(to_cells / voxel_m)
+
+
+def _place(region: LabelRegion, camera_to_room: np.ndarray) -> np.ndarray:
+    """Return float64 [3, 4]: a camera, in cells of a region."""
+    cells_to_room = region.region_to_room.copy()
+    cells_to_room[:3, :3] *= region.voxel_m
+    return np.ascontiguousarray((invert(cells_to_room) @ camera_to_room)[:3])
+
+
+def _box(region: LabelRegion, voxels: SceneVoxels) -> LabelRegion:
+    """Return the box of the scene's own cells around a region that is none of them."""
+    ends = np.stack(np.meshgrid(*([0, side] for side in region.shape)), -1).reshape(-1, 3)
+    ends = apply(region.region_to_room, ends * region.voxel_m)
+    low = np.floor((ends.min(axis=0) - voxels.origin_m) / voxels.voxel_m)
+    high = np.ceil((ends.max(axis=0) - voxels.origin_m) / voxels.voxel_m)
+    to_room = np.eye(4)
+    to_room[:3, 3] = voxels.origin_m + low * voxels.voxel_m
+    size = (high - low).astype(int)
+    return LabelRegion((size[0], size[1], size[2]), voxels.voxel_m, to_room)
+
+
+def _sampled(
+    region: LabelRegion, box: LabelRegion, hits: np.ndarray, cells: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the hits, and the pixels' cells, of a region whose cells are samples of a box's."""
+    source = np.empty(region.shape, np.int32)
+    to_box = _to_cells_of(box.region_to_room[:3, 3], box.voxel_m, region)
+    sources(to_box, np.array(box.shape), source)
+    own = np.where(source >= 0, hits.reshape(-1)[source], 0).astype(np.uint32)
+    back = np.full(hits.size + 1, -1, np.int32)  # The last is of pixels that see no cell.
+    back[source[source >= 0]] = np.flatnonzero(source.reshape(-1) >= 0)
+    return own, back[cells]

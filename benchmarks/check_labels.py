@@ -1,0 +1,191 @@
+"""Are labels and masks what slow references say, and what do they cost?
+
+``python -m benchmarks.check_labels [--frames 200 --size 320 240] [--spoil]``
+
+People stand in generated houses. Each frame is drawn by the renderer and labelled; then a caster in
+float64 that knows nothing of the kernels (``tests/render/oracle.py``) casts each pixel anew, and
+``tests/dataset/label_reference.py`` tells from its depth, cell by cell, what is hit and what is in
+the frustum, and of some cells whether a ray crossed them. The command leaves with 1 where one cell
+of any frame differs; ``--spoil`` labels from a millimetre beside, so that one sees it fail.
+
+Then what the id buffer says: of the pixels of all visible cells, and of the cells, how many have
+the cell's class. Where a cell is a block all do; where blocks' borders cross cells, a cell has the
+class of the block that fills most of it, and some of its pixels show the other.
+
+Last the cost: CPU milliseconds an image, for labels and masks together.
+"""
+
+import argparse
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from tests.dataset import label_reference as reference
+from tests.render.oracle import oracle_picture
+
+from benchmarks.label_views import GAME, NYU, House, houses, standing_views
+from world2minecraft.dataset.labels import (
+    cast_depth,
+    cells_of_pixels,
+    label_image,
+    resized,
+)
+from world2minecraft.dataset.region import RegionRule, region_in
+from world2minecraft.dataset.values import LabelRegion, OccLabels, SceneVoxels
+from world2minecraft.render import Picture, render_volume
+from world2minecraft.render.looks import OwnLooks
+from world2minecraft.types import Camera
+
+FIRST_SEED, FRAMES_A_HOUSE = 600, 10
+FREE_CELLS = 200  # Of each frame that are tested against every ray.
+SPOIL_M = 1e-3
+
+
+def check_frame(
+    house: House, camera: Camera, pose: np.ndarray, counts: Counter, spoil_m: float
+) -> None:
+    """Compare one frame with the references and add up what was compared and what differs."""
+    voxels = house.voxels
+    region = region_in(voxels, pose)
+    picture = render_volume(house.scene, camera, pose, outputs=("depth", "semantic"))
+    beside = pose.copy()
+    beside[:3, 3] += spoil_m * pose[:3, 0]
+    occ = label_image(voxels, region, camera, beside, picture.depth_m)
+    truth = oracle_picture(house.volume, OwnLooks(16), camera, pose)
+    depth = np.where(np.isfinite(truth.depth), truth.depth, 0).astype(np.float32)
+    hits = reference.hits(voxels, region, reference.scene_cells_seen(voxels, camera, pose, depth))
+    counts["frames"] += 1
+    counts["pixels"] += depth.size
+    counts["pixels of other depth"] += int((np.abs(depth - picture.depth_m) > 1e-5).sum())
+    counts["cells hit"] += int((hits > 0).sum())
+    counts["hit or not, wrong"] += int(((hits > 0) != occ.visible).sum())
+    counts["hits counted otherwise"] += int(np.abs(hits - occ.hits.astype(int)).sum())
+    counts["cells in the region"] += occ.labels.size
+    counts["labels wrong"] += int((occ.labels != reference.labels_of(voxels, region)).sum())
+    frustum = reference.in_frustum(region, camera, pose)
+    counts["in frustum, wrong"] += int((occ.in_frustum != frustum).sum())
+    _check_free(occ, region, camera, pose, depth, counts)
+
+
+def _check_free(
+    occ: OccLabels,
+    region: LabelRegion,
+    camera: Camera,
+    pose: np.ndarray,
+    depth: np.ndarray,
+    counts: Counter,
+) -> None:
+    """Test cells of which half are free and half are not, and in the frustum."""
+    rng = np.random.default_rng(counts["frames"])
+    cells = [
+        some[rng.permutation(len(some))[: FREE_CELLS // 2]]
+        for some in (
+            np.argwhere(occ.free),
+            np.argwhere((occ.labels == 0) & ~occ.free & occ.in_frustum),
+        )
+    ]
+    chosen = np.concatenate(cells)
+    free = reference.crossed(region, chosen, camera, pose, depth)
+    counts["cells asked whether free"] += len(chosen)
+    counts["free, wrong"] += int((free != occ.free[tuple(chosen.T)]).sum())
+
+
+def say_ids(
+    name: str,
+    house: House,
+    voxels: SceneVoxels,
+    pose: np.ndarray,
+    picture: Picture,
+    counts: Counter,
+) -> None:
+    """Compare the class of each visible cell with the id buffer at the cell's pixels."""
+    region = region_in(voxels, pose, RegionRule(voxel_m=voxels.voxel_m))
+    cells = cells_of_pixels(voxels, region, NYU, pose, picture.depth_m)
+    occ = label_image(voxels, region, NYU, pose, picture.depth_m)
+    seen = cells >= 0
+    same = occ.labels.reshape(-1)[cells[seen]] == picture.semantic[seen]
+    agreeing = np.bincount(cells[seen], same, minlength=occ.labels.size)
+    total = np.bincount(cells[seen], minlength=occ.labels.size)
+    there = total > 0
+    counts[f"{name}: pixels"] += int(seen.sum())
+    counts[f"{name}: pixels of the same class"] += int(same.sum())
+    counts[f"{name}: cells"] += int(there.sum())
+    counts[f"{name}: cells with some such pixel"] += int((agreeing[there] > 0).sum())
+    counts[f"{name}: cells with such pixels for most"] += int(
+        (agreeing[there] * 2 > total[there]).sum()
+    )
+
+
+def cpu_ms(work: Callable[[], object], repeats: int = 3) -> float:
+    """Return the least CPU time of a few calls, in milliseconds."""
+    times = []
+    for _ in range(repeats):
+        begin = time.process_time()
+        work()
+        times.append(time.process_time() - begin)
+    return 1000 * min(times)
+
+
+def costs(house: House, poses: list[np.ndarray]) -> dict[str, list[float]]:
+    """Return the cost of each view, by what is done."""
+    found: dict[str, list[float]] = {}
+    for pose in poses:
+        for kind in ("paper", "free"):
+            region = region_in(house.voxels, pose, RegionRule(kind))
+            for name, camera in (("640x480", NYU), ("1920x1129", GAME)):
+                depth = cast_depth(house.scene, camera, pose, width_px=None)[1]
+                found.setdefault(f"labels and masks, {kind}, {name}, its depth given", []).append(
+                    cpu_ms(partial(label_image, house.voxels, region, camera, pose, depth))
+                )
+        for name, camera in (("640x480", NYU), ("1920x1129 cast at 640", GAME)):
+            found.setdefault(f"depth alone, {name}", []).append(
+                cpu_ms(partial(cast_depth, house.scene, camera, pose))
+            )
+        found.setdefault("region of a view", []).append(
+            cpu_ms(partial(region_in, house.voxels, pose))
+        )
+    return found
+
+
+def main() -> int:
+    """Print the tables; return the exit code."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--frames", type=int, default=200)
+    parser.add_argument("--size", type=int, nargs=2, default=(320, 240))
+    parser.add_argument("--spoil", action="store_true", help="prove that the check can fail")
+    chosen = parser.parse_args()
+    console = Console(width=110)
+    camera = resized(NYU, chosen.size[0])
+    counts, ids, spent = Counter(), Counter(), {}
+    count = -(-chosen.frames // FRAMES_A_HOUSE)
+    for house in houses(range(FIRST_SEED, FIRST_SEED + count)):
+        views = min(FRAMES_A_HOUSE, chosen.frames - counts["frames"])
+        poses = standing_views(house.voxels, views, house.seed)
+        for pose in poses:
+            check_frame(house, camera, pose, counts, SPOIL_M if chosen.spoil else 0.0)
+            picture = render_volume(house.scene, NYU, pose, outputs=("depth", "semantic"))
+            say_ids("0.08 m", house.voxels, pose, picture, ids)
+            say_ids("a block", house.blocks, pose, picture, ids)
+        for what, times in costs(house, poses[:2]).items():
+            spent.setdefault(what, []).extend(times)
+    for heading, rows in (("against float64", counts), ("against the id buffer", ids)):
+        table = Table(heading, "", box=None)
+        for what, number in rows.items():
+            table.add_row(what, f"{number:,}")
+        console.print(table, "")
+    table = Table("CPU of an image", "mean", "most", box=None)
+    for what, times in spent.items():
+        table.add_row(what, f"{np.mean(times):.1f} ms", f"{np.max(times):.1f} ms")
+    console.print(table)
+    wrong = sum(number for what, number in counts.items() if "wrong" in what)
+    console.print(f"{wrong} cells differ" if wrong else "no cell of any frame differs")
+    return int(wrong > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
