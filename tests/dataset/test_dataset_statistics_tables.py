@@ -180,15 +180,23 @@ def test_what_is_no_store_and_no_split_is_told(store, tmp_path):
         store_statistics(store[0], "val")
 
 
-def test_rooms_come_from_the_scenes_that_tell_them():
+def test_rooms_come_from_the_scenes_that_tell_them(tmp_path):
     scenes = [
         {"scene_id": "a", "rooms": 4},
         {"scene_id": "b"},
         "c",
         {"scene_id": "d", "rooms": "x"},
     ]
-    assert rooms_of({"scenes": scenes}) == {"a": 4}
-    assert rooms_of({}) == {}
+    assert rooms_of(tmp_path, {"scenes": scenes}) == {"a": 4}
+    assert rooms_of(tmp_path, {}) == {}
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    (folder / "a.poses.jsonl").write_text('{"room": 1}\n')  # dataset.json goes before.
+    (folder / "b.poses.jsonl").write_text('{"room": 3}\n{"room": 0}\n\n{"room": 3}\n')
+    (folder / "d.poses.jsonl").write_text('{"frame": 3}\n')
+    (tmp_path / "e.poses.jsonl").write_text('{"room": 1}\n')
+    scenes.append({"scene_id": "../e"})
+    assert rooms_of(tmp_path, {"scenes": scenes}) == {"a": 4, "b": 2}
 
 
 def test_empty_labels_are_a_picture_without_voxels():

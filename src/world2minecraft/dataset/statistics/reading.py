@@ -3,6 +3,8 @@
 A stored one is counted by several processes, and its pictures are not read.
 """
 
+import json
+import re
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
@@ -13,10 +15,13 @@ from world2minecraft.dataset.importers.opening import IMPORTED, open_occupancy
 from world2minecraft.dataset.statistics.counting import StatisticsCounter, add_sample, count_samples
 from world2minecraft.dataset.statistics.values import DatasetStatistics
 from world2minecraft.dataset.store import OccStore, open_store
-from world2minecraft.dataset.store.layout import META
+from world2minecraft.dataset.store.layout import META, SCENES
 from world2minecraft.errors import InputError, WorkerError
+from world2minecraft.files import read_bytes
 from world2minecraft.progress import Progress, silent
 
+SCENE_ID = re.compile(r"[A-Za-z0-9_-]{1,90}")
+MAX_VIEWS_BYTES = 256 << 20
 PART = 200  # Pictures that a process counts at once: two seconds of work.
 
 
@@ -84,19 +89,35 @@ def store_statistics(
     for part, pictures in _parts(store, keys, jobs):
         counter.merge(part)
         progress("count", counter.pictures, len(keys), f"{pictures:,} pictures")
-    for scene_id, rooms in rooms_of(store.meta).items():
+    for scene_id, rooms in rooms_of(store.folder, store.meta).items():
         counter.set_rooms(scene_id, rooms)
     return counter.result(_named(store.folder, split))
 
 
-def rooms_of(meta: dict[str, Any]) -> dict[str, int]:
-    """Return how many rooms each scene has that tells it, from ``dataset.json``."""
+def rooms_of(folder: Path, meta: dict[str, Any]) -> dict[str, int]:
+    """Return how many rooms each scene has, of those scenes that tell it.
+
+    ``dataset.json`` tells it, or else the scene's planned views, each of which names its room.
+    """
     found = {}
     for scene in meta.get("scenes", ()):
-        rooms = scene.get("rooms") if isinstance(scene, dict) else None
+        name = str(scene.get("scene_id")) if isinstance(scene, dict) else ""
+        if not SCENE_ID.fullmatch(name):
+            continue
+        rooms = scene.get("rooms") or _rooms_of_views(folder / SCENES / f"{name}.poses.jsonl")
         if isinstance(rooms, int) and rooms > 0:
-            found[str(scene.get("scene_id"))] = rooms
+            found[name] = rooms
     return found
+
+
+def _rooms_of_views(path: Path) -> int | None:
+    """Return how many rooms the views of a tour file name; None where one names none."""
+    try:
+        lines = read_bytes(path, MAX_VIEWS_BYTES).splitlines()
+        rooms = [json.loads(line)["room"] for line in lines if line.strip()]
+    except (InputError, ValueError, KeyError, TypeError):  # Scenes without such a file are usual.
+        return None
+    return len(set(rooms)) if all(isinstance(room, int) for room in rooms) else None
 
 
 def _named(folder: Path, split: str | None) -> str:
