@@ -3,7 +3,7 @@
 Keys: frame, t (seconds), x, y, z (world block coordinates), yaw, pitch (the game's, degrees),
 vertical_fov_deg, width, height (pixels), scene_id, tour_id, image. Only x, y, z, yaw and pitch are
 needed. x, y, z is the eye; ``at`` may say ``feet``. ``intrinsics`` [3][3], where it is there,
-counts before the FOV. Other keys are left alone.
+counts before the FOV. ``file`` may stand for ``image``. Other keys are left alone.
 """
 
 import csv
@@ -12,7 +12,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -37,10 +37,15 @@ class TourPose:
     tour_id: str = ""
     scene_id: str = ""
     image: str = ""  # A file's name, relative to the tour's folder.
+    vertical_fov_deg: float | None = None
 
 
-def read_tour(path: str | Path) -> list[TourPose]:
+def read_tour(path: str | Path, at: Literal["feet", "eye"] = "eye") -> list[TourPose]:
     """Read a tour from JSONL, or from CSV where the name ends in .csv.
+
+    Args:
+        path: the file.
+        at: what x, y, z is in lines that do not say it.
 
     Raises:
         InputError: it cannot be read. DamagedFileError: a line is no pose, or there is none.
@@ -52,7 +57,7 @@ def read_tour(path: str | Path) -> list[TourPose]:
     except UnicodeDecodeError as error:
         raise DamagedFileError(source, "is no text in UTF-8") from error
     rows = _csv_rows(text) if source.suffix.lower() == ".csv" else _json_rows(text, source)
-    poses = [_pose(row, number, source) for number, row in rows]
+    poses = [_pose({"at": at, **row}, number, source) for number, row in rows]
     if not poses:
         raise DamagedFileError(source, "holds no pose; each line needs x, y, z, yaw, pitch")
     return poses
@@ -114,10 +119,14 @@ def _pose(row: Mapping[str, Any], number: int, source: Path) -> TourPose:
         raise DamagedFileError(source, f"line {number} has no {missing[0]}")
     try:
         x, y, z, yaw, pitch = (float(row[key]) for key in NEEDED)
-        pose = GamePose(x, y, z, yaw, pitch, row.get("at", "eye"))
+        pose = GamePose(x, y, z, yaw, pitch, row["at"])
         frame = int(row["frame"]) if row.get("frame") is not None else None
-        names = [str(row.get(key) or "") for key in ("tour_id", "scene_id", "image")]
-        return TourPose(pose, float(row.get("t", 0.0)), _camera(row), frame, *names)
+        tour, scene = (str(row.get(key) or "") for key in ("tour_id", "scene_id"))
+        image = str(row.get("image") or row.get("file") or "")
+        told = row.get("vertical_fov_deg")
+        fov_deg = None if told is None else float(told)
+        t_s = float(row.get("t", 0.0))
+        return TourPose(pose, t_s, _camera(row), frame, tour, scene, image, fov_deg)
     except (TypeError, ValueError, OverflowError, UsageError) as error:
         raise DamagedFileError(source, f"line {number} is no pose ({error})") from error
 
