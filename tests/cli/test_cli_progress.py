@@ -28,7 +28,20 @@ def test_a_stage_is_two_lines():
     lines = progress.Lines(stream, clock=ticking())
     for done in range(41):
         lines("fuse", done, 40)
-    assert stream.getvalue() == "fuse ...\nfuse done in 0.5 s\n"
+    assert stream.getvalue() == "fuse ...\nfuse done in 20.0 s\n"
+
+
+def test_a_long_stage_says_how_far_it_is_and_how_long_it_will_take():
+    stream, now = io.StringIO(), [0.0]
+    lines = progress.Lines(stream, clock=lambda: now[0])
+    for done in range(0, 2001, 100):
+        lines("images", done, 2000, "9.1 a second")
+        now[0] += 11
+    told = stream.getvalue().splitlines()
+    assert told[1] == "images 300 of 2,000, 9.1 a second, 3 min left"
+    assert told[-2] == "images 1,800 of 2,000, 9.1 a second, 22 s left"
+    assert told[-1] == "images done in 220.0 s (9.1 a second)"
+    assert len(told) == 8
 
 
 def test_a_stage_of_unknown_length_ends_with_the_next():

@@ -11,6 +11,8 @@ from typing import Any, TextIO
 
 from world2minecraft.progress import Progress
 
+EVERY_S = 30.0  # Between the lines of a long stage, where there is no terminal.
+
 
 @contextmanager
 def shown(stream: TextIO | None = None) -> Iterator[Progress]:
@@ -36,21 +38,29 @@ def shown(stream: TextIO | None = None) -> Iterator[Progress]:
 
 
 class Lines:
-    """One line when a stage begins and one, with its seconds, when it ends."""
+    """One line when a stage begins, one every half minute, and one, with its time, at its end."""
 
     def __init__(self, stream: TextIO, clock: Callable[[], float] = time.monotonic):
         self._stream, self._clock = stream, clock
         self._stage, self._began, self._note = "", 0.0, ""
+        self._told = 0.0  # When the last line was printed.
 
     def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
-        """Report one step; only the first and the last of a stage are printed."""
+        """Report one step; most are not printed."""
         if stage != self._stage:
             self.finish()
             self._stage, self._began = stage, self._clock()
+            self._told = self._began
             print(f"{stage} ...", file=self._stream, flush=True)
         self._note = note
         if total and done >= total:
             self.finish()
+        elif total and done and (now := self._clock()) - self._told >= EVERY_S:
+            self._told = now
+            left = spoken((now - self._began) * (total - done) / done)
+            told = f", {note}" if note else ""
+            line = f"{stage} {done:,} of {total:,}{told}, {left} left"
+            print(line, file=self._stream, flush=True)
 
     def finish(self) -> None:
         """End the stage that runs, if one does: stages of unknown length end with the next."""
@@ -60,6 +70,18 @@ class Lines:
         note = f" ({self._note})" if self._note else ""
         print(f"{self._stage} done in {seconds:.1f} s{note}", file=self._stream, flush=True)
         self._stage, self._note = "", ""
+
+
+def spoken(seconds: float) -> str:
+    """Return a time in two words.
+
+    Example:
+        >>> [spoken(seconds) for seconds in (7.2, 125, 8000)]
+        ['7 s', '2 min', '2.2 h']
+    """
+    if seconds < 100:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
 
 
 @contextmanager

@@ -44,6 +44,8 @@ VERBS: dict[str, str] = {
     "clean": "Mend a built room as a person would.",
     "install": "Copy a built world to where the game finds it.",
     "undo": "Take back what was last built into a world.",
+    "dataset build": "Make a labelled data set of generated houses, or of worlds of yours.",
+    "dataset verify": "Check every byte of a data set.",
     "doctor": "Check that this machine can run the program.",
 }
 

@@ -1,0 +1,158 @@
+"""The options of ``w2m dataset build``, and the values that their words become."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from world2minecraft.errors import InputError, UsageError
+
+if TYPE_CHECKING:
+    from world2minecraft.dataset.plan import SceneSpec
+    from world2minecraft.types import Camera
+
+IMAGES_A_SCENE = 50  # Where nobody says how many.
+
+
+def _option(*names: str, text: str, metavar: str | None = None) -> Any:
+    return typer.Option(*names, help=text, metavar=metavar)
+
+
+Folder = Annotated[Path, typer.Argument(metavar="DIR", help="The data set's folder.")]
+Houses = Annotated[
+    int | None, _option("--houses", metavar="N", text="Generate so many furnished houses.")
+]
+Worlds = Annotated[
+    Path | None,
+    _option("--worlds", metavar="DIR", text="Every world or build in a folder, such as "
+            "w2m rooms generate --houses makes."),
+]  # fmt: skip
+World = Annotated[
+    list[Path] | None,
+    _option("--world", "--schem", metavar="PLACE",
+            text="A world, a run's folder or a schematic. May be given often."),
+]  # fmt: skip
+Images = Annotated[
+    int | None,
+    _option("--images", metavar="N", text=f"How many in all; {IMAGES_A_SCENE} a scene."),
+]
+Preset = Annotated[
+    str, _option("--preset", text="8k, 50k or 100k: the paper's numbers of images, exactly.")
+]
+TestShare = Annotated[float, _option("--test-share", text="Of images, in scenes of their own.")]
+CameraName = Annotated[
+    str, _option("--camera", text="nyu: 640x480 as NYUv2 has it; paper: 1920x1129, 70 degrees.")
+]
+Size = Annotated[str, _option("--size", metavar="WxH", text="Pixels, instead of the camera's.")]
+Fov = Annotated[
+    float | None, _option("--fov", text="Vertical field of view, degrees, instead of its own.")
+]
+Voxel = Annotated[
+    str, _option("--voxel", text="A cell's side in metres, or block: one cell a block.")
+]
+Region = Annotated[
+    str, _option("--region", text="paper: along the axes or diagonals; free: turned with the view.")
+]
+LabelsOnly = Annotated[
+    bool, _option("--labels-only", text="Labels and masks, no pictures and no depth.")
+]
+ImageFormat = Annotated[str, _option("--image-format", text="jpg, png or webp.")]
+Quality = Annotated[int, _option("--quality", text="Of JPEG and WebP, 1 to 100.")]
+BlockMap = Annotated[
+    str, _option("--block-map", text="Which class a block is: nyu, paper, or a YAML file.")
+]
+Scale = Annotated[
+    float | None,
+    _option("--blocks-per-metre", text="Of worlds that do not say it; 1 is true size."),
+]
+Hour = Annotated[
+    float | None, _option("--hour", text="0 to 24: the light of all scenes, not each its own.")
+]
+Seed = Annotated[int, _option("--seed", text="The same seed, the same data set.")]
+EngineName = Annotated[
+    str, _option("--engine", text="pool: this machine; ray: all machines of a Ray cluster.")
+]
+Jobs = Annotated[int | None, _option("--jobs", text="How many processes; one a core.")]
+
+
+def camera_named(name: str, size: str, fov_deg: float | None) -> "Camera":
+    """Return the camera that the options mean. Raises UsageError or UnknownNameError."""
+    from world2minecraft.cli.render_options import camera_choice
+    from world2minecraft.dataset.tours import nyu_camera, paper_camera
+    from world2minecraft.errors import UnknownNameError
+    from world2minecraft.render.views import vertical_fov_deg_of
+
+    cameras = {"nyu": nyu_camera, "paper": paper_camera}
+    if name not in cameras:
+        raise UnknownNameError("camera", name, cameras)
+    camera = cameras[name]()
+    if not size and fov_deg is None:
+        return camera
+    text = size or f"{camera.width_px}x{camera.height_px}"
+    usual = vertical_fov_deg_of(camera)
+    return camera_choice(text, usual if fov_deg is None else fov_deg, None).camera(usual)
+
+
+def scenes_named(
+    houses: int | None,
+    worlds: Path | None,
+    world: list[Path] | None,
+    preset: str,
+    blocks_per_metre: float | None,
+) -> "list[SceneSpec]":
+    """Return the scenes that the options mean, not yet split.
+
+    Raises:
+        UsageError: none, or two kinds of them. InputError: a place is not there.
+    """
+    from dataclasses import replace
+
+    from world2minecraft.dataset.plan import house_scenes, preset_named, source_scenes
+
+    places = list(world or [])
+    if worlds is not None:
+        places += worlds_in(worlds)
+    if places and houses is not None:
+        raise UsageError("--houses are generated; give them alone, without --worlds and --world")
+    if places:
+        for place in places:
+            if not place.exists():
+                raise InputError(place, "is not there")
+        found = source_scenes(places)
+        return [replace(scene, blocks_per_metre=blocks_per_metre) for scene in found]
+    count = preset_named(preset).houses if preset and houses is None else houses
+    if count is not None and count < 1:
+        raise UsageError(f"--houses is 1 or more, not {count}")
+    return house_scenes(count or 0)
+
+
+def worlds_in(folder: Path) -> list[Path]:
+    """Return what can be a scene in a folder, sorted. Raises InputError where nothing can."""
+    if not folder.is_dir():
+        raise InputError(folder, "is no folder of worlds")
+    kinds = (".schem", ".schematic", ".litematic", ".nbt")
+    found = [
+        path
+        for path in sorted(folder.iterdir())
+        if path.name[0] != "."
+        and (
+            path.suffix.lower() in kinds
+            if path.is_file()
+            else any(
+                (path / part).exists() for part in ("level.dat", "scene.json", "build/scene.json")
+            )
+        )
+    ]
+    if not found:
+        raise InputError(folder, "holds no world; w2m rooms generate --houses 4 --worlds DIR")
+    return found
+
+
+def cells_of(voxel: str) -> float | None:
+    """Return a cell's side in metres, None for one cell a block. Raises UsageError."""
+    if voxel == "block":
+        return None
+    try:
+        return float(voxel)
+    except ValueError:
+        raise UsageError(f"--voxel is metres, such as 0.08, or block; not {voxel!r}") from None

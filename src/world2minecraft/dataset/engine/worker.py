@@ -1,0 +1,91 @@
+"""What a process of the pool does: it takes orders through a pipe until that ends."""
+
+import pickle
+import signal
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from typing import Any
+
+from world2minecraft.errors import WorkerError
+
+
+@dataclass(frozen=True, eq=False)
+class Order:
+    """A task, an item, and the item's number."""
+
+    number: int
+    task: Callable[[Any, Callable[[int], None]], Any]
+    item: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Ticked:
+    """So many images more are done."""
+
+    count: int
+
+
+@dataclass(frozen=True, eq=False)
+class Done:
+    """An item is done."""
+
+    number: int
+    result: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Failed:
+    """An item has failed."""
+
+    error: Exception
+
+
+class _Deserted(BaseException):
+    """The one who gave the order is gone."""
+
+
+def serve(pipe: Connection) -> None:
+    """Do what comes through the pipe until it ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent is told, and ends us.
+    one_thread()
+
+    def tick(count: int) -> None:
+        try:
+            pipe.send(Ticked(count))
+        except OSError:
+            raise _Deserted from None
+
+    try:
+        while True:
+            order: Order = pipe.recv()
+            pipe.send(_answer(order, tick))
+    except (EOFError, OSError, _Deserted):
+        return
+
+
+def one_thread() -> None:
+    """Let libraries use one thread: there is a process for each core."""
+    from threadpoolctl import threadpool_limits  # noqa: PLC0415
+
+    threadpool_limits(1)
+
+
+def _answer(order: Order, tick: Callable[[int], None]) -> Done | Failed:
+    try:
+        return Done(order.number, order.task(order.item, tick))
+    except Exception as error:
+        return Failed(sendable(error))
+
+
+def sendable(error: Exception) -> Exception:
+    """Return an error as it is where that can be sent, else one that tells it."""
+    try:
+        copied = pickle.loads(pickle.dumps(error))
+    except Exception:
+        copied = None
+    if type(copied) is type(error) and str(copied) == str(error):
+        return error.with_traceback(None)
+    told = "".join(traceback.format_exception_only(error)).strip()
+    return WorkerError(f"a worker failed: {told}")
