@@ -13,6 +13,7 @@ from world2minecraft.dataset.building.clock import STAGES, milliseconds_an_image
 from world2minecraft.dataset.building.scenes import SceneFacts, SceneTask, survey
 from world2minecraft.dataset.building.shards import in_order, index_shard, make_shard, units_of
 from world2minecraft.dataset.building.shares import shared_views
+from world2minecraft.dataset.building.warming import is_cold, warm
 from world2minecraft.dataset.engine import Engine
 from world2minecraft.dataset.plan import DatasetPlan, SceneSpec
 from world2minecraft.dataset.store.index import arrow_modules
@@ -143,6 +144,9 @@ class _Build:
     def run(self) -> BuildReport:
         """Look at the scenes, make the shards, write the index."""
         facts: dict[str, SceneFacts] = {}
+        if is_cold():
+            first = SceneTask(str(self.folder), self.plan.scenes[0], self.plan.recipe)
+            list(self.engine.run(warm, [first], self._ticker("compile", 1)))
         scenes = self._settled(shared_views(self.plan.scenes, partial(self._look, facts)))
         plan = replace(self.plan, scenes=scenes)
         classes = {one for fact in facts.values() for one in fact.fine} - {EMPTY}

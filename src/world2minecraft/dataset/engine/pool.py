@@ -16,7 +16,6 @@ from typing import Any
 
 from world2minecraft.dataset.engine.worker import Done, Failed, Order, Ticked, serve
 from world2minecraft.errors import WorkerError
-from world2minecraft.render.batch.hands import deaf_to_interrupts
 
 MOST_DEATHS = 3  # Of workers over one item: then it is the item that kills them.
 PATIENCE_S = 5.0
@@ -123,6 +122,9 @@ class PoolEngine:
 
 def _started() -> _Hand:
     """Start a worker: a new interpreter on every system, so that all behave alike."""
+    # Late: a worker reads this file too, and begins faster without the renderer.
+    from world2minecraft.render.batch.hands import deaf_to_interrupts  # noqa: PLC0415
+
     context = get_context("spawn")
     ours, theirs = context.Pipe()
     process = context.Process(target=serve, args=(theirs,), name="w2m-dataset", daemon=True)

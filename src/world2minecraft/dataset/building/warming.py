@@ -1,0 +1,22 @@
+"""Compiling the inner loops once, before several processes would all do it at the same time."""
+
+from collections.abc import Callable
+
+from world2minecraft.dataset.building.clock import StageClock
+from world2minecraft.dataset.building.scenes import SceneTask, survey
+from world2minecraft.dataset.building.studio import studio_of
+from world2minecraft.jit import KERNEL_CACHE
+
+_LAST = "label_kernels.*.nbi"  # What numba keeps of the kernels that a sample needs last.
+
+
+def is_cold() -> bool:
+    """Whether the inner loops of a sample are still to be compiled."""
+    return not any(KERNEL_CACHE.rglob(_LAST))
+
+
+def warm(task: SceneTask, tick: Callable[[int], None]) -> None:
+    """Look at a scene and make one sample of it; the look is kept, the sample is not."""
+    facts, _ = survey(task, tick)
+    if facts.views:
+        studio_of(task.folder, task.spec, task.recipe).sample(0, StageClock())
