@@ -2,6 +2,7 @@
 
 import errno
 import io
+import json
 import os
 import shutil
 from dataclasses import replace
@@ -18,10 +19,17 @@ from world2minecraft.dataset.building import scenes as scenes_module
 from world2minecraft.dataset.building.shards import units_of
 from world2minecraft.dataset.engine import opened_engine
 from world2minecraft.dataset.labels import label_image
-from world2minecraft.dataset.plan import DatasetPlan, Recipe, plan_dataset, source_scenes
+from world2minecraft.dataset.plan import (
+    DatasetPlan,
+    GivenViews,
+    Recipe,
+    plan_dataset,
+    source_scenes,
+)
 from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.source import open_scene_source
 from world2minecraft.dataset.store import open_store, verify_store
+from world2minecraft.dataset.store.sample_files import SampleFiles
 from world2minecraft.dataset.store.tar import member_at
 from world2minecraft.dataset.voxels import scene_voxels
 from world2minecraft.errors import ConflictError, OutputError, UsageError
@@ -246,6 +254,42 @@ def test_cells_may_be_blocks(worlds, tmp_path):
     assert sample.occ.region.voxel_m == 1.0
 
 
+def test_views_of_a_tour_file_are_taken_as_they_are(made, worlds, tmp_path, capsys):
+    poses = made[0] / "scenes/second.poses.jsonl"
+    words = ["--world", str(worlds / "second.schem"), "--tour", str(poses), "--voxel", "0.25"]
+    words += ["--size", "64x48", "--jobs", "1"]
+    assert cli.run(["dataset", "build", str(tmp_path / "data"), *words]) == 0
+    ours, theirs = open_store(made[0]), open_store(tmp_path / "data")
+    assert theirs.keys() == ours.keys("train")
+    for key in theirs:
+        np.testing.assert_array_equal(ours[key].colour, theirs[key].colour)
+
+
+def test_screenshots_are_labelled_as_what_they_show(made, worlds, tmp_path):
+    ours, lines = open_store(made[0]), []
+    shots = tmp_path / "shots"
+    shots.mkdir()
+    for number, sample in enumerate(ours.samples("train")):
+        Image.fromarray(sample.colour).save(shots / f"{number}.png")
+        pose = sample.facts["game_pose"]
+        lines.append({"image": f"{number}.png", "vertical_fov_deg": 70, **pose})
+    (shots / "poses.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    scenes = [
+        replace(one, given=GivenViews(str(shots), is_screenshots=True))
+        for one in source_scenes([worlds / "second.schem"])
+    ]
+    recipe = replace(RECIPE, files=SampleFiles("png"), paper_compat=True)
+    build(tmp_path / "data", plan_dataset(scenes, len(lines), recipe=recipe))
+    for ours_, theirs in zip(
+        ours.samples("train"), open_store(tmp_path / "data").samples(), strict=True
+    ):
+        np.testing.assert_array_equal(ours_.colour, theirs.colour)
+        np.testing.assert_array_equal(ours_.occ.labels, theirs.occ.labels)
+        assert np.abs(ours_.depth_m - theirs.depth_m).max() < 0.002
+        focal_px = theirs.facts["paper_compat"]["K"][0][0]
+        assert focal_px == pytest.approx(32 / np.tan(np.radians(35)))
+
+
 def test_too_few_views_are_told_and_refused_of_a_preset(worlds, tmp_path, monkeypatch):
     real = scenes_module.plan_views
     monkeypatch.setattr(
@@ -293,6 +337,8 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
         ([], "a data set needs a scene: give --houses", 2),
         (["--houses", "0", "--images", "5"], "--houses is 1 or more, not 0", 2),
         (["--houses", "2", "--world", "x"], "--houses are generated; give them alone", 2),
+        (["--tour", "t.jsonl", "--screenshots", "d"], "are two kinds of views; give one", 2),
+        (["--houses", "2", "--screenshots", "gone"], "gone: is no folder of screenshots", 3),
         (["--world", "gone"], "gone: is not there", 3),
         (["--worlds", "gone"], "gone: is no folder of worlds", 3),
         (["--houses", "2", "--camera", "nyuu"], "no camera is named 'nyuu'; did you mean 'nyu'", 2),

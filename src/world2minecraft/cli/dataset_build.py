@@ -16,6 +16,7 @@ w2m dataset build DATA --houses 40 --images 2000         from nothing to 2,000 l
 w2m dataset build DATA --preset 100k --camera paper      as many as the paper has, at its size
 w2m dataset build DATA --worlds MY_WORLDS --images 500   of worlds that are there
 w2m dataset build DATA --schem house.schem --blocks-per-metre 1
+w2m dataset build DATA --world saves/Home --screenshots MY_SHOTS --at feet
 w2m dataset build DATA --houses 40 --images 2000 --labels-only
 w2m dataset build DATA --preset 50k --engine ray         on many machines
 """
@@ -26,6 +27,9 @@ def run(
     houses: option.Houses = None,
     worlds: option.Worlds = None,
     world: option.World = None,
+    tour: option.TourFile = None,
+    screenshots: option.Screenshots = None,
+    at: option.At = "feet",
     images: option.Images = None,
     preset: option.Preset = "",
     test_share: option.TestShare = 0.2,
@@ -40,6 +44,7 @@ def run(
     block_map: option.BlockMap = "nyu",
     blocks_per_metre: option.Scale = None,
     hour: option.Hour = None,
+    paper_compat: option.PaperCompat = False,
     seed: option.Seed = 0,
     engine: option.EngineName = "pool",
     jobs: option.Jobs = None,
@@ -57,9 +62,10 @@ def run(
     from world2minecraft.dataset.region import RegionRule
     from world2minecraft.dataset.store.sample_files import SampleFiles
 
-    scenes = option.scenes_named(houses, worlds, world, preset, blocks_per_metre)
+    given, recorded = option.given_named(tour, screenshots, at, fov)
+    scenes = option.scenes_named(houses, worlds, world, preset, blocks_per_metre, given)
     if images is None and not preset:
-        images = option.IMAGES_A_SCENE * len(scenes)
+        images = recorded or option.IMAGES_A_SCENE * len(scenes)
     side = option.cells_of(voxel)
     rule = RegionRule(region)
     recipe = Recipe(
@@ -70,6 +76,7 @@ def run(
         pictures=not labels_only,
         block_map=block_map,
         hour=hour,
+        paper_compat=paper_compat,
         seed=seed,
     )
     plan = plan_dataset(scenes, images, preset=preset, recipe=recipe, test_share=test_share)

@@ -8,7 +8,7 @@ import typer
 from world2minecraft.errors import InputError, UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.dataset.plan import SceneSpec
+    from world2minecraft.dataset.plan import GivenViews, SceneSpec
     from world2minecraft.types import Camera
 
 IMAGES_A_SCENE = 50  # Where nobody says how many.
@@ -32,6 +32,16 @@ World = Annotated[
     _option("--world", "--schem", metavar="PLACE",
             text="A world, a run's folder or a schematic. May be given often."),
 ]  # fmt: skip
+TourFile = Annotated[
+    Path | None,
+    _option("--tour", metavar="FILE", text="Poses of one --world, as a tour file has them."),
+]
+Screenshots = Annotated[
+    Path | None,
+    _option("--screenshots", metavar="DIR",
+            text="The game's own pictures of one --world, with their poses."),
+]  # fmt: skip
+At = Annotated[str, _option("--at", text="Whether poses of screenshots are of the feet or eye.")]
 Images = Annotated[
     int | None,
     _option("--images", metavar="N", text=f"How many in all; {IMAGES_A_SCENE} a scene."),
@@ -58,6 +68,9 @@ LabelsOnly = Annotated[
 ]
 ImageFormat = Annotated[str, _option("--image-format", text="jpg, png or webp.")]
 Quality = Annotated[int, _option("--quality", text="Of JPEG and WebP, 1 to 100.")]
+PaperCompat = Annotated[
+    bool, _option("--paper-compat", text="Also K and E as the paper prints them, slips and all.")
+]
 BlockMap = Annotated[
     str, _option("--block-map", text="Which class a block is: nyu, paper, or a YAML file.")
 ]
@@ -99,6 +112,7 @@ def scenes_named(
     world: list[Path] | None,
     preset: str,
     blocks_per_metre: float | None,
+    given: "GivenViews | None" = None,
 ) -> "list[SceneSpec]":
     """Return the scenes that the options mean, not yet split.
 
@@ -118,12 +132,43 @@ def scenes_named(
         for place in places:
             if not place.exists():
                 raise InputError(place, "is not there")
+        if given is not None and len(places) > 1:
+            raise UsageError("--tour and --screenshots are of one --world")
         found = source_scenes(places)
-        return [replace(scene, blocks_per_metre=blocks_per_metre) for scene in found]
+        return [replace(one, blocks_per_metre=blocks_per_metre, given=given) for one in found]
+    if given is not None:
+        raise UsageError("--tour and --screenshots are of one --world; name it")
     count = preset_named(preset).houses if preset and houses is None else houses
     if count is not None and count < 1:
         raise UsageError(f"--houses is 1 or more, not {count}")
     return house_scenes(count or 0)
+
+
+def given_named(
+    tour: Path | None, screenshots: Path | None, at: str, fov_deg: float | None
+) -> "tuple[GivenViews | None, int]":
+    """Return the views that were recorded, None where they are to be planned, and their number.
+
+    Raises:
+        UsageError: the words contradict each other. InputError: they cannot be read.
+    """
+    from world2minecraft.dataset.plan import GivenViews
+
+    if tour is not None and screenshots is not None:
+        raise UsageError("--tour and --screenshots are two kinds of views; give one of them")
+    if tour is not None:
+        from world2minecraft.render.views import read_tour
+
+        return GivenViews(str(tour)), len(read_tour(tour))
+    if screenshots is not None:
+        if at not in ("feet", "eye"):
+            raise UsageError(f"--at is feet or eye, not {at!r}")
+        from world2minecraft.dataset.building.recorded import recorded
+
+        words = {} if fov_deg is None else {"vertical_fov_deg": fov_deg}
+        given = GivenViews(str(screenshots), True, at, **words)  # type: ignore[arg-type]
+        return given, len(recorded(given))
+    return None, 0
 
 
 def worlds_in(folder: Path) -> list[Path]:

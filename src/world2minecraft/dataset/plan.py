@@ -7,7 +7,7 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from world2minecraft.dataset.region import RegionRule
 from world2minecraft.dataset.source import scene_id_of
@@ -47,6 +47,7 @@ class Recipe:
     pictures: bool = True  # False: labels and masks alone.
     block_map: str = "nyu"
     hour: float | None = None  # The scene's own where None.
+    paper_compat: bool = False  # K and E as the paper prints them stand beside the right ones.
     seed: int = 0
 
     def facts(self) -> dict[str, Any]:
@@ -54,6 +55,20 @@ class Recipe:
         told = asdict(self)
         told["camera"] = {k: v for k, v in told["camera"].items() if k != "distortion"}
         return told
+
+
+@dataclass(frozen=True)
+class GivenViews:
+    """Views that somebody has recorded: a tour file, or a folder of screenshots with their poses.
+
+    ``at`` says whether screenshots tell the feet or the eye; see ``dataset.screenshots``.
+    """
+
+    path: str
+    is_screenshots: bool = False
+    at: Literal["feet", "eye"] = "feet"
+    pattern: str | None = None
+    vertical_fov_deg: float = 70.0
 
 
 @dataclass(frozen=True)
@@ -67,6 +82,7 @@ class SceneSpec:
     images: int = 0
     blocks_per_metre: float | None = None
     box: tuple[int, ...] | None = None
+    given: GivenViews | None = None  # Views are planned where None.
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.dataset.building.recorded import given_views
 from world2minecraft.dataset.naming import fine_names
 from world2minecraft.dataset.plan import Recipe, SceneSpec
 from world2minecraft.dataset.source import SceneSource, open_scene_source
@@ -148,8 +149,11 @@ def _surveyed(
     if known is not None:
         check_digest(known, volume, spec)
     hour = recipe.hour if recipe.hour is not None else _hour_beside(source.path)
-    rule = TourRule(camera=recipe.camera, light=LookLight(hour=hour))
-    views = plan_views(volume, spec.images, recipe.seed, rule, scene=prepare_scene(volume))
+    if spec.given is not None:
+        views = given_views(spec.given, volume.block_to_room, recipe.camera)[: spec.images]
+    else:
+        rule = TourRule(camera=recipe.camera, light=LookLight(hour=hour))
+        views = plan_views(volume, spec.images, recipe.seed, rule, scene=prepare_scene(volume))
     write_views(poses_path(folder, spec.scene_id), views, volume.block_to_room, spec.scene_id)
     east, up, south = volume.states.shape
     facts = SceneFacts(

@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.dataset.building.clock import StageClock
+from world2minecraft.dataset.building.recorded import recorded, screenshot
 from world2minecraft.dataset.building.scenes import (
     check_digest,
     poses_path,
     read_facts,
     source_of,
 )
+from world2minecraft.dataset.cameras import camera_record
 from world2minecraft.dataset.labels import cast_depth, label_image
 from world2minecraft.dataset.plan import Recipe, SceneSpec
 from world2minecraft.dataset.region import RegionRule, region_in
@@ -38,6 +40,7 @@ class Studio:
     light: LookLight
     rule: RegionRule
     block_to_room: np.ndarray
+    screenshots: tuple[Path, ...] = ()
 
     def key(self, number: int) -> str:
         """Return the key of a view's sample."""
@@ -49,7 +52,11 @@ class Studio:
         view, colour = self.views[number], None
         pose, camera = view.camera_to_room, view.camera
         with clock.of("render"):
-            if self.recipe.pictures:
+            if self.recipe.pictures and self.screenshots:
+                picture = render_volume(self.scene, camera, pose, outputs=("depth",))
+                colour = screenshot(self.screenshots[number], camera)
+                depth_m, seen_by = picture.depth_m, camera
+            elif self.recipe.pictures:
                 picture = render_volume(self.scene, camera, pose, outputs=COLOUR, light=self.light)
                 colour, depth_m, seen_by = picture.colour, picture.depth_m, camera
             else:
@@ -85,8 +92,16 @@ class Studio:
                 "at": pose.at,
             },
             "t_s": view.t_s,
+            **(self._as_printed(view) if self.recipe.paper_compat else {}),
             "hour": self.light.hour,
         }
+
+    def _as_printed(self, view: PlannedView) -> dict[str, Any]:
+        """Return K and E as the paper prints them; they do not meet the image."""
+        record = camera_record(
+            view.camera, view.camera_to_room, self.block_to_room, paper_compat=True
+        )
+        return {"paper_compat": {name: record[name] for name in ("K", "E")}}
 
 
 @lru_cache(maxsize=1)
@@ -115,4 +130,7 @@ def studio_of(folder: str, spec: SceneSpec, recipe: Recipe) -> Studio:
         voxel_m=None if recipe.is_block_cells else rule.voxel_m,
         scene=plain,
     )
-    return Studio(spec, recipe, scene, voxels, views, light, rule, volume.block_to_room)
+    shot_files: tuple[Path, ...] = ()
+    if spec.given is not None and spec.given.is_screenshots:
+        shot_files = tuple(one.image for one in recorded(spec.given))
+    return Studio(spec, recipe, scene, voxels, views, light, rule, volume.block_to_room, shot_files)

@@ -106,7 +106,8 @@ def sample_facts(sample: OccSample) -> dict[str, Any]:
         "tour_id": sample.tour_id,
         "frame": sample.frame,
         "split": sample.split,
-        "camera": {name: getattr(sample.camera, name) for name in CAMERA_KEYS},
+        "camera": {name: getattr(sample.camera, name) for name in CAMERA_KEYS}
+        | {"K": np.asarray(sample.camera.matrix, np.float64).tolist()},
         "camera_to_room": sample.camera_to_room.tolist(),
         "depth_per_metre": PER_METRE,
         "region": {
