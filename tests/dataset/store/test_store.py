@@ -41,6 +41,7 @@ def copied(made, tmp_path):
 def test_all_samples_come_back_in_their_order(made):
     store = open_store(made)
     assert len(store) == 14
+    assert list(store) == store.keys() and store.keys()[3] in store and "x" not in store
     for ours, theirs in zip(samples(), store.samples(), strict=True):
         assert_same(ours, theirs)
 

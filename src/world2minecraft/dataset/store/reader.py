@@ -39,6 +39,14 @@ class OccStore:
         """How many samples there are."""
         return self._rows.num_rows
 
+    def __iter__(self) -> Iterator[str]:
+        """Give the keys of all samples."""
+        return iter(self._names)
+
+    def __contains__(self, key: object) -> bool:
+        """Whether there is a sample of that key."""
+        return key in self._places
+
     def keys(self, split: str | None = None) -> list[str]:
         """Return the keys of all samples, or of a split, in their order."""
         return [self._names[number] for number in self._numbers(split)]
