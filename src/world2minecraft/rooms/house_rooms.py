@@ -4,6 +4,7 @@ A recipe knows its walls by number (a kitchen's counters run along walls 0 and 1
 tried in all four turns until the recipe's walls are those without doors.
 """
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -82,10 +83,18 @@ def furnish_cells(
     styles: list[Style],
     clutter: float,
     seed: tuple[int, ...],
+    left_out: Collection[int] = (),
 ) -> tuple[list[list[Item]], list[tuple[Rug, ...]]]:
-    """Return what stands and what lies in each cell, in the frame of the house."""
+    """Return what stands and what lies in each cell, in the frame of the house.
+
+    Cells that are left out by number stay empty; the others are the same with and without them.
+    """
     items, rugs = [], []
     for number, cell in enumerate(plan.cells):
+        if number in left_out:
+            items.append([])
+            rugs.append(())
+            continue
         own = [(gap, gap.hole(number, cell)) for gap in gaps if number in gap.cells]
         leaves = [len(gap.cells) == 2 and gap.cells[0] == number for gap, _ in own]
         leaves = [leaf and gap.kind == "door" for leaf, (gap, _) in zip(leaves, own, strict=True)]

@@ -97,14 +97,14 @@ DESIGNS: dict[str, tuple[str, ...]] = {
     "toilet": ("toilet",),
     "towel": ("towel_radiator",),
     "toy_shelf": ("cube_shelf", "bookcase_low"),
-    "tv": ("wall_tv", "tv_on_foot", "tv_tube", "projector_screen"),
+    "tv": ("wall_tv", "tv_on_foot", "tv_on_foot", "tv_tube"),
     "tv_board": ("tv_stand", "sideboard"),
     "vase": ("flowers", "fern", "candles"),
     "wall_cabinet": ("wall_cabinet", "wall_cabinet_glass", "wall_shelf"),
     "wardrobe": ("wardrobe", "wardrobe_panels", "wardrobe_sliding"),
     "washing_machine": ("washing_machine", "washer_dryer"),
     "washstand": ("pedestal_basin", "vanity", "sink_unit"),
-    "whiteboard": ("projector_screen", "picture"),
+    "whiteboard": ("projector_screen",),
 }  # fmt: skip
 OF_CHOICE = 0.8  # How often a material that follows the room is the room's first.
 

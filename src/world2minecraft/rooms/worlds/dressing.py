@@ -13,7 +13,7 @@ CURTAINS = ("curtain", "curtain_sheer", "curtain_single")
 BLINDS = ("roller_blind", "venetian_blind")
 CEILING_LAMPS = ("ceiling_lamp", "pendant_lamp", "globe_lamp", "lantern_lamp", "chandelier")
 RUGS = ("rug", "rug_checked", "rug_round", "rug_striped")
-LAMP_AREA_M2 = 9.0  # Of floor that a ceiling lamp stands for.
+LAMP_AREA_M2 = (14.0, 6.0)  # Of floor that a ceiling lamp is for, by day and by night.
 
 
 def hang_leaves(furnisher: Furnisher, gaps: tuple[BlockGap, ...], rng: np.random.Generator) -> None:
@@ -87,15 +87,17 @@ def _hang(
     return 0
 
 
-def hang_lamps(furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator) -> int:
-    """Hang lamps of one kind from a room's ceiling; return how many."""
+def hang_lamps(
+    furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator, *, by_night: bool
+) -> int:
+    """Hang lamps of one kind from a room's ceiling, more of them by night; return how many."""
     scale = furnisher.house.blocks_per_metre
     if room.kind in ("hall", "shop", "storage", "bathroom", "laundry"):
         names = CEILING_LAMPS[:1]
     else:
         names = tuple(CEILING_LAMPS[int(n)] for n in rng.permutation(len(CEILING_LAMPS)))
     area = room.size[0] * room.size[1] / scale**2
-    count = max(1, round(area / LAMP_AREA_M2 / 1.6))
+    count = max(1, round(area / LAMP_AREA_M2[by_night]))
     for name in names:
         if hung := sum(
             hang_one(furnisher, room, name, (n + 0.5) / count, rng) for n in range(count)

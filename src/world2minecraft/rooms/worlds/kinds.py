@@ -9,11 +9,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from world2minecraft.classes import SemanticClass
 from world2minecraft.rooms.kinds import KINDS
 from world2minecraft.rooms.worlds.dressing import hang_one
 from world2minecraft.rooms.worlds.furnishing import Furnisher, Thing
 from world2minecraft.rooms.worlds.house import BlockHouse, BlockRoom
 from world2minecraft.rooms.worlds.showing import Show
+from world2minecraft.rooms.worlds.wares import HOME
 
 BOARDS = (  # Blocks with a slab that racks are made of, light and dark.
     "oak", "spruce", "birch", "jungle", "acacia", "dark_oak", "mangrove", "cherry", "bamboo",
@@ -84,6 +86,8 @@ MORE: dict[str, tuple[str, ...]] = {  # Further furniture of the metric kinds.
     ),
     "hall": ("coat_stand", "shoe_rack", "table_console", "bicycle", "standing_mirror", "radiator"),
 }  # fmt: skip
+CARRIERS = (int(SemanticClass.TABLE), int(SemanticClass.FURN))
+LOW_M = 1.3  # One sees what stands on a cupboard as high as this.
 PICTURES = ("picture", "portrait", "wall_mirror")
 
 
@@ -299,14 +303,22 @@ OWN: dict[str, Callable[[Task], None]] = {
 }  # fmt: skip
 
 
-def furnish_more(task: Task) -> None:
-    """Set further furniture, pictures and small wares into a room of a metric kind."""
+def _lay_about(task: Task) -> None:
+    """Put small things of a home on half of the low cupboards and tables of a room."""
+    room, furnisher = task.room, task.furnisher
+    for thing in [thing for thing in furnisher.things if thing.room == room.number]:
+        low = thing.high[2] - room.ground <= round(LOW_M * furnisher.house.blocks_per_metre)
+        if thing.class_id in CARRIERS and low and task.rng.random() < 0.55:
+            task.show.put_on(thing, (HOME,), most=1 + int(task.rng.integers(2)))
+
+
+def furnish_more(task: Task, wall_lamps: int = 0) -> None:
+    """Set further furniture, pictures, lamps and small wares into a room of a metric kind."""
     room, rng = task.room, task.rng
     names = MORE.get(room.kind, ())
     for number in rng.permutation(len(names))[: 2 + int(rng.integers(3))].tolist():
-        thing = task.wall(names[number])
-        if thing is not None and thing.high[2] - room.ground <= 5 and rng.random() < 0.6:
-            task.show.put_on(thing, most=2)
+        task.wall(names[number])
+    _lay_about(task)
     for _ in range(3 if room.kind == "children" else 0):
         task.show.put_bed(room)
     for _ in range(int(rng.integers(3))):
@@ -315,5 +327,5 @@ def furnish_more(task: Task) -> None:
         task.show.hang_on_walls(room, 2, 6)
     if rng.random() < 0.5 and room.kind != "bathroom":
         task.wall("wall_shelf", above_m=1.3)
-    if rng.random() < 0.4:
+    for _ in range(wall_lamps):
         task.wall("wall_lamp", above_m=1.4)

@@ -11,12 +11,14 @@ from typing import Any
 
 import numpy as np
 
-WET = ("bathroom", "kitchen")
+WET = ("bathroom", "kitchen", "laundry")
+CALM, CALM_SHARE = 2, 0.7  # Most rooms have calm walls, so that furniture is what one sees.
+ACCENT_SHARE = 0.45  # Of rooms of which one wall differs from the others.
 
 
 @dataclass(frozen=True)
 class Style:
-    """A style: lists of blocks, of which rooms draw."""
+    """A style: lists of blocks, of which rooms draw; of walls the first two are the calm ones."""
 
     name: str
     walls: tuple[str, ...]
@@ -37,6 +39,7 @@ class RoomLook:
     """What one room is made of; states of blocks, and values of the kinds of material."""
 
     wall: str
+    accents: tuple[str, str, str, str]  # by the quarter turns of a front that looks off the wall
     floor: tuple[str, ...]
     floor_pattern: str
     ceiling: str
@@ -89,12 +92,17 @@ def draw_look(style: Style, kind: str, rng: np.random.Generator) -> RoomLook:
 
     wet = kind in WET
     floor = one(style.wet_floors if wet else style.floors)
-    wall = one(style.wet_walls if wet and rng.random() < 0.7 else style.walls)
+    calm = style.walls[:CALM] if rng.random() < CALM_SHARE else style.walls
+    wall = one(style.wet_walls if wet and rng.random() < 0.6 else calm)
+    accents = [_block(wall)] * 4
+    if rng.random() < ACCENT_SHARE:
+        accents[int(rng.integers(4))] = _block(one(style.wet_walls if wet else style.walls))
     skirting = one(style.skirtings) if rng.random() < 0.6 else wall
     cloth = int(rng.integers(len(style.cloths)))
     wood = int(rng.integers(len(style.woods)))
     return RoomLook(
         wall=_block(wall),
+        accents=(accents[0], accents[1], accents[2], accents[3]),
         floor=tuple(_block(name) for name in floor),
         floor_pattern=("rows", "checked")[int(wet)],
         ceiling=_block(one(style.ceilings)),

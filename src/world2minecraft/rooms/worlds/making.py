@@ -26,6 +26,7 @@ from world2minecraft.rooms.worlds.ways import Ways
 from world2minecraft.types import BlockVolume
 
 SCALES = (2.0, 6.0)  # Blocks per metre that the library's designs are made for in blocks.
+DAWN, DUSK = 7, 18  # Before and after, rooms are lit by more lamps.
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +50,6 @@ def generate_world(
     storeys: int = 1,
     style: str | None = None,
     blocks_per_metre: float = 4.0,
-    clutter: float = 0.3,
     deck: tuple[int, int] | None = None,
 ) -> HouseWorld:
     """Return the world of a seed: the same seed and numbers give the same blocks.
@@ -60,19 +60,19 @@ def generate_world(
         storeys: 1 or 2; two need 4 rooms or more.
         style: one of ``styles()``; drawn where none is given.
         blocks_per_metre: 2 to 6.
-        clutter: 0 (tidy) to 1.
         deck: the seed of the order of wares and how many were dealt before; drawn where None.
 
     Raises:
         ValueError: a number is out of its range. UnknownNameError: no style has this name.
     """
-    check_house(seed, rooms, storeys, clutter)
+    check_house(seed, rooms, storeys, 0.0)
     _check(blocks_per_metre, style)
     rng = np.random.default_rng([seed, rooms, storeys, 3])
     drawn = list(styles())[int(rng.integers(len(styles())))]
     chosen = styles()[style or drawn]
     plan = plan_block_house((seed, 2), rooms, storeys, blocks_per_metre)
     house = with_own_kinds(plan, rng)
+    light = {"hour": _hour(chosen, rng), "lamps": True}
     looks = tuple(draw_look(chosen, room.kind, rng) for room in house.rooms)
     canvas, ways = WorldCanvas(house), Ways(house)
     put_shell(canvas, house, looks)
@@ -81,11 +81,10 @@ def generate_world(
     show = Show(furnisher, dealt, np.random.default_rng([seed, rooms, storeys, 6]))
     _put_flight(furnisher, house, looks[0])
     hang_leaves(furnisher, house.gaps, rng)
-    _furnish(furnisher, show, clutter, (seed, rooms, storeys, 4))
+    _furnish(furnisher, show, (seed, rooms, storeys, 4), _is_night(light["hour"]))
     canvas.settle()
     put_lights(canvas, _footprints(canvas, house))
     volume, design, designs = canvas.finished()
-    light = {"hour": _hour(chosen, rng), "lamps": True}
     spawn = find_spawn(volume)
     things = tuple(furnisher.things)
     return HouseWorld(volume, design, designs, house, things, spawn, chosen.name, light)
@@ -123,24 +122,29 @@ def _put_flight(furnisher: Furnisher, house: BlockHouse, look: RoomLook) -> None
     furnisher.ways.end(upper, head)
 
 
-def _furnish(furnisher: Furnisher, show: Show, clutter: float, seed: Sequence[int]) -> None:
+def _is_night(hour: int) -> bool:
+    return not DAWN <= hour < DUSK
+
+
+def _furnish(furnisher: Furnisher, show: Show, seed: Sequence[int], by_night: bool) -> None:
     """Furnish each room: the metric kinds by their layout first, the others by their recipe."""
     house = furnisher.house
     rng = np.random.default_rng(seed)
     metric = [choose_style(rng) for _ in house.plan.cells]
-    items, _ = furnish_cells(house.plan, house.gaps_m, metric, clutter, tuple(seed))
+    own_kinds = [room.number for room in house.rooms if room.kind in OWN]
+    items, _ = furnish_cells(house.plan, house.gaps_m, metric, 0.0, tuple(seed), own_kinds)
     for room, held in zip(house.rooms, items, strict=True):
         own = np.random.default_rng([*seed, room.number])
         task = Task(furnisher, show, room, own)
         if room.kind in OWN:
-            hang_lamps(furnisher, room, own)
+            hang_lamps(furnisher, room, own, by_night=by_night)
             OWN[room.kind](task)
         else:
             _put_items(furnisher, room, held, own)
-            hang_lamps(furnisher, room, own)
+            hang_lamps(furnisher, room, own, by_night=by_night)
         dress_windows(furnisher, room, own)
         if room.kind not in OWN:
-            furnish_more(task)
+            furnish_more(task, wall_lamps=3 if by_night else int(own.random() < 0.4))
         lay_rugs(furnisher, room, own)
 
 

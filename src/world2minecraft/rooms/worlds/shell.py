@@ -65,14 +65,27 @@ def _put_walls(canvas: WorldCanvas, room: BlockRoom, look: RoomLook, house: Bloc
     for other in others:
         rim &= ~_columns(canvas, other, canvas.states.shape[:2])
     low, high = canvas.at(0, 0, room.ground)[2], canvas.at(0, 0, room.ground + room.height)[2]
-    x, y = np.nonzero(rim)
-    for level in range(low, high):
-        free = canvas.states[x, y, level] == 0
-        height = level - low
-        state = look.skirting if height < look.skirting_height else look.wall
-        if height == high - low - 1 and look.cornice:
-            state = look.cornice
-        canvas.set((x[free], y[free], np.full(free.sum(), level)), state, WALL)
+    for turn, side in enumerate(_sides(rim, inside)):
+        x, y = np.nonzero(side)
+        for level in range(low, high):
+            free = canvas.states[x, y, level] == 0
+            height = level - low
+            state = look.skirting if height < look.skirting_height else look.accents[turn]
+            if height == high - low - 1 and look.cornice:
+                state = look.cornice
+            canvas.set((x[free], y[free], np.full(free.sum(), level)), state, WALL)
+
+
+def _sides(rim: np.ndarray, inside: np.ndarray) -> list[np.ndarray]:
+    """Return the parts of a rim by where a front looks off them: +x, +y, -x, -y; corners last."""
+    steps = ((0, -1), (1, -1), (0, 1), (1, 1))
+    left, sides = rim.copy(), []
+    for axis, step in steps:
+        side = left & np.roll(inside, step, axis)
+        left &= ~side
+        sides.append(side)
+    sides[3] |= left
+    return sides
 
 
 def _put_gap(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:

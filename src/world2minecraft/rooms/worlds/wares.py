@@ -1,11 +1,13 @@
 """Wares: any block of the game as something to look at, with what it needs to stay.
 
 ``data/wares.json`` says which blocks stand otherwise than on a board: what grows needs soil, what
-hangs a block above, what is two blocks high its other half. All others stand by themselves.
+hangs a block above, what is two blocks high its other half. All others stand by themselves; of them
+``home`` names those that lie about in homes too.
 """
 
 import json
 from dataclasses import dataclass
+from fnmatch import fnmatch
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -15,6 +17,7 @@ import numpy as np
 from world2minecraft.minecraft.states import known_blocks
 
 MOUNTS = ("board", "tall", "soil", "wall", "hanging", "water", "bed")
+HOME = "home"
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,13 @@ def wares() -> tuple[Ware, ...]:
     return tuple(told[name] for name in sorted(told))
 
 
+def _pile(mount: str) -> list[Ware]:
+    if mount != HOME:
+        return [ware for ware in wares() if ware.mount == mount]
+    likes = table()[HOME]
+    return [ware for ware in _pile("board") if any(fnmatch(ware.name, like) for like in likes)]
+
+
 class Deck:
     """Wares in a shuffled order, dealt one after another, so that a series shows them all.
 
@@ -71,8 +81,8 @@ class Deck:
         rng = np.random.default_rng([seed, 17])
         self._piles: dict[str, list[Ware]] = {}
         self._next: dict[str, int] = {}
-        for mount in MOUNTS:
-            pile = [ware for ware in wares() if ware.mount == mount]
+        for mount in (*MOUNTS, HOME):
+            pile = _pile(mount)
             self._piles[mount] = [pile[int(n)] for n in rng.permutation(len(pile))]
             every = sum(ware.mount == "board" for ware in wares())
             self._next[mount] = round(start * len(pile) / every) if len(pile) < every else start
