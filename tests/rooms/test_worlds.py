@@ -3,14 +3,17 @@
 import numpy as np
 import pytest
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.classes import UNKNOWN, SemanticClass
 from world2minecraft.errors import UnknownNameError
+from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.exchange.scene import read_scene
+from world2minecraft.files import read_json
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.minecraft.worlds.reading import read_level
 from world2minecraft.minecraft.worlds.world import read_world
 from world2minecraft.rooms.worlds import generate_world, write_worlds
+from world2minecraft.rooms.worlds.layouts import house_layouts
 from world2minecraft.rooms.worlds.reach import reached, reached_floors, standing
 from world2minecraft.types import BlockVolume
 
@@ -87,6 +90,46 @@ def test_rooms_stand_where_the_room_frame_says(house):
     assert (middle[:, :2].max(axis=0) <= high + 0.3).all()
 
 
+def test_layouts_say_where_the_blocks_are(tall):
+    volume, to_block = tall.volume, np.linalg.inv(tall.volume.block_to_room)
+    layouts = house_layouts(tall.house, tall.things)
+
+    def semantic(points_m):
+        at = (points_m @ to_block[:3, :3].T + to_block[:3, 3] - volume.corner).astype(int)
+        return volume.semantic[tuple(at.T)], volume.instance[tuple(at.T)]
+
+    assert sum(len(layout.objects) for layout in layouts) == len(tall.things)
+    for layout in layouts:
+        for item in layout.objects:
+            low, high = item.center_m - 1e-9, item.center_m + 1e-9
+            assert (low[:2] > layout.floor_polygon_m.min(axis=0)).all()
+            assert (high[:2] < layout.floor_polygon_m.max(axis=0)).all()
+        for opening in layout.openings:
+            middle = (opening.start_m + opening.end_m) / 2
+            inner = layout.floor_polygon_m.mean(axis=0)
+            along = opening.end_m - opening.start_m
+            off = np.array([-along[1], along[0]]) / np.hypot(*along)
+            off *= np.sign(off @ (middle - inner)) * 0.1
+            high = layout.floor_z_m + (opening.sill_m + opening.head_m) / 2
+            found, _ = semantic(np.array([[*(middle + off), high]]))
+            if opening.kind == "window":
+                assert found == SemanticClass.WINDOW
+            else:
+                assert found in (0, SemanticClass.OBJS)
+
+
+def test_the_garden_is_of_no_class_and_outside(house):
+    volume = house.volume
+    garden = volume.semantic == UNKNOWN
+    assert garden.any()
+    outside = np.ones(volume.semantic.shape, bool)
+    x, _, z = (-value for value in volume.corner)
+    outside[x : x + house.house.size[0], :, z : z + house.house.size[1]] = False
+    empty = np.argwhere(garden & ~outside)
+    floors = np.any([room.floor(house.house.size) for room in house.house.rooms], axis=0)
+    assert not floors[empty[:, 0] - x, house.house.size[1] - 1 - (empty[:, 2] - z)].any()
+
+
 def test_a_jump_is_one_block_and_a_fence_too_high():
     palette = ("minecraft:air", "minecraft:stone", "minecraft:oak_fence")
     states = np.zeros((6, 6, 1), np.uint16)
@@ -117,6 +160,8 @@ def test_written_worlds_are_read_back(tmp_path):
     assert scene.designs[0] == ""
     assert int(scene.design.max()) == len(scene.designs) - 1
     assert set(scene.light) == {"hour", "lamps"}
+    stated = read_json(folder / "house.json")
+    assert len(stated["rooms"]) == len(read_layouts(folder / "layout.json"))
     assert read_world(folder / "world").states.any()
     assert (
         read_level(folder / "world")["DayTime"] == round((scene.light["hour"] - 6) * 1000) % 24000

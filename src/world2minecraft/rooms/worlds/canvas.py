@@ -11,7 +11,7 @@ from world2minecraft.coordinates import ROOM_CORNER_BLOCK, grid_to_block_axes
 from world2minecraft.rooms.worlds.house import BlockHouse
 from world2minecraft.types import BlockVolume
 
-MARGIN = 2  # The wall, and what lies before it.
+MARGIN = 1  # The wall; what lies before it comes on top.
 UNDER = 2  # Layers under the lowest rooms: their floor, and the ground.
 OVER = 3  # Layers over the highest rooms: ceiling, roof and air.
 
@@ -19,8 +19,8 @@ OVER = 3  # Layers over the highest rooms: ceiling, roof and air.
 class WorldCanvas(Canvas):
     """A canvas that knows designs. A place of the house is ``inner + margin`` of its arrays."""
 
-    def __init__(self, house: BlockHouse, margin: int = MARGIN):
-        self.margin = margin
+    def __init__(self, house: BlockHouse, garden: int = 1):
+        self.margin = margin = MARGIN + garden
         layers = UNDER + house.grounds[-1] + house.height + OVER
         shape = (house.size[0] + 2 * margin, house.size[1] + 2 * margin, layers)
         corner = (-margin, ROOM_CORNER_BLOCK[1] - UNDER, -margin)

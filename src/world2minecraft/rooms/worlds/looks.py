@@ -54,11 +54,6 @@ class RoomLook:
     stone: str
 
     @property
-    def door(self) -> str:
-        """The block of doors."""
-        return f"minecraft:{self.wood}_door"
-
-    @property
     def stairs(self) -> str:
         """The block of stairs."""
         return f"minecraft:{self.wood}_stairs"

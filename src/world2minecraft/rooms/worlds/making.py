@@ -16,6 +16,7 @@ from world2minecraft.rooms.style import choose_style
 from world2minecraft.rooms.worlds.canvas import WorldCanvas
 from world2minecraft.rooms.worlds.dressing import dress_windows, hang_lamps, hang_leaves, lay_rugs
 from world2minecraft.rooms.worlds.furnishing import Furnisher, Thing
+from world2minecraft.rooms.worlds.garden import garden_blocks, put_garden
 from world2minecraft.rooms.worlds.house import BlockHouse, BlockRoom, plan_block_house
 from world2minecraft.rooms.worlds.kinds import OWN, Task, furnish_more, with_own_kinds
 from world2minecraft.rooms.worlds.looks import RoomLook, Style, draw_look, styles
@@ -74,7 +75,7 @@ def generate_world(
     house = with_own_kinds(plan, rng)
     light = {"hour": _hour(chosen, rng), "lamps": True}
     looks = tuple(draw_look(chosen, room.kind, rng) for room in house.rooms)
-    canvas, ways = WorldCanvas(house), Ways(house)
+    canvas, ways = WorldCanvas(house, garden_blocks(blocks_per_metre)), Ways(house)
     put_shell(canvas, house, looks)
     furnisher = Furnisher(canvas, house, looks, ways)
     dealt = Deck(*(deck or (seed, int(rng.integers(1000)))))
@@ -82,6 +83,7 @@ def generate_world(
     _put_flight(furnisher, house, looks[0])
     hang_leaves(furnisher, house.gaps, rng)
     _furnish(furnisher, show, (seed, rooms, storeys, 4), _is_night(light["hour"]))
+    put_garden(canvas, house, chosen.name, dealt, rng)
     canvas.settle()
     put_lights(canvas, _footprints(canvas, house))
     volume, design, designs = canvas.finished()

@@ -11,6 +11,7 @@ from world2minecraft.rooms.worlds.looks import RoomLook
 FLOOR, WALL = int(SemanticClass.FLOOR), int(SemanticClass.WALL)
 CEILING, WINDOW = int(SemanticClass.CEILING), int(SemanticClass.WINDOW)
 OBJS = int(SemanticClass.OBJS)
+DOOR = "minecraft:iron_door"
 EIGHT = np.ones((3, 3), bool)
 # Which way a block looks that looks by 0 to 3 quarter turns from +x, in the game's words.
 FACINGS = ("east", "north", "west", "south")
@@ -99,7 +100,10 @@ def _put_gap(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
 
 
 def _put_front_door(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
-    """Fill the front door with closed doors of the game, side by side and one on another."""
+    """Fill the front door with doors of iron, side by side and one on another.
+
+    Nobody opens those by hand: walks stay in the house.
+    """
     facing = FACINGS[gap.turn]
     for n, (x, y) in enumerate(
         (x, y) for x in range(gap.low[0], gap.high[0]) for y in range(gap.low[1], gap.high[1])
@@ -107,7 +111,7 @@ def _put_front_door(canvas: WorldCanvas, gap: BlockGap, look: RoomLook) -> None:
         for z in range(gap.bottom, gap.top - 1, 2):
             for up, half in enumerate(("lower", "upper")):
                 hinge = ("left", "right")[n % 2]
-                state = f"{look.door}[facing={facing},half={half},hinge={hinge},open=false]"
+                state = f"{DOOR}[facing={facing},half={half},hinge={hinge},open=false]"
                 canvas.set(canvas.at(x, y, z + up), state, OBJS)
         if (gap.top - gap.bottom) % 2:
             canvas.set(canvas.at(x, y, gap.top - 1), look.wall, WALL)

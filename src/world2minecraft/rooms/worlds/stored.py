@@ -1,13 +1,18 @@
 """Worlds of houses on disk: a folder a house, with the world, its scene and its designs."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.exchange.layout import write_layouts
 from world2minecraft.exchange.scene import scene_of, write_scene
+from world2minecraft.files import write_json
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
 from world2minecraft.minecraft.worlds.world import write_world
 from world2minecraft.progress import Progress, silent
+from world2minecraft.rooms.worlds.layouts import house_layouts
 from world2minecraft.rooms.worlds.making import HouseWorld, generate_world
 
 ROOMS, STOREYS_SHARE = (4, 9), 0.35  # 156 houses have about 1,000 rooms.
@@ -17,7 +22,10 @@ WARES_A_HOUSE = 37  # By so many the order of wares is further on from house to 
 def write_house(
     made: HouseWorld, folder: str | Path, *, name: str, mc_version: str = DEFAULT_VERSION
 ) -> None:
-    """Write ``world/``, ``scene.json``, ``scene.npz``, ``designs.json`` and ``house.json``.
+    """Write ``world/``, ``scene.json``, ``scene.npz``, ``designs.json`` and what stands where.
+
+    ``layout.json`` has the rooms and their openings, ``house.json`` the style, the light, the kinds
+    of rooms and the furniture.
 
     Raises:
         OutputError: the folder cannot be written. UnknownNameError: no such version.
@@ -44,6 +52,32 @@ def write_house(
         light=made.light,
     )
     write_scene(target, scene)
+    write_layouts(target / "layout.json", house_layouts(made.house, made.things))
+    write_json(target / "house.json", _facts(made))
+
+
+def _facts(made: HouseWorld) -> dict[str, Any]:
+    layouts = house_layouts(made.house, made.things)
+    rooms = [
+        {"kind": room.kind, "storey": room.storey, "name": layout.name}
+        for room, layout in zip(made.house.rooms, layouts, strict=True)
+    ]
+    things = [
+        {
+            "instance": thing.instance,
+            "design": thing.design,
+            "class": CLASS_NAMES[thing.class_id],
+            "room": thing.room,
+            "center_m": [round(float(v), 4) for v in stated.center_m],
+            "size_m": [round(float(v), 4) for v in stated.size_m],
+            "yaw_deg": stated.yaw_deg,
+        }
+        for layout, room in zip(layouts, made.house.rooms, strict=True)
+        for thing, stated in zip(
+            (one for one in made.things if one.room == room.number), layout.objects, strict=True
+        )
+    ]
+    return {"style": made.style, "light": made.light, "rooms": rooms, "things": things}
 
 
 def write_worlds(
