@@ -10,7 +10,7 @@ CONDITIONS = {
     "under_floor": "within half a metre under a floor, with no room between",
     "wall_line": "outside, and straight on from a wall, up or down, for half a metre",
     "over_ceiling": "over a ceiling, within three metres: roofs and attics",
-    "covers_ground": "outside, with nothing over it within two metres and something under it",
+    "open_floor": "outside, part of a flat top a metre and a half wide that one can stand on",
     "air_above": "nothing over the block",
     "air_below": "nothing under the block",
     "on_floor": "a floor under the block",
@@ -25,6 +25,7 @@ CONDITIONS = {
 NEIGHBOURS = {"over": (0, -1, 0), "under": (0, 1, 0)}
 # Of the thing that a block is part of: blocks inside that touch by faces. Metres.
 MEASURES = {
+    "at_m": "of the block alone: its bottom over the floor",
     "height_m": "from its lowest to its highest block",
     "bottom_m": "its lowest block over the floor",
     "top_m": "its highest block's top over the floor",

@@ -66,11 +66,20 @@ class Context:
             parts = self.things.parts.ravel()[at]
             result &= parts > 0
             for name, span in rule.spans.items():
-                result &= _within(self.things.measures[name], span)[parts]
+                own = name == "at_m"
+                result &= _within(self._at_m(at), span) if own else self._of_things(name, span)[parts]
             for name, span in rule.shares.items():
                 own = np.isin(self.kinds, self._numbers((name,)))
                 result &= _within(shares_of(self.things.parts, own), span)[parts]
         return result
+
+    def _of_things(self, name: str, span: Span) -> np.ndarray:
+        return _within(self.things.measures[name], span)
+
+    def _at_m(self, at: np.ndarray) -> np.ndarray:
+        """Return how high over their floor blocks stand, in metres."""
+        layer = np.unravel_index(at, self.kinds.shape)[1]
+        return (layer - self.zones.ground.ravel()[at] - 1) / self.scale
 
     def condition(self, name: str) -> np.ndarray:
         """Return where a condition holds, bool [X, Y, Z]."""

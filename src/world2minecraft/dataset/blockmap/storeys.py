@@ -127,7 +127,8 @@ def _add_storey(
     """Set the zones of the rooms over one floor."""
     tops = _ceilings(patch, over[:, level], level, scale, building.shape[1])
     walls, hung = _walls(building, level, tops)
-    region = _region(patch, building[:, level] & ~walls, over[:, level], roofed)
+    ground_layer = building[:, level] & ~walls
+    region = _region(patch, ground_layer, building, level, scale) if roofed else patch
     walls &= ndimage.binary_dilation(region, np.ones((3, 3)), iterations=max(2, round(scale)))
     layers = np.arange(building.shape[1])[None, :, None]
     between = (layers > level) & (layers < tops[:, None, :])
@@ -190,8 +191,10 @@ def _hung_from(building: np.ndarray, tops: np.ndarray) -> np.ndarray:
     return gaps.max(1, keepdims=True) + 1
 
 
-def _region(patch: np.ndarray, ground: np.ndarray, over: np.ndarray, roofed: bool) -> np.ndarray:
+def _region(
+    patch: np.ndarray, mask: np.ndarray, building: np.ndarray, level: int, scale: float
+) -> np.ndarray:
     """Return the columns of rooms: those one can stand on, and those under furniture there."""
-    mask = ground & (over < NONE) if roofed else ground
-    grown = np.asarray(ndimage.binary_propagation(patch & mask, mask=mask)) | patch
-    return grown
+    head = level + max(2, int(np.ceil(HEAD_M * scale - 1e-6)))
+    roof = building[:, head : level + 2 + round(ROOF_M * scale)].any(1)
+    return np.asarray(ndimage.binary_propagation(patch & mask & roof, mask=mask & roof)) | patch

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from world2minecraft.dataset.blockmap.context import Context
 
 UNDER_M = 0.5  # How thick a floor is, and what goes on of a wall beside it.
-ROOF_M, SKY_M = 3.0, 2.0
+ROOF_M, SKY_M, WIDE_M = 3.0, 1.8, 1.5
 SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
 
 
@@ -102,19 +102,20 @@ def _over_ceiling(context: "Context") -> np.ndarray:
     return np.asarray(wide) & context.condition("outside")
 
 
-def _covers_ground(context: "Context") -> np.ndarray:
+def _open_floor(context: "Context") -> np.ndarray:
     layers = np.arange(context.filled.shape[1])[None, :, None]
-    sky = next_above(context.building) - layers > SKY_M * context.scale
-    under = shifted(context.building, 0, -1, 0)
-    under[:, 0] = True
-    return context.condition("outside") & sky & under & ~_over_ceiling(context)
+    head = max(2, round(SKY_M * context.scale))
+    stands = context.building & (next_above(context.building) - layers > head)
+    side = max(2, round(WIDE_M * context.scale))
+    wide = ndimage.binary_opening(stands, np.ones((side, 1, side)))
+    return np.asarray(wide) & context.condition("outside")
 
 
 MAKERS: dict[str, Callable[["Context"], np.ndarray]] = {
     "under_floor": _under_floor,
     "wall_line": _wall_line,
     "over_ceiling": _over_ceiling,
-    "covers_ground": _covers_ground,
+    "open_floor": _open_floor,
     "air_above": _air_above,
     "air_below": _air_below,
     "on_floor": _on_floor,

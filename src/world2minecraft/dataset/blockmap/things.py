@@ -42,7 +42,7 @@ def things_of(
     tall = sheets & (column_heights(blocks) >= SHEET_M * scale)
     parts, count = joined_parts(held, 2 * blocks.astype(np.int64) + tall, tall)
     parts, count = _abreast(parts, count, max(2, round(TALL_M * scale)))
-    found = {name: np.zeros(count + 1) for name in MEASURES}
+    found = {name: np.zeros(count + 1) for name in MEASURES if name != "at_m"}
     for number, box in enumerate(ndimage.find_objects(parts), 1):
         if box is None:
             continue
