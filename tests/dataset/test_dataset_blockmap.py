@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from house_of_blocks import PLANKS, Blocks, cottage
+from house_of_blocks import PLANKS, STAIR, Blocks, cottage
 
 from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.dataset.blockmap import (
@@ -18,7 +18,7 @@ from world2minecraft.dataset.blockmap import (
 )
 from world2minecraft.dataset.blockmap.rules import Rule
 from world2minecraft.dataset.blockmap.storeys import NONE, next_above
-from world2minecraft.dataset.blockmap.things import column_heights, joined_parts
+from world2minecraft.dataset.blockmap.things import columns, joined_parts
 from world2minecraft.dataset.values import FineClass
 from world2minecraft.errors import InputError, LimitError, UnknownNameError, UsageError
 from world2minecraft.minecraft.states import known_blocks
@@ -157,6 +157,56 @@ def test_two_storeys_have_a_ceiling_and_a_floor_each():
     assert classify(made.volume(), NYU).semantic[5, 5, 5] == 2  # One walks on a thin slab.
 
 
+def test_the_papers_map_knows_rooms_behind_glass_that_it_calls_empty():
+    told = classify(cottage().volume(), PAPER).semantic
+    assert (told[2:10, 1, 2:8] == 2).all() and (told[2:10, 5, 2:8] == 1).all()
+    assert not told[4:6, 3, 1].any() and told[8, 2, 8] == 3
+    assert told[2, 2, 2] == 2  # A stair is floor, as the table has it.
+
+
+def test_a_terrace_is_floor_and_a_garden_wall_is_wall():
+    made = Blocks(24, 8, 10)
+    made.states[:12], made.palette = cottage().states, cottage().palette
+    made.put(np.s_[12:23, 1, 1:9], "minecraft:polished_andesite")
+    made.put(np.s_[22, 2:4, 1:9], "minecraft:stone_bricks")
+    told = classify(made.volume(), NYU).semantic
+    assert (told[13:21, 1, 2:8] == 2).all()
+    assert (told[22, 3, 1:9] == 3).all()
+
+
+def test_what_hangs_high_is_no_seat():
+    made = cottage()
+    made.put((5, 4, 6), STAIR)
+    assert CLASS_NAMES[classify(made.volume(), NYU).semantic[5, 4, 6]] == "objs"
+
+
+@pytest.mark.parametrize(
+    ("blocks", "name"),
+    [
+        ([(np.s_[0:8, 0, 0:4], "oak_slab"), (np.s_[0:8, 1, 0:4], "red_wool")], "bed"),
+        ([(np.s_[0:3, 0:2, 0:8], "gray_wool"), (np.s_[3, 0:4, 0:8], "gray_wool")], "sofa"),
+        ([(np.s_[0:3, 0:2, 0:3], "cyan_wool"), (np.s_[2, 2:4, 0:3], "cyan_wool")], "chair"),
+        ([(np.s_[0:6:5, 0:2, 0:4:3], "oak_fence"), (np.s_[0:6, 2, 0:4], "oak_slab")], "table"),
+        ([(np.s_[0, 2:5, 0:4], "black_concrete")], "tvs"),
+        ([(np.s_[0:3, :8, 0:2], "oak_planks"), (np.s_[0:3, :8, 2:4], "spruce_planks")], "furn"),
+        ([(np.s_[0, 0:9, 0:4], "red_wool")], "objs"),
+    ],
+)  # fmt: skip
+def test_furniture_built_of_blocks_is_told_by_its_measures(blocks, name):
+    """At four blocks a metre, in a room of 5 x 4.5 x 2.5 m; placed at its wall x = 0."""
+    made = Blocks(24, 14, 22)
+    made.put(np.s_[1:23, 1:13, 1:21], "minecraft:white_concrete")
+    made.states[2:22, 2:12, 2:20] = 0
+    before = made.states.copy()
+    for place, state in blocks:
+        inner = made.states[2:22, 2:12, 4:20]
+        made.palette.append(f"minecraft:{state}")
+        inner[place] = len(made.palette) - 1
+    told = classify(made.volume(4.0), NYU).semantic
+    at = made.states != before
+    assert {CLASS_NAMES[n] for n in told[at]} == {name}
+
+
 def test_entities_get_classes_too():
     volume = cottage().volume()
     picture = Entity((3.0, 63.0, 2.0), "minecraft:painting")
@@ -176,16 +226,16 @@ def test_next_above_is_what_a_loop_finds():
         assert found[x, y, z] == (over[0] if over else NONE)
 
 
-def test_column_heights_are_what_a_loop_finds():
+def test_columns_are_what_a_loop_finds():
     blocks = np.random.default_rng(4).integers(0, 2, (3, 8, 4))
-    found = column_heights(blocks)
+    found, first = columns(blocks)
     for x, y, z in np.ndindex(blocks.shape):
         low = high = y
         while low > 0 and blocks[x, low - 1, z] == blocks[x, y, z]:
             low -= 1
         while high < 7 and blocks[x, high + 1, z] == blocks[x, y, z]:
             high += 1
-        assert found[x, y, z] == high - low + 1
+        assert (found[x, y, z], first[x, y, z]) == (high - low + 1, low)
 
 
 def test_joined_parts_are_what_a_walk_finds():
@@ -298,7 +348,7 @@ BAD = {
     "be two numbers, such as [0.3, 0.6], not 3",
     "{name: m, extends: nyu, kinds: {k: [a]}, rules: {k: [{class: wall, where: [up]}, wall]}}":
     "where of k is 'up', which is none of floor, ceiling, wall, inside, outside, under_floor, "
-    "wall_line, over_ceiling, covers_ground, air_above, air_below, on_floor, at_wall, "
+    "wall_line, over_ceiling, open_floor, air_above, air_below, on_floor, at_wall, "
     "under_ceiling, turned, coarse, in_row, climbs",
     "{name: m, words: [{words: {a: wall}}]}": "words need namespaces, such as namespaces: [my_mod]",
     "{name: m, kinds: {k: a}}": "kind k must be a list of 8192 at most, not 'a'",

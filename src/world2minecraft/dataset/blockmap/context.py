@@ -67,7 +67,9 @@ class Context:
             result &= parts > 0
             for name, span in rule.spans.items():
                 own = name == "at_m"
-                result &= _within(self._at_m(at), span) if own else self._of_things(name, span)[parts]
+                result &= (
+                    _within(self._at_m(at), span) if own else self._of_things(name, span)[parts]
+                )
             for name, span in rule.shares.items():
                 own = np.isin(self.kinds, self._numbers((name,)))
                 result &= _within(shares_of(self.things.parts, own), span)[parts]

@@ -15,7 +15,7 @@ from scipy.sparse import csgraph
 
 from world2minecraft.dataset.blockmap.conditions import MEASURES
 
-SHEET_M = 1.0  # A curtain over a sofa's back is no part of it.
+SHEET_M, RAISED_M = 1.2, 1.0  # Of a curtain; of one that hangs over a sofa's back.
 TALL_M = 1.4
 
 
@@ -39,7 +39,9 @@ def things_of(
         ground: int16 [X, Y, Z], the layer of the floor under each.
         scale: blocks per metre.
     """
-    tall = sheets & (column_heights(blocks) >= SHEET_M * scale)
+    height, first = columns(blocks)
+    least = np.where(first > ground + 1, RAISED_M, SHEET_M) * scale
+    tall = sheets & (height >= least - 1e-6)
     parts, count = joined_parts(held, 2 * blocks.astype(np.int64) + tall, tall)
     parts, count = _abreast(parts, count, max(2, round(TALL_M * scale)))
     found = {name: np.zeros(count + 1) for name in MEASURES if name != "at_m"}
@@ -50,15 +52,15 @@ def things_of(
         floor = int(ground[box][own].min()) + 1
         low, high = box[1].start, box[1].stop
         sides = sorted(s.stop - s.start for s in (box[0], box[2]))
-        columns = own.any(axis=1)
+        held_columns = own.any(axis=1)
         at_floor = own[:, max(0, floor - low) :][:, :1].any(axis=1) & (low <= floor)
         found["height_m"][number] = (high - low) / scale
         found["bottom_m"][number] = (low - floor) / scale
         found["top_m"][number] = (high - floor) / scale
         found["wide_m"][number], found["long_m"][number] = sides[0] / scale, sides[1] / scale
-        found["area_m2"][number] = columns.sum() / scale**2
+        found["area_m2"][number] = held_columns.sum() / scale**2
         found["filled"][number] = own.mean()
-        found["open"][number] = (columns & ~at_floor).sum() / columns.sum()
+        found["open"][number] = (held_columns & ~at_floor).sum() / held_columns.sum()
     return Things(parts, found)
 
 
@@ -117,15 +119,18 @@ def joined_parts(held: np.ndarray, blocks: np.ndarray, alone: np.ndarray) -> tup
     return parts, int(found) if count else 0
 
 
-def column_heights(blocks: np.ndarray) -> np.ndarray:
-    """Return how many of the same block stand on one another where each is, int [X, Y, Z]."""
+def columns(blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return how many of the same block stand on one another where each is, and the lowest's layer.
+
+    Both int [X, Y, Z].
+    """
     layers = np.arange(blocks.shape[1])[None, :, None]
     begins, ends = np.ones(blocks.shape, bool), np.ones(blocks.shape, bool)
     begins[:, 1:] = blocks[:, 1:] != blocks[:, :-1]
     ends[:, :-1] = begins[:, 1:]
     first = np.maximum.accumulate(np.where(begins, layers, 0), axis=1)
     last = np.where(ends, layers, blocks.shape[1])[:, ::-1]
-    return np.minimum.accumulate(last, axis=1)[:, ::-1] - first + 1
+    return np.minimum.accumulate(last, axis=1)[:, ::-1] - first + 1, first
 
 
 def shares_of(parts: np.ndarray, is_kind: np.ndarray) -> np.ndarray:
