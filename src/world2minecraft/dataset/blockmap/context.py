@@ -45,12 +45,13 @@ class Context:
         scale: float,
     ):
         self.kinds, self.names, self.scale = kinds, names, scale
-        self.filled = ~np.isin(kinds, self._numbers(("empty",)))
-        self.building = np.isin(kinds, self._numbers(structure))
+        self.filled = ~self._are(("empty",))[kinds]
+        self.building = self._are(structure)[kinds]
         self.zones = zones_of(self.building, scale)
-        held = self.filled & (self.zones.zone == INSIDE) & ~np.isin(kinds, self._numbers(apart))
-        sheets = np.isin(kinds, self._numbers(sheets_of))
+        held = self.filled & (self.zones.zone == INSIDE) & ~self._are(apart)[kinds]
+        sheets = self._are(sheets_of)[kinds]
         self.things = things_of(held, blocks, sheets, self.zones.ground, scale)
+        self.shares = shares_of(self.things.parts, kinds, len(names))
         self._found: dict[str, np.ndarray] = {
             "turned": turned,
             "coarse": np.full(kinds.shape, scale < COARSE),
@@ -71,8 +72,8 @@ class Context:
                     _within(self._at_m(at), span) if own else self._of_things(name, span)[parts]
                 )
             for name, span in rule.shares.items():
-                own = np.isin(self.kinds, self._numbers((name,)))
-                result &= _within(shares_of(self.things.parts, own), span)[parts]
+                share = self.shares[:, self._are((name,))].sum(1)
+                result &= _within(share, span)[parts]
         return result
 
     def _of_things(self, name: str, span: Span) -> np.ndarray:
@@ -90,14 +91,15 @@ class Context:
         if name not in self._found:
             side, _, other = name.partition(" ")
             if other:
-                own = np.isin(self.kinds, self._numbers((other,)))
+                own = self._are((other,))[self.kinds]
                 self._found[name] = shifted(own, *NEIGHBOURS[side])
             else:
                 self._found[name] = MAKERS[name](self)
         return self._found[name]
 
-    def _numbers(self, names: frozenset[str] | tuple[str, ...]) -> np.ndarray:
-        return np.array([n for n, name in enumerate(self.names) if name in names], np.int64)
+    def _are(self, names: frozenset[str] | tuple[str, ...]) -> np.ndarray:
+        """Return which kinds are among names, bool [kinds]."""
+        return np.array([name in names for name in self.names])
 
 
 def _within(values: np.ndarray, span: Span) -> np.ndarray:

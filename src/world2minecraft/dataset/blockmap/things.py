@@ -133,9 +133,10 @@ def columns(blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.minimum.accumulate(last, axis=1)[:, ::-1] - first + 1, first
 
 
-def shares_of(parts: np.ndarray, is_kind: np.ndarray) -> np.ndarray:
-    """Return the share of each thing's blocks that are of a kind, float64 [things + 1]."""
-    count = int(parts.max(initial=0)) + 1
-    every = np.bincount(parts.ravel(), minlength=count)
-    own = np.bincount(parts[is_kind], minlength=count)
-    return own / np.maximum(every, 1)
+def shares_of(parts: np.ndarray, kinds: np.ndarray, count: int) -> np.ndarray:
+    """Return the share of each thing's blocks that each kind has, float64 [things + 1, count]."""
+    things = int(parts.max(initial=0)) + 1
+    held = parts > 0
+    pairs = parts[held].astype(np.int64) * count + kinds[held]
+    counts = np.bincount(pairs, minlength=things * count).reshape(things, count)
+    return counts / np.maximum(counts.sum(1, keepdims=True), 1)
