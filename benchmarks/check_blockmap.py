@@ -1,10 +1,9 @@
 """A block map alone against the truth of generated houses, block by block.
 
-``python -m benchmarks.check_blockmap [--houses 8 --seed 40 --map nyu --worlds WORLDS]``
+``python -m benchmarks.check_blockmap [--houses 12 --seed 300 --scale 4 --worlds WORLDS]``
 
-The houses are made here, at the scales that houses are made at in turn, or read from a folder of
-``w2m rooms generate --houses``. The map sees blocks and scale, and nothing of the truth. Blocks
-that show nothing (light, barriers) are left out.
+The houses are made here, or read from a folder of ``w2m rooms generate --houses``. The map sees
+blocks and scale, and nothing of the truth. Blocks that show nothing (light, barriers) are left out.
 """
 
 import argparse
@@ -22,15 +21,15 @@ from world2minecraft.dataset.source import open_scene_source
 from world2minecraft.rooms.worlds.making import generate_world
 from world2minecraft.types import BlockVolume
 
-SCALES = (2.0, 3.0, 4.0, 4.0)
 ROOMS = (5, 6, 7, 8)
 
 
 def main() -> None:
     """Print a row for each house, then precision, recall and IoU of each class over all."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--houses", type=int, default=8)
-    parser.add_argument("--seed", type=int, default=40)
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--houses", type=int, default=12)
+    parser.add_argument("--seed", type=int, default=300)
+    parser.add_argument("--scale", type=float, default=4.0, help="blocks per metre")
     parser.add_argument("--map", default="nyu")
     parser.add_argument("--worlds", type=Path)
     chosen = parser.parse_args()
@@ -38,7 +37,7 @@ def main() -> None:
     console = Console(width=None if os.isatty(1) else 120)
     table = Table("house", "blocks a metre", "blocks", "agree", "structure", "objects")
     total = np.zeros((CLASS_COUNT, CLASS_COUNT), np.int64)
-    for name, volume in houses(chosen.worlds, chosen.seed, chosen.houses):
+    for name, volume in houses(chosen.worlds, chosen.seed, chosen.houses, chosen.scale):
         counts = confusion(volume, rules)
         total += counts
         scale = f"{volume.blocks_per_metre:.0f}"
@@ -48,17 +47,17 @@ def main() -> None:
     console.print(by_class(total))
 
 
-def houses(worlds: Path | None, seed: int, count: int) -> Iterator[tuple[str, BlockVolume]]:
+def houses(
+    worlds: Path | None, seed: int, count: int, scale: float
+) -> Iterator[tuple[str, BlockVolume]]:
     """Yield the houses with their truth: those of a folder, or made from seeds."""
     if worlds is not None:
         for folder in sorted(worlds.glob("house_*")):
             yield folder.name, open_scene_source(folder).volume()
         return
     for number in range(seed, seed + count):
-        turn = number % len(SCALES)
-        made = generate_world(
-            number, rooms=ROOMS[turn], storeys=1 + number % 2, blocks_per_metre=SCALES[turn]
-        )
+        rooms, storeys = ROOMS[number % len(ROOMS)], 1 + number % 2
+        made = generate_world(number, rooms=rooms, storeys=storeys, blocks_per_metre=scale)
         yield str(number), made.volume
 
 

@@ -10,8 +10,7 @@ from house_of_blocks import Blocks, cottage
 
 from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.dataset.built_box import built_box, is_built
-from world2minecraft.dataset.source import fine_classes, open_scene_source, scene_id_of
-from world2minecraft.dataset.values import FineClass
+from world2minecraft.dataset.source import open_scene_source, scene_id_of
 from world2minecraft.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.exchange.scene import scene_of, write_scene
 from world2minecraft.minecraft.formats import WriteOptions, write_blocks
@@ -178,21 +177,6 @@ def test_a_world_where_nothing_is_built_is_read_around_its_spawn(tmp_path):
 )
 def test_what_players_build_of(state, built):
     assert is_built(state) == built
-
-
-def test_fine_classes_are_sorted_and_tell_designs():
-    volume = cottage().volume()
-    design = np.where(volume.states > 0, 0, 0).astype(np.uint16)
-    design[2, 2, 2] = 1
-    fine, classes = fine_classes(volume, design, ("", "chair_cafe"))
-    assert fine.dtype == np.uint16 and fine.shape == volume.states.shape
-    assert classes[0] == FineClass("minecraft:air") and (fine[volume.states == 0] == 0).all()
-    assert list(classes[1:]) == sorted(classes[1:])
-    assert classes[fine[2, 2, 2]] == FineClass("minecraft:oak_stairs", "chair_cafe")
-    assert classes[fine[2, 2, 5]] == FineClass("minecraft:oak_stairs")
-    for place in zip(*np.nonzero(volume.states), strict=True):
-        block = volume.palette[volume.states[place]].partition("[")[0]
-        assert classes[fine[place]].block == block
 
 
 def test_a_source_can_be_sent_to_another_process(house):

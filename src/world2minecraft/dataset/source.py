@@ -17,7 +17,7 @@ from world2minecraft.dataset.blockmap import BlockMap, classify, load_block_map,
 from world2minecraft.dataset.blockmap.reading import MAPS
 from world2minecraft.dataset.built_box import built_box
 from world2minecraft.dataset.designs import designs_beside
-from world2minecraft.dataset.values import FineClass
+from world2minecraft.dataset.naming import fine_names
 from world2minecraft.errors import InputError, UsageError
 from world2minecraft.exchange.cutting import Box
 from world2minecraft.exchange.source import Source, read_source
@@ -101,9 +101,9 @@ class SceneSource:
         volume = with_unlabelled(volume, self.rules)
         if self.block_map == OWN_MAP:
             return volume
-        design, names = self.designs()
-        fine, classes = fine_classes(volume, design, names)
-        return replace(volume, semantic=remapped(volume.semantic, fine, classes, self.rules))
+        names = fine_names(volume, self.designs())
+        fine = names.of_cells(np.arange(volume.states.size)).reshape(volume.states.shape)
+        return replace(volume, semantic=remapped(volume.semantic, fine, names.classes, self.rules))
 
 
 def open_scene_source(
@@ -167,26 +167,6 @@ def with_unlabelled(volume: BlockVolume, rules: BlockMap) -> BlockVolume:
     new = unsaid & (told.instance > 0) & (told.instance.astype(np.int64) + most <= 0xFFFF)
     instance = np.where(new, told.instance + np.uint16(most), volume.instance)
     return replace(volume, semantic=semantic, instance=instance.astype(np.uint16))
-
-
-def fine_classes(
-    volume: BlockVolume, design: np.ndarray, names: tuple[str, ...]
-) -> tuple[np.ndarray, tuple[FineClass, ...]]:
-    """Return the fine class of every block, uint16 [X, Y, Z], and the table that it indexes.
-
-    The first class stands for air; the others are sorted.
-    """
-    blocks = [state.partition("[")[0] for state in volume.palette]
-    ids = sorted(set(blocks[1:]))
-    number_of = np.array([0, *(ids.index(block) + 1 for block in blocks[1:])])
-    pairs = number_of[volume.states] * len(names) + np.where(volume.states > 0, design, 0)
-    used, where = np.unique(pairs, return_inverse=True)
-    held, count = ("", *ids), len(names)
-    made = [FineClass(held[pair // count], names[pair % count]) for pair in used.tolist()]
-    air = FineClass(blocks[0])
-    order = {one: n for n, one in enumerate([air, *sorted(m for m in made if m.block)])}
-    renumber = np.array([order[one] if one.block else 0 for one in made], np.uint16)
-    return renumber[where].reshape(volume.states.shape), tuple(order)
 
 
 def _box(box: Sequence[int] | None) -> Box | None:
