@@ -14,6 +14,7 @@ from world2minecraft.render import prepare_scene, render_volume
 from world2minecraft.render.beam import ALONE, NOTHING, PLANE, follow
 from world2minecraft.render.empties import empty_boxes
 from world2minecraft.render.tables import BOXES, FULL, NO_FACE
+from world2minecraft.types import Camera
 
 
 @settings(max_examples=30, deadline=None)
@@ -192,3 +193,19 @@ def test_clear_glass_is_a_surface_that_one_sees_through():
     assert np.isclose(behind, 4.5 / 4).any()
     red, _, blue = picture.colour[22:26, 30:34].reshape(-1, 3).max(axis=0).astype(int)
     assert red > blue + 40
+
+
+def test_a_ray_from_an_edge_between_cells_ends():
+    """Rounding of 0 steps pointed back there: overlapping empty boxes passed rays on for ever."""
+    camera = Camera(24, 18, 20.0, 20.0, 12.0, 9.0)
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        scene = prepare_scene(random_volume(rng, share=0.08))
+        grid_to_room = np.linalg.inv(scene.room_to_grid)
+        for _ in range(6):
+            eye = rng.integers(1, [8, 6, 7]).astype(np.float64)
+            eye[rng.integers(3)] += rng.choice([0, 0.37])  # On an edge, or on a corner.
+            ahead = rng.normal(size=3)
+            pose = look_at(apply(grid_to_room, eye), apply(grid_to_room, eye + ahead))
+            depth_m = render_volume(scene, camera, pose, outputs=()).depth_m
+            assert np.isfinite(depth_m).all()

@@ -40,6 +40,16 @@ def within(value, low, high):
 
 
 @inlined
+def onward(cell, found, d):
+    """Return the cell that was found on a ray, or the one before where that lies behind it.
+
+    On an edge between cells rounding, or an eye that stands right on it, may point back: two boxes
+    that overlap would then pass the ray to each other for ever.
+    """
+    return max(cell, found) if d > 0 else min(cell, found)
+
+
+@inlined
 def ray_of_pixel(pose, x, y, spread):
     """Return origin and direction, in the grid, of the ray through (x, y) at z = 1."""
     sx, sy = x * (1 - spread), y * (1 - spread)
@@ -104,13 +114,16 @@ def walk(space, bounds, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face):
         t = min(tx, ty, tz)
         if t == tx:
             i, face = (x1, 0) if dx > 0 else (x0 - 1, 1)
-            j, k = within(oy + t * dy, y0, y1), within(oz + t * dz, z0, z1)
+            j = onward(j, within(oy + t * dy, y0, y1), dy)
+            k = onward(k, within(oz + t * dz, z0, z1), dz)
         elif t == ty:
             j, face = (y1, 2) if dy > 0 else (y0 - 1, 3)
-            i, k = within(ox + t * dx, x0, x1), within(oz + t * dz, z0, z1)
+            i = onward(i, within(ox + t * dx, x0, x1), dx)
+            k = onward(k, within(oz + t * dz, z0, z1), dz)
         else:
             k, face = (z1, 4) if dz > 0 else (z0 - 1, 5)
-            i, j = within(ox + t * dx, x0, x1), within(oy + t * dy, y0, y1)
+            i = onward(i, within(ox + t * dx, x0, x1), dx)
+            j = onward(j, within(oy + t * dy, y0, y1), dy)
     return t, i, j, k, face, OUTSIDE
 
 

@@ -6,7 +6,7 @@ empty space in a few jumps. Coordinates, ``t`` and faces are those of ``render.r
 """
 
 from world2minecraft.jit import inlined, lean, njit
-from world2minecraft.render.ray import enter_grid, ray_of_pixel, steep, within
+from world2minecraft.render.ray import enter_grid, onward, ray_of_pixel, steep, within
 from world2minecraft.render.tables import NO_FACE
 
 CUBE, NEAR_AIR = 0, 1
@@ -112,10 +112,10 @@ def trace(cells, ox, oy, oz, dx, dy, dz, t):
             c, face = (k + 1 + reach, 4) if dz > 0 else (k - reach - 1, 5)
         if reach > 0:
             if face > 1:
-                a = within(ox + t * dx, i - reach, i + reach + 1)
+                a = onward(i, within(ox + t * dx, i - reach, i + reach + 1), dx)
             if face < 2 or face > 3:
-                b = within(oy + t * dy, j - reach, j + reach + 1)
+                b = onward(j, within(oy + t * dy, j - reach, j + reach + 1), dy)
             if face < 4:
-                c = within(oz + t * dz, k - reach, k + reach + 1)
+                c = onward(k, within(oz + t * dz, k - reach, k + reach + 1), dz)
         i, j, k = a, b, c
     return 0.0, 0, 0, 0, NO_FACE
