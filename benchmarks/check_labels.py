@@ -97,7 +97,6 @@ def _check_free(
 
 def say_ids(
     name: str,
-    house: House,
     voxels: SceneVoxels,
     pose: np.ndarray,
     picture: Picture,

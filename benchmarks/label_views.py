@@ -30,9 +30,9 @@ class House:
 
 
 def houses(seeds: range) -> Iterator[House]:
-    """Give the house of each seed; they have three to nine rooms, each sixth two storeys."""
+    """Give the house of each seed; they have four to eight rooms, each sixth two storeys."""
     for seed in seeds:
-        made = generate_world(seed, rooms=3 + seed % 7, storeys=1 + (seed % 6 == 1))
+        made = generate_world(seed, rooms=4 + seed % 5, storeys=1 + (seed % 6 == 1))
         scene = prepare_scene(made.volume)
         designs = (made.design, made.designs)
         fine, coarse = (

@@ -38,11 +38,14 @@ def mark_free(labels, to_camera, place, lens, depth, tiles, ends, free):
         lens: float64 [4], fx, fy, cx, cy.
         depth: float32 [H, W], z-depth in metres, 0 where a ray meets nothing.
         tiles: of ``greatest_depths``.
-        ends: float64 [8, 3], scratch.
+        ends: float64 [9, 3], scratch.
         free: bool [X, Y, Z], filled in place.
     """
     height, width = depth.shape
-    spread_z = (abs(to_camera[2, 0]) + abs(to_camera[2, 1]) + abs(to_camera[2, 2])) / 2
+    sizes = ends[0]
+    for axis in range(3):  # Half of what a cell spans along the camera's axes.
+        own = to_camera[axis]
+        sizes[axis] = (abs(own[0]) + abs(own[1]) + abs(own[2])) / 2
     for i in range(labels.shape[0]):
         for j in range(labels.shape[1]):
             for k in range(labels.shape[2]):
@@ -50,7 +53,7 @@ def mark_free(labels, to_camera, place, lens, depth, tiles, ends, free):
                 if labels[i, j, k] != 0:
                     continue
                 x, y, z = _carry(to_camera, i + 0.5, j + 0.5, k + 0.5)
-                if z + spread_z <= CROSSED_M or _beside(to_camera, lens, width, height, x, y, z):
+                if z + sizes[2] <= CROSSED_M or _beside(to_camera, lens, width, height, x, y, z):
                     continue
                 if z > 0:
                     u, v = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
@@ -58,9 +61,23 @@ def mark_free(labels, to_camera, place, lens, depth, tiles, ends, free):
                     if inside and crosses(place, lens, depth, int(u), int(v), i, j, k):
                         free[i, j, k] = True
                         continue
-                free[i, j, k] = _some_ray(
-                    to_camera, place, lens, depth, tiles, ends, i, j, k, z - spread_z
-                )
+                nearest = z - sizes[2]
+                if nearest > CROSSED_M:
+                    box = _around(lens, sizes, x, y, z)
+                    if not _is_some_deeper(tiles, depth.shape, box, nearest):
+                        continue
+                box = _outline(to_camera, lens, ends[1:], i, j, k)
+                free[i, j, k] = _some_ray(place, lens, depth, tiles, box, i, j, k, nearest)
+
+
+@inlined
+def _around(lens, sizes, x, y, z):
+    """Return left, right, top and bottom, in pixels, of a box around a cell before the camera."""
+    off = 1.0 / (z * (z - sizes[2]))
+    wide = lens[0] * (sizes[0] * z + abs(x) * sizes[2]) * off
+    high = lens[1] * (sizes[1] * z + abs(y) * sizes[2]) * off
+    u, v = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
+    return u - wide, u + wide, v - high, v + high
 
 
 @inlined
@@ -104,17 +121,43 @@ def crosses(place, lens, depth, u, v, i, j, k):
     return end - begin > CROSSED_M
 
 
+@inlined
+def _pixels(shape, box):
+    """Return the first and last column and row of the pixels whose middles lie in a box.
+
+    Rounding must not lose a pixel, nor may a number be too large to be whole.
+    """
+    left, right = min(max(box[0] - 1e-6, 0.0), 1e6), max(min(box[1] + 1e-6, 1e6), -1.0)
+    top, bottom = min(max(box[2] - 1e-6, 0.0), 1e6), max(min(box[3] + 1e-6, 1e6), -1.0)
+    return (
+        int(np.ceil(left - 0.5)), min(int(np.floor(right - 0.5)), shape[1] - 1),
+        int(np.ceil(top - 0.5)), min(int(np.floor(bottom - 0.5)), shape[0] - 1),
+    )  # fmt: skip
+
+
 @lean
-def _some_ray(to_camera, place, lens, depth, tiles, ends, i, j, k, nearest):
+def _is_some_deeper(tiles, shape, box, nearest):
+    """Tell whether some tile of those that a box covers has a ray that ends beyond ``nearest``."""
+    u0, u1, v0, v1 = _pixels(shape, box)
+    if u1 < u0 or v1 < v0:
+        return False
+    for row in range(v0 // TILE, v1 // TILE + 1):
+        for column in range(u0 // TILE, u1 // TILE + 1):
+            if tiles[row, column] > nearest:
+                return True
+    return False
+
+
+@lean
+def _some_ray(place, lens, depth, tiles, box, i, j, k, nearest):
     """Tell whether some pixel's ray goes through a cell; nothing of it is nearer than ``nearest``.
 
-    Only pixels count that the cell's outline surrounds, and of those no tile whose rays all end
-    before the cell.
+    Only pixels count that ``box`` (left, right, top, bottom) surrounds, and of those no tile whose
+    rays all end before the cell.
     """
-    left, right, top, bottom = _outline(to_camera, lens, ends, i, j, k)
-    height, width = depth.shape
-    u0, u1 = max(int(np.ceil(left - 0.5)), 0), min(int(np.floor(right - 0.5)), width - 1)
-    v0, v1 = max(int(np.ceil(top - 0.5)), 0), min(int(np.floor(bottom - 0.5)), height - 1)
+    u0, u1, v0, v1 = _pixels(depth.shape, box)
+    if u1 < u0 or v1 < v0:
+        return False
     for row in range(v0 // TILE, v1 // TILE + 1):
         for column in range(u0 // TILE, u1 // TILE + 1):
             if tiles[row, column] <= nearest:
@@ -151,13 +194,7 @@ def _outline(to_camera, lens, ends, i, j, k):
             x = ends[corner, 0] + share * (ends[other, 0] - ends[corner, 0])
             y = ends[corner, 1] + share * (ends[other, 1] - ends[corner, 1])
             box = _with(box, lens, x, y, CROSSED_M)
-    if box[0] > box[1]:
-        return 1.0, 0.0, 1.0, 0.0
-    # Rounding must not lose a pixel, nor may a number be too large to be whole.
-    return (
-        max(box[0] - 1e-6, -1.0), min(box[1] + 1e-6, 1e6),
-        max(box[2] - 1e-6, -1.0), min(box[3] + 1e-6, 1e6),
-    )  # fmt: skip
+    return box
 
 
 @inlined

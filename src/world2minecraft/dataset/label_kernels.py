@@ -71,7 +71,7 @@ def mark_in_frustum(to_camera, lens, width, height, marked):
 
 
 @lean
-def count_hits(solid, place, lens, depth, around, reach, hits, cells):
+def count_hits(solid, place, lens, depth, around, reach, memo, hits, cells):
     """Count the pixels that see each cell first.
 
     A pixel's ray is followed from ``around`` before its point to as much behind it: the first solid
@@ -86,15 +86,16 @@ def count_hits(solid, place, lens, depth, around, reach, hits, cells):
         depth: float32 [H, W].
         around: metres of depth.
         reach: cells, less than half of one.
+        memo: float64 [12], scratch: low and high corners of two boxes. Pixels whose way leads from
+            the first to the second see the same cell as the last one: neighbours mostly do.
         hits: uint32 [X, Y, Z], added to.
         cells: int32 [H, W], the C-order number of the cell each pixel sees, -1 for none; or of no
             size where that is not wanted.
     """
-    nx, ny, nz = hits.shape
     wanted = cells.size > 0
     counts = hits.reshape(-1)
-    li, lj, lk, there, cell = -1, -1, -1, False, -1
-    run, length = -1, 0
+    own, run, length = -1, -1, 0
+    memo[0] = np.inf
     ox, oy, oz = place[0, 3] + 1.0, place[1, 3] + 1.0, place[2, 3] + 1.0
     for v in range(depth.shape[0]):
         y = (v + 0.5 - lens[3]) / lens[1]
@@ -102,36 +103,30 @@ def count_hits(solid, place, lens, depth, around, reach, hits, cells):
         ry = place[1, 1] * y + place[1, 2]
         rz = place[2, 1] * y + place[2, 2]
         for u in range(depth.shape[1]):
-            if wanted:
-                cells[v, u] = -1
             t = np.float64(depth[v, u])
             if t <= 0:
+                if wanted:
+                    cells[v, u] = -1
                 continue
             x = (u + 0.5 - lens[2]) / lens[0]
             dx, dy, dz = place[0, 0] * x + rx, place[1, 0] * x + ry, place[2, 0] * x + rz
-            t -= around
-            ax, ay, az = ox + t * dx, oy + t * dy, oz + t * dz
-            t += 2 * around
-            bx, by, bz = ox + t * dx, oy + t * dy, oz + t * dz
-            if not (0 <= bx < nx + 2 and 0 <= by < ny + 2 and 0 <= bz < nz + 2):
-                continue
-            if not (0 <= ax < nx + 2 and 0 <= ay < ny + 2 and 0 <= az < nz + 2):
-                continue
-            i, j, k = int(bx), int(by), int(bz)
-            if i != int(ax) or j != int(ay) or k != int(az):
-                i, j, k = first_entered(solid, ax, ay, az, bx, by, bz)
-            if i != li or j != lj or k != lk:  # Neighbours mostly see one cell.
-                li, lj, lk = i, j, k
-                there = solid[i, j, k] != 0
-                cell = number_of(i, j, k, nx, ny, nz)
-            own = cell
-            if not there:
-                i, j, k = nearest_solid(solid, bx, by, bz, reach)
-                own = number_of(i, j, k, nx, ny, nz)
-            if own != run:
-                if run >= 0:
-                    counts[run] += length
-                run, length = own, 0
+            px, py, pz = ox + t * dx, oy + t * dy, oz + t * dz
+            dx, dy, dz = around * dx, around * dy, around * dz
+            ax, ay, az = px - dx, py - dy, pz - dz
+            bx, by, bz = px + dx, py + dy, pz + dz
+            if not (
+                memo[0] <= ax < memo[3]
+                and memo[1] <= ay < memo[4]
+                and memo[2] <= az < memo[5]
+                and memo[6] <= bx < memo[9]
+                and memo[7] <= by < memo[10]
+                and memo[8] <= bz < memo[11]
+            ):
+                own = _cell_seen(solid, ax, ay, az, bx, by, bz, reach, memo)
+                if own != run:
+                    if run >= 0:
+                        counts[run] += length
+                    run, length = own, 0
             length += 1
             if wanted:
                 cells[v, u] = own
@@ -139,11 +134,48 @@ def count_hits(solid, place, lens, depth, around, reach, hits, cells):
         counts[run] += length
 
 
+@lean
+def _cell_seen(solid, ax, ay, az, bx, by, bz, reach, memo):
+    """Return the number of the cell that a short way from a to b meets, -1 for none counted.
+
+    ``memo`` is filled with what surely meets the same, as ``count_hits`` says.
+    """
+    sx, sy, sz = solid.shape
+    memo[0] = np.inf
+    if not (0 <= ax < sx and 0 <= ay < sy and 0 <= az < sz):
+        return -1
+    if not (0 <= bx < sx and 0 <= by < sy and 0 <= bz < sz):
+        return -1
+    i, j, k = int(bx), int(by), int(bz)
+    moves = (i != int(ax)) + (j != int(ay)) + (k != int(az))
+    if moves > 0:
+        i, j, k = first_entered(solid, ax, ay, az, bx, by, bz)
+    if moves < 2:
+        memo[0], memo[1], memo[2] = np.floor(ax), np.floor(ay), np.floor(az)
+        memo[6], memo[7], memo[8] = np.floor(bx), np.floor(by), np.floor(bz)
+        for axis in range(3):
+            memo[3 + axis], memo[9 + axis] = memo[axis] + 1.0, memo[6 + axis] + 1.0
+    if solid[i, j, k] == 0:
+        i, j, k = nearest_solid(solid, bx, by, bz, reach)
+        if moves > 0:
+            memo[0] = np.inf
+        for axis in range(3):
+            _narrow(memo, 6 + axis, bx if axis == 0 else (by if axis == 1 else bz), reach)
+    if not (1 <= i < sx - 1 and 1 <= j < sy - 1 and 1 <= k < sz - 1):
+        return -1
+    return ((i - 1) * (sy - 2) + j - 1) * (sz - 2) + k - 1
+
+
 @inlined
-def number_of(i, j, k, nx, ny, nz):
-    """Return the C-order number of a cell of the inner part, -1 for one that is around it."""
-    inside = 1 <= i <= nx and 1 <= j <= ny and 1 <= k <= nz
-    return ((i - 1) * ny + j - 1) * nz + k - 1 if inside else -1
+def _narrow(memo, axis, at, reach):
+    """Narrow a span of ``memo`` to the places that are near to the same neighbours as ``at``."""
+    low, high = np.floor(at) + reach, np.floor(at) + 1.0 - reach
+    if at < low:
+        memo[axis + 3] = low
+    elif at > high:
+        memo[axis] = high
+    else:
+        memo[axis], memo[axis + 3] = low, high
 
 
 @lean

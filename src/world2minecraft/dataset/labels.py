@@ -60,7 +60,7 @@ def label_image(
     tiles = np.empty((-(-height // TILE), -(-width // TILE)), np.float32)
     greatest_depths(view.depth_m, tiles)
     mark_free(
-        labels, view.to_camera, view.place, view.lens, view.depth_m, tiles, np.empty((8, 3)), free
+        labels, view.to_camera, view.place, view.lens, view.depth_m, tiles, np.empty((9, 3)), free
     )
     hits, _ = view.hits(False)
     return OccLabels(region, labels, fine, instance, in_frustum, hits, free)
@@ -176,7 +176,7 @@ class _View:
         cells = np.empty(self.depth_m.shape if cells_wanted else (0, 0), np.int32)
         count_hits(
             gathered(self.voxels, box, 1)[1], _place(box, self.camera_to_room), self.lens,
-            self.depth_m, AROUND_M, REACH_M / box.voxel_m, hits, cells,
+            self.depth_m, AROUND_M, REACH_M / box.voxel_m, np.empty(12), hits, cells,
         )  # fmt: skip
         return (hits, cells) if box is self.region else _sampled(self.region, box, hits, cells)
 
