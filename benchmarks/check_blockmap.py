@@ -3,7 +3,8 @@
 ``python -m benchmarks.check_blockmap [--houses 12 --seed 300 --scale 4 --worlds WORLDS]``
 
 The houses are made here, or read from a folder of ``w2m rooms generate --houses``. The map sees
-blocks and scale, and nothing of the truth. Blocks that show nothing (light, barriers) are left out.
+blocks and scale, and nothing of the truth. Blocks that show nothing (light, barriers) are left out,
+and those that the truth leaves open, such as gardens.
 """
 
 import argparse
@@ -15,7 +16,13 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_CLASSES
+from world2minecraft.classes import (
+    CLASS_COUNT,
+    CLASS_NAMES,
+    OBJECT_CLASSES,
+    STRUCTURE_CLASSES,
+    UNKNOWN,
+)
 from world2minecraft.dataset.blockmap import BlockMap, classify, load_block_map
 from world2minecraft.dataset.source import open_scene_source
 from world2minecraft.rooms.worlds.making import generate_world
@@ -64,7 +71,7 @@ def houses(
 def confusion(volume: BlockVolume, rules: BlockMap) -> np.ndarray:
     """Return how many blocks of each class of the truth, rows, the map says are of each class."""
     told = classify(volume, rules).semantic
-    known = volume.semantic > 0
+    known = (volume.semantic > 0) & (volume.semantic != UNKNOWN)
     counts = np.zeros((CLASS_COUNT, CLASS_COUNT), np.int64)
     np.add.at(counts, (volume.semantic[known], told[known]), 1)
     return counts

@@ -1,9 +1,11 @@
 """Block maps: what names mean, where blocks stand, and what a user is told of a bad file."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from house_of_blocks import PLANKS, STAIR, Blocks, cottage
 
 from world2minecraft.classes import CLASS_NAMES
@@ -16,6 +18,7 @@ from world2minecraft.dataset.blockmap import (
     read_block_map,
     remapped,
 )
+from world2minecraft.dataset.blockmap.conditions import CONDITIONS, MEASURES
 from world2minecraft.dataset.blockmap.rules import Rule
 from world2minecraft.dataset.blockmap.storeys import NONE, next_above
 from world2minecraft.dataset.blockmap.things import columns, joined_parts
@@ -385,6 +388,28 @@ def test_files_that_are_no_yaml_too_large_or_full_of_aliases_are_refused(tmp_pat
         load_block_map("papers")
     with pytest.raises(InputError):
         load_block_map(tmp_path / "none.yaml")
+
+
+DOCS = Path(__file__).resolve().parents[2] / "docs" / "block-maps.md"
+
+
+@pytest.mark.skipif(not DOCS.is_file(), reason="the docs are not in this checkout")
+def test_the_docs_list_all_conditions_and_their_example_is_a_map():
+    text = DOCS.read_text()
+    for name, what in (CONDITIONS | MEASURES).items():
+        assert f"| `{name}` | {what} |" in text
+    example = text.partition("```yaml\n")[2].partition("```")[0]
+    mine = block_map_of(yaml.safe_load(example))
+    assert mine.classes_of("gold_block") == ("table",)
+    assert mine.meaning("red_sandstone") == "loud"
+
+
+def test_glowing_blocks_are_floors_and_lamps():
+    made = cottage()
+    made.put(np.s_[2:10, 1, 2:8], "minecraft:sea_lantern")
+    made.put((5, 5, 5), "minecraft:sea_lantern")
+    told = classify(made.volume(), NYU).semantic
+    assert (told[2:10, 1, 2:8] == 2).all() and CLASS_NAMES[told[5, 5, 5]] == "objs"
 
 
 def test_a_tree_without_extends_needs_nothing_else():
