@@ -4,7 +4,8 @@
 
 A fine class is a block id, or a furniture design whatever it is made of. It counts as seen where
 at least 100 pixels show it in each of at least 3 pictures; ``--views`` are taken in each room, from
-free places at a person's eye. ``--views 0`` leaves the pictures out.
+free places at a person's eye. ``--views 0`` leaves the pictures out; in smaller pictures than of
+640 by 480 as many fewer pixels are asked for.
 """
 
 import argparse
@@ -26,6 +27,7 @@ from world2minecraft.rooms.worlds.house import BlockRoom
 from world2minecraft.rooms.worlds.reach import reached_floors
 
 LEAST_PIXELS, LEAST_PICTURES = 100, 3
+PIXELS = 640 * 480
 WANTED = 1452  # Of the paper's data set.
 EYE_M = 1.6
 UNSEEN = {"air", "light"}
@@ -50,7 +52,7 @@ class Found:
 
 def main() -> None:
     """Print what a series of houses holds and shows."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--houses", type=int, default=156)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--views", type=int, default=3)
@@ -112,12 +114,13 @@ def show(found: Found, made: HouseWorld, views: int, size: tuple[int, int]) -> N
     names, of_cell = classes(made)
     main = main_blocks(made)
     flat = of_cell.reshape(-1)
+    least = LEAST_PIXELS * min(1.0, size[0] * size[1] / PIXELS)
     for room in made.house.rooms:
         for pose in poses(made, room, views):
             picture = render_volume(scene, camera, pose, outputs=(), threads=2)
             hits = picture.block_index[picture.block_index >= 0]
             pixels = np.bincount(flat[hits], minlength=len(names))
-            seen = [names[n] for n in np.flatnonzero(pixels >= LEAST_PIXELS) if n]
+            seen = [names[n] for n in np.flatnonzero(pixels >= least) if n]
             found.shown.update(seen)
             found.made_of.update((one, main[one]) for one in seen if one in main)
             found.pictures += 1

@@ -56,6 +56,10 @@ BECOMES: dict[str, tuple[tuple[str, float], ...]] = {
     "bed": (("storage", 0.04), ("children", 0.08), ("shop", 0.03)),
     "bathroom": (("laundry", 0.12),),
 }  # fmt: skip
+SHOWING = ("shop", "storage", "greenhouse", "gallery", "workshop")  # Every house has one,
+SHOWING_SHARES = (0.4, 0.2, 0.15, 0.1, 0.15)
+MANY_ROOMS = 8  # So many have two.
+SPARE = ("children", "dining", "study", "office")  # of these, where it has one.
 MORE: dict[str, tuple[str, ...]] = {  # Further furniture of the metric kinds.
     "living": (
         "piano", "grand_piano", "fireplace", "aquarium", "bookcase", "display_cabinet",
@@ -88,6 +92,11 @@ MORE: dict[str, tuple[str, ...]] = {  # Further furniture of the metric kinds.
 }  # fmt: skip
 CARRIERS = (int(SemanticClass.TABLE), int(SemanticClass.FURN))
 LOW_M = 1.3  # One sees what stands on a cupboard as high as this.
+SHELVES = {  # How many shelves hang in a room at most.
+    "living": 2, "bed": 1, "children": 2, "office": 2, "study": 2, "dining": 1, "kitchen": 1,
+    "hall": 2, "library": 1, "games": 1, "music": 1,
+}  # fmt: skip
+SHELF_M = 1.3
 PICTURES = ("picture", "portrait", "wall_mirror")
 
 
@@ -102,6 +111,13 @@ def with_own_kinds(house: BlockHouse, rng: np.random.Generator) -> BlockHouse:
                 kind = name
                 break
         rooms.append(replace(room, kind=kind))
+    wanted = 1 + (len(rooms) >= MANY_ROOMS)
+    for _ in range(wanted - sum(room.kind in SHOWING for room in rooms)):
+        changed = [room.number for room in rooms if room.kind in SPARE]
+        if changed:
+            number = changed[int(rng.integers(len(changed)))]
+            kind = SHOWING[int(rng.choice(len(SHOWING), p=SHOWING_SHARES))]
+            rooms[number] = replace(rooms[number], kind=kind)
     # A metric kind is furnished by the metric plan, which then must know of it.
     cells = tuple(
         replace(cell, kind=room.kind) if room.kind in KINDS else cell
@@ -175,12 +191,12 @@ class Task:
 
 
 def _shop(task: Task) -> None:
-    task.racks(3)
+    task.racks(4)
     counter = task.free("counter", "table_bar", "kitchen_island")
-    for _ in range(2):
-        table = task.free("table_trestle", "table_bistro", "coffee_table", "dining_table_steel")
-        if table is not None:
-            task.show.put_on(table, ("board", "soil"), most=5)
+    pillar = task.one(*PILLARS, "barrel", "hay_block", "stripped_spruce_log[axis=y]")
+    for _ in range(6):
+        task.show.put_plinth(task.room, pillar, 2 + int(task.rng.integers(2)))
+    task.wall("coffee_table_stone", "table_trestle", "table_side")
     if counter is not None:
         task.show.put_on(counter, most=2)
     task.show.put_bed(task.room)
@@ -312,6 +328,11 @@ def _lay_about(task: Task) -> None:
             task.show.put_on(thing, (HOME,), most=1 + int(task.rng.integers(2)))
 
 
+def _high(task: Task) -> int:
+    """Return the layer of a shelf at the height of one's eyes."""
+    return round(SHELF_M * task.furnisher.house.blocks_per_metre)
+
+
 def furnish_more(task: Task, wall_lamps: int = 0) -> None:
     """Set further furniture, pictures, lamps and small wares into a room of a metric kind."""
     room, rng = task.room, task.rng
@@ -325,7 +346,10 @@ def furnish_more(task: Task, wall_lamps: int = 0) -> None:
         task.wall(*PICTURES, above_m=1.0)
     if room.kind in ("living", "study", "hall", "children") and rng.random() < 0.5:
         task.show.hang_on_walls(room, 2, 6)
-    if rng.random() < 0.5 and room.kind != "bathroom":
+    if rng.random() < 0.35 and room.kind != "bathroom":
         task.wall("wall_shelf", above_m=1.3)
+    for _ in range(SHELVES.get(room.kind, 0)):
+        if rng.random() < 0.75:
+            task.show.put_rack(room, (_high(task),), task.one(*BOARDS), most=10)
     for _ in range(wall_lamps):
         task.wall("wall_lamp", above_m=1.4)

@@ -33,7 +33,9 @@ class Show:
             self.canvas.set(cell, state, OBJS, instance)
         return True
 
-    def put_rack(self, room: BlockRoom, boards: Sequence[int], board: str, least: int = 4) -> int:
+    def put_rack(
+        self, room: BlockRoom, boards: Sequence[int], board: str, *, least: int = 4, most: int = 99
+    ) -> int:
         """Stand a rack along the longest bare piece of wall, with wares on boards.
 
         Args:
@@ -41,30 +43,30 @@ class Show:
             boards: the layers of the boards over the floor.
             board: the material of boards, a block that has a slab, such as ``oak``.
             least: blocks that it is long at least.
+            most: blocks that it is long at most.
 
         Returns:
             How many wares it holds; 0 where there is no room.
         """
-        found = self._longest_wall(room, boards[-1] + 2, least)
+        found = self._longest_wall(room, (boards[0], boards[-1] + 2), least)
         if found is None:
             return 0
         cells, turns = found
-        columns = np.array(cells)
-        if not self.furnisher.ways.stay(room, columns):
-            half = columns[: max(least, len(columns) // 2)]
-            if not self.furnisher.ways.stay(room, half):
-                return 0
-            columns = half
-        self.furnisher.ways.take(room, columns)
+        start = int(self.rng.integers(max(len(cells) - most, 0) + 1))
+        columns = np.array(cells[start : start + most])
+        if boards[0] < self.furnisher.ways.head // 2:  # A shelf hangs over what one walks on.
+            if not self.furnisher.ways.stay(room, columns):
+                columns = columns[: max(least, len(columns) // 2)]
+                if not self.furnisher.ways.stay(room, columns):
+                    return 0
+            self.furnisher.ways.take(room, columns)
         instance = self.furnisher.next_instance()
         held, last = 0, len(columns) - 1
         for n, (x, y) in enumerate(columns.tolist()):
             for level in boards:
                 state = f"minecraft:{board}_slab[type=top]"
                 self._set((x, y, room.ground + level), state, FURN, instance)
-            if n in (0, last):
-                continue
-            if n % 2:
+            if n not in (0, last) and n % 3:  # Pairs, with air between.
                 held += self._fill((x, y), room, boards, turns)
         return held
 
@@ -103,7 +105,7 @@ class Show:
             columns = np.array([foot, head])
             cells = [self.canvas.at(x, y, room.ground) for x, y in columns.tolist()]
             free = not any(self.canvas.states[cell] for cell in cells)
-            if free and self._is_bare((head[0], head[1]), room, turns, 2):
+            if free and self._is_bare((head[0], head[1]), room, turns, (0, 2)):
                 if not furnisher.ways.stay(room, columns):
                     continue
                 furnisher.ways.take(room, columns)
@@ -245,14 +247,14 @@ class Show:
         return held
 
     def _longest_wall(
-        self, room: BlockRoom, height: int, least: int
+        self, room: BlockRoom, layers: tuple[int, int], least: int
     ) -> tuple[list[tuple[int, int]], int] | None:
         """Return the columns of the longest free stretch along a bare wall, and its front."""
         best: tuple[list[tuple[int, int]], int] | None = None
         for turns in range(4):
             run: list[tuple[int, int]] = []
             for column in [*self._at_wall(room, turns), None]:
-                if column is not None and self._is_bare(column, room, turns, height):
+                if column is not None and self._is_bare(column, room, turns, layers):
                     run.append(column)
                     continue
                 if len(run) >= least and (best is None or len(run) > len(best[0])):
@@ -266,10 +268,12 @@ class Show:
         along = range(room.low[1 - axis], room.high[1 - axis])
         return [(at, one) if axis == 0 else (one, at) for one in along]
 
-    def _is_bare(self, column: tuple[int, int], room: BlockRoom, turns: int, height: int) -> bool:
+    def _is_bare(
+        self, column: tuple[int, int], room: BlockRoom, turns: int, layers: tuple[int, int]
+    ) -> bool:
         axis, behind = turns % 2, list(column)
         behind[axis] += -1 if turns < 2 else 1
-        low, high = room.ground, room.ground + min(height, room.height)
+        low, high = (room.ground + min(layer, room.height) for layer in layers)
         wall = self.canvas.box((behind[0], behind[1], low), (behind[0] + 1, behind[1] + 1, high))
         here = self.canvas.box((*column, low), (column[0] + 1, column[1] + 1, high))
         bare = (self.canvas.semantic[wall] == WALL).all() and not self.canvas.states[here].any()
