@@ -1,6 +1,6 @@
-"""Are labels and masks what slow references say, and what do they cost?
+"""Are labels and masks what slow references say, and do they say what the id buffer says?
 
-``python -m benchmarks.check_labels [--frames 200 --size 320 240] [--spoil]``
+``python -m benchmarks.check_labels [--frames 200 --size 160 120] [--spoil]``
 
 People stand in generated houses. Each frame is drawn by the renderer and labelled; then a caster in
 float64 that knows nothing of the kernels (``tests/render/oracle.py``) casts each pixel anew, and
@@ -12,15 +12,12 @@ Then what the id buffer says: of the pixels of all visible cells, and of the cel
 the cell's class. Where a cell is a block all do; where blocks' borders cross cells, a cell has the
 class of the block that fills most of it, and some of its pixels show the other.
 
-Last the cost: CPU milliseconds an image, for labels and masks together.
+``bench_labels.py`` tells what they cost.
 """
 
 import argparse
 import sys
-import time
 from collections import Counter
-from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 from rich.console import Console
@@ -28,9 +25,8 @@ from rich.table import Table
 from tests.dataset import label_reference as reference
 from tests.render.oracle import oracle_picture
 
-from benchmarks.label_views import GAME, NYU, House, houses, standing_views
+from benchmarks.label_views import NYU, House, houses, standing_views
 from world2minecraft.dataset.labels import (
-    cast_depth,
     cells_of_pixels,
     label_image,
     resized,
@@ -120,47 +116,16 @@ def say_ids(
     )
 
 
-def cpu_ms(work: Callable[[], object], repeats: int = 3) -> float:
-    """Return the least CPU time of a few calls, in milliseconds."""
-    times = []
-    for _ in range(repeats):
-        begin = time.process_time()
-        work()
-        times.append(time.process_time() - begin)
-    return 1000 * min(times)
-
-
-def costs(house: House, poses: list[np.ndarray]) -> dict[str, list[float]]:
-    """Return the cost of each view, by what is done."""
-    found: dict[str, list[float]] = {}
-    for pose in poses:
-        for kind in ("paper", "free"):
-            region = region_in(house.voxels, pose, RegionRule(kind))
-            for name, camera in (("640x480", NYU), ("1920x1129", GAME)):
-                depth = cast_depth(house.scene, camera, pose, width_px=None)[1]
-                found.setdefault(f"labels and masks, {kind}, {name}, its depth given", []).append(
-                    cpu_ms(partial(label_image, house.voxels, region, camera, pose, depth))
-                )
-        for name, camera in (("640x480", NYU), ("1920x1129 cast at 640", GAME)):
-            found.setdefault(f"depth alone, {name}", []).append(
-                cpu_ms(partial(cast_depth, house.scene, camera, pose))
-            )
-        found.setdefault("region of a view", []).append(
-            cpu_ms(partial(region_in, house.voxels, pose))
-        )
-    return found
-
-
 def main() -> int:
     """Print the tables; return the exit code."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--frames", type=int, default=200)
-    parser.add_argument("--size", type=int, nargs=2, default=(320, 240))
+    parser.add_argument("--size", type=int, nargs=2, default=(160, 120))
     parser.add_argument("--spoil", action="store_true", help="prove that the check can fail")
     chosen = parser.parse_args()
     console = Console(width=110)
     camera = resized(NYU, chosen.size[0])
-    counts, ids, spent = Counter(), Counter(), {}
+    counts, ids = Counter(), Counter()
     count = -(-chosen.frames // FRAMES_A_HOUSE)
     for house in houses(range(FIRST_SEED, FIRST_SEED + count)):
         views = min(FRAMES_A_HOUSE, chosen.frames - counts["frames"])
@@ -170,17 +135,11 @@ def main() -> int:
             picture = render_volume(house.scene, NYU, pose, outputs=("depth", "semantic"))
             say_ids("0.08 m", house.voxels, pose, picture, ids)
             say_ids("a block", house.blocks, pose, picture, ids)
-        for what, times in costs(house, poses[:2]).items():
-            spent.setdefault(what, []).extend(times)
     for heading, rows in (("against float64", counts), ("against the id buffer", ids)):
         table = Table(heading, "", box=None)
         for what, number in rows.items():
             table.add_row(what, f"{number:,}")
         console.print(table, "")
-    table = Table("CPU of an image", "mean", "most", box=None)
-    for what, times in spent.items():
-        table.add_row(what, f"{np.mean(times):.1f} ms", f"{np.max(times):.1f} ms")
-    console.print(table)
     wrong = sum(number for what, number in counts.items() if "wrong" in what)
     console.print(f"{wrong} cells differ" if wrong else "no cell of any frame differs")
     return int(wrong > 0)

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import minimum_filter
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import look_at
@@ -13,7 +14,7 @@ from world2minecraft.render import BlockScene, prepare_scene
 from world2minecraft.rooms.worlds import generate_world
 from world2minecraft.types import BlockVolume, Camera
 
-EYE_M, TALL_M = 1.62, 1.8
+EYE_M, TALL_M, ASIDE_M = 1.62, 1.8, 0.3  # The last: as near as one stands to a wall.
 NYU = Camera(640, 480, 518.8579, 518.8579, 320.0, 240.0)
 GAME = Camera(1920, 1129, 806.19, 806.19, 960.0, 564.5)  # The paper's window at FOV 70.
 
@@ -54,7 +55,9 @@ def standing_views(voxels: SceneVoxels, count: int, seed: int) -> list[np.ndarra
     free = below[:, :, tall:] - below[:, :, :-tall] == tall
     top = empty.shape[2] - 1 - np.argmax(~empty[:, :, ::-1], axis=2)
     indoors = top[..., None] > np.arange(on_floor.shape[2]) + tall
-    places = np.argwhere(on_floor & free & indoors)
+    side = 2 * int(np.ceil(ASIDE_M / voxels.voxel_m)) + 1
+    roomy = minimum_filter(free.astype(np.uint8), (side, side, 1), mode="constant") > 0
+    places = np.argwhere(on_floor & roomy & indoors)
     views = []
     for cell in places[rng.integers(len(places), size=count)]:
         within = np.array([*rng.random(2), 1.0])

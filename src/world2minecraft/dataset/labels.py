@@ -13,7 +13,8 @@ has an image's files can make them again:
 The first surface counts, be it glass: what lies behind a window is occluded.
 
 A region that does not stand on the scene's cells, as one that turns with the view, has them sampled
-at its own cells' middles: labels and hits alike.
+at its own cells' middles, labels and hits alike. Pixels of a scene's cell that none samples count
+for the region's nearest cell that holds something.
 """
 
 import numpy as np
@@ -53,7 +54,7 @@ def label_image(
         depth_m: float32 [H, W], z-depth of the first surface, 0 where there is none.
     """
     view = _View(voxels, region, camera, camera_to_room, depth_m)
-    labels, fine, instance = gathered(voxels, region)
+    labels, fine, instance = view.held
     in_frustum, free = np.empty(region.shape, bool), np.empty(region.shape, bool)
     height, width = view.depth_m.shape
     mark_in_frustum(view.to_camera, view.lens, width, height, in_frustum)
@@ -165,6 +166,7 @@ class _View:
         self.depth_m = np.ascontiguousarray(depth_m, np.float32)
         self.lens = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
         self.place = _place(region, camera_to_room)
+        self.held = gathered(voxels, region)
         self.to_camera = np.ascontiguousarray(invert(np.vstack([self.place, [0, 0, 0, 1]]))[:3])
 
     def hits(self, cells_wanted: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -178,7 +180,9 @@ class _View:
             gathered(self.voxels, box, 1)[1], _place(box, self.camera_to_room), self.lens,
             self.depth_m, AROUND_M, REACH_M / box.voxel_m, np.empty(12), hits, cells,
         )  # fmt: skip
-        return (hits, cells) if box is self.region else _sampled(self.region, box, hits, cells)
+        if box is self.region:
+            return hits, cells
+        return _sampled(self.region, self.held[1], box, hits, cells)
 
 
 def gathered(
@@ -232,13 +236,39 @@ def _box(region: LabelRegion, voxels: SceneVoxels) -> LabelRegion:
 
 
 def _sampled(
-    region: LabelRegion, box: LabelRegion, hits: np.ndarray, cells: np.ndarray
+    region: LabelRegion, fine: np.ndarray, box: LabelRegion, hits: np.ndarray, cells: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the hits, and the pixels' cells, of a region whose cells are samples of a box's."""
     source = np.empty(region.shape, np.int32)
     to_box = _to_cells_of(box.region_to_room[:3, 3], box.voxel_m, region)
     sources(to_box, np.array(box.shape), source)
+    source = source.reshape(-1)
     own = np.where(source >= 0, hits.reshape(-1)[source], 0).astype(np.uint32)
     back = np.full(hits.size + 1, -1, np.int32)  # The last is of pixels that see no cell.
-    back[source[source >= 0]] = np.flatnonzero(source.reshape(-1) >= 0)
-    return own, back[cells]
+    back[source[source >= 0]] = np.flatnonzero(source >= 0)
+    lost = np.flatnonzero((hits.reshape(-1) > 0) & (back[:-1] < 0))
+    middles = np.stack(np.unravel_index(lost, box.shape), axis=-1) + 0.5
+    back[lost] = _nearest_held(fine, apply(invert(np.vstack([to_box, [0, 0, 0, 1]])), middles))
+    lost = lost[back[lost] >= 0]
+    np.add.at(own, back[lost], hits.reshape(-1)[lost])
+    return own.reshape(region.shape), back[cells]
+
+
+def _nearest_held(fine: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return the number of the cell nearest to each place that holds something, -1 for none.
+
+    Args:
+        fine: uint16 [X, Y, Z], not 0 where a cell holds something.
+        places: float64 [N, 3], in cells; the cell of each and those around it are looked at.
+    """
+    best, found = np.full(len(places), np.inf), np.full(len(places), -1, np.int64)
+    for step in np.ndindex(3, 3, 3):
+        cell = np.floor(places).astype(np.int64) + step - 1
+        inside = np.flatnonzero(((cell >= 0) & (cell < fine.shape)).all(axis=1))
+        here = inside[fine[tuple(cell[inside].T)] > 0]
+        away = np.linalg.norm(cell[here] + 0.5 - places[here], axis=1)
+        nearer = away < best[here]
+        here, away = here[nearer], away[nearer]
+        best[here] = away
+        found[here] = np.ravel_multi_index(tuple(cell[here].T), fine.shape)
+    return found
