@@ -101,6 +101,18 @@ def test_without_depth_the_masks_are_empty_and_that_is_said(folders, tmp_path):
     assert sample.facts["hits"] == "none: there is no depth"
 
 
+def test_a_picture_of_another_shape_is_refused(folders, tmp_path):
+    from PIL import Image
+
+    shutil.copytree(folders / "nyu", tmp_path / "nyu")
+    picture = tmp_path / "nyu" / "NYUtrain" / f"{KEY}_color.jpg"
+    Image.open(picture).resize((640, 360)).save(picture)
+    with pytest.raises(DamagedFileError, match="is 640x360; NYUv2's pictures are 640x480"):
+        open_occupancy(tmp_path / "nyu")[KEY]
+    Image.open(picture).resize((320, 240)).save(picture)
+    assert open_occupancy(tmp_path / "nyu")[KEY].colour.shape == (480, 640, 3)
+
+
 def test_a_bin_alone_is_read(made, folders):
     found = open_occupancy(folders / "nyu" / "NYUtrain" / f"{KEY}.bin")
     assert np.array_equal(found[KEY].occ.labels, made.occ.labels)

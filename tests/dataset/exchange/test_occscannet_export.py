@@ -149,6 +149,18 @@ def test_names_stay_when_an_export_grows(made, tmp_path):
     assert lines == "gathered_data/scene0001_00/00000.pkl\n"
 
 
+def test_names_survive_a_stop(made, tmp_path):
+    def stopped():
+        yield from made[:2]
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        export_samples(stopped(), "occscannet", tmp_path)
+    assert not (tmp_path / "train_subscenes.txt").exists()
+    again = export_samples(made, "occscannet", tmp_path)
+    assert (again.written, again.passed_over) == (3, 2)
+
+
 def test_a_frame_without_any_occupied_cell_is_in_no_final_list(tmp_path):
     bare = synthetic.sample(eye_m=(2.4, 100.0, 1.5), target_m=(2.5, 104.0, 1.5))
     export_samples([bare], "occscannet", tmp_path)
@@ -212,6 +224,15 @@ def test_a_scene_takes_its_frames_evenly(made, tmp_path):
     export_samples(made[:4], "embodied", tmp_path, ExportRule(frames_per_scene=2))
     package = opened(tmp_path / "scene_occ" / "global_occ_package" / "scene0000_00.pkl")
     assert [path[-9:-4] for path in package["valid_img_paths"]] == ["00000", "00003"]
+
+
+def test_a_scene_that_the_official_operation_cannot_hold_is_named(made, tmp_path, monkeypatch):
+    monkeypatch.setattr("world2minecraft.dataset.exporters.embodied.OFFICIAL_CELLS", (60, 60, 36))
+    report = export_samples(made[:2], "embodied", tmp_path)
+    assert report.notes == [
+        "1 scenes are larger than 60x60x36 cells, which EmbodiedOcc's own operation holds: "
+        "scene0000_00"
+    ]
 
 
 def test_a_scene_of_two_splits_is_refused(tmp_path):

@@ -26,6 +26,7 @@ from world2minecraft.errors import DamagedFileError, InputError
 FOLDERS = {"NYUtrain": "train", "NYUtest": "test"}
 AXES = (0, 2, 1)  # Theirs x, z up, y; ours x, y, z. The same swap leads back.
 STORED_SHAPE = (60, 36, 60)
+SAME_SHAPE = 0.01  # So far a picture's sides may be from 4:3 and still be one made smaller.
 
 
 @dataclass(frozen=True)
@@ -101,8 +102,12 @@ def _pickle_of(folder: Path, name: str, path: Path, labels: Path | None) -> Path
 
 def _read(key: str, place: _Place) -> OccSample:
     stored, origin_m, pose, source = _labels(place)
-    colour = colour_at(place.folder / f"{place.name}_color.jpg")
+    picture = place.folder / f"{place.name}_color.jpg"
+    colour = colour_at(picture)
     if colour is not None:
+        height, width = colour.shape[:2]
+        if abs(width * HEIGHT_PX / (height * WIDTH_PX) - 1) > SAME_SHAPE:
+            raise DamagedFileError(picture, f"is {width}x{height}; NYUv2's pictures are 640x480")
         colour = resized_colour(colour, WIDTH_PX, HEIGHT_PX)
     depth_m = depth_at(place.folder / f"{place.name}.png", "nyu")
     if depth_m is not None:
