@@ -7,9 +7,9 @@ from world2minecraft.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.label.components import Piece, find_pieces
 from world2minecraft.label.morphology import grown, plan_of
-from world2minecraft.label.parameters import GeometricParameters
+from world2minecraft.label.parameters import GeometricParameters, PlateParameters
 from world2minecraft.label.plates import Plate, find_plates
-from world2minecraft.label.rules import Table, class_of_piece, class_of_plate
+from world2minecraft.label.rules import Seat, Table, class_of_piece, class_of_plate
 from world2minecraft.label.surface import Surface
 
 # How far around its plate a thing may reach and up to what height, in metres; 0 = the plate's own.
@@ -73,20 +73,25 @@ def _label_group(
     A plate that says what it is takes its thing with it; what is left falls into pieces.
     """
     left = rest.copy()
-    tables = _label_plates(surface, left, labels, parameters)
+    tables, seats = _label_plates(surface, left, labels, parameters)
     contact = {kind: grown((labels == kind) & rest & ~left) for kind in JOINING_CLASSES}
     for piece in find_pieces(surface, left, wall, parameters.pieces):
         joined = _joined_class(piece, contact, parameters)
-        labels[piece.at] = joined or class_of_piece(piece, tables, parameters.pieces)
+        labels[piece.at] = joined or class_of_piece(piece, tables, seats, parameters.pieces)
 
 
 def _label_plates(
     surface: Surface, left: np.ndarray, labels: np.ndarray, parameters: GeometricParameters
-) -> list[Table]:
-    """Write what plates say to ``labels``, take their cells from ``left``; return the tables."""
+) -> tuple[list[Table], list[Seat]]:
+    """Write what plates say to ``labels``, take their cells from ``left``.
+
+    Returns:
+        The tables and the seats of chairs.
+    """
     plates = find_plates(surface, left, parameters.plates)
     plates.sort(key=lambda plate: -plate.area_m2)
     tables: list[Table] = []
+    seats: list[Seat] = []
     for wanted in ROUNDS:
         for plate in plates:
             if (plate.mask & left).sum() < 0.5 * plate.mask.sum():
@@ -95,13 +100,17 @@ def _label_plates(
             if kind is None or kind not in wanted:
                 continue
             claimed = _claimed(surface, plate, left, kind)
-            if kind == SemanticClass.CHAIR and not _stands_free(claimed, left):
+            if kind == SemanticClass.CHAIR and not _stands_free(
+                surface, plate, claimed, left, parameters.plates
+            ):
                 continue
             labels[claimed] = kind
             left &= ~claimed
             if kind == SemanticClass.TABLE:
                 tables.append(Table.of(plate, surface, parameters.pieces))
-    return tables
+            if kind == SemanticClass.CHAIR:
+                seats.append(Seat.of(plate, surface, parameters.pieces))
+    return tables, seats
 
 
 def _claimed(surface: Surface, plate: Plate, left: np.ndarray, kind: SemanticClass) -> np.ndarray:
@@ -141,10 +150,23 @@ def _with_head(surface: Surface, plate: Plate, left: np.ndarray) -> np.ndarray:
     return result
 
 
-def _stands_free(claimed: np.ndarray, left: np.ndarray) -> bool:
-    """Return whether a chair's cells do not go on into something larger."""
+def _stands_free(
+    surface: Surface,
+    plate: Plate,
+    claimed: np.ndarray,
+    left: np.ndarray,
+    parameters: PlateParameters,
+) -> bool:
+    """Return whether a chair's cells do not go on into something larger.
+
+    What touches an easy chair, which is closed all around, in another colour is another thing.
+    """
     beyond = grown(claimed, 2) & left & ~claimed
-    return bool(beyond.sum() <= 0.25 * claimed.sum())
+    count = int(beyond.sum())
+    if plate.rim_share >= parameters.box_share:
+        apart = surface.oklab[beyond] - np.median(surface.oklab[claimed], axis=0)
+        count = int((np.linalg.norm(apart, axis=1) <= parameters.same_cloth).sum())
+    return count <= 0.25 * int(claimed.sum())
 
 
 def _joined_class(

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
+from world2minecraft.label.backs import classes_with_backs
 from world2minecraft.label.furniture import label_furniture
 from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.screens import label_screens
@@ -69,7 +70,8 @@ class GeometricLabeller:
         labels[structure.ceiling | structure.slopes] = SemanticClass.CEILING
         labels[floor.cells | floor.spill] = SemanticClass.FLOOR
         for wall in structure.walls:
-            straight.add(wall.relief, wall.face.cells, wall.face.classes, wall.face.depth_m)
+            classes = classes_with_backs(surface, wall, labels)
+            straight.add(wall.relief, wall.face.cells, classes, wall.face.depth_m)
         if structure.ceiling_m is not None:
             straight.add_level(structure.ceiling, 1, SemanticClass.CEILING)
         straight.add_level(floor.cells | floor.spill, -1, SemanticClass.FLOOR, 0.0)

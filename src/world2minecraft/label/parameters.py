@@ -161,6 +161,8 @@ class PieceParameters:
     back_height_m, back_length_m, back_thick_m, back_over_m, back_gap_m: a chair back at a table:
         its size, how far it rises over the table, how far from its rim it stands.
     under_table_m: a leg or an apron ends this far under a table's top at most.
+    foot_bottom_m, foot_off_m, foot_reach_m: the star of an office chair begins this low, under
+        the middle of what is seen of its seat, and reaches so far beyond the edge. Trial.
     hanging_m: what reaches no further off its wall is a curtain or a picture, no cupboard.
     leaf: Oklab a at most, b at least, of leaves. A guess.
     joining_bottom_m, joining_share: a low piece that touches a thing over this share is its side.
@@ -168,6 +170,8 @@ class PieceParameters:
     screen_before_m: a screen on a bracket hangs 5 to 15 cm before its wall, on a board up to 0.3.
     screen_bottom_m: a screen on a low board begins here.
     screen_width_m, screen_height_m, screen_shape: from a small monitor to a large television.
+    monitor_m, monitor_flat: a lit screen on a table is at most so wide, and nearly all of it is
+        its face. Trial.
     screen_filled: a lit screen shows the sensor its frame alone.
     screen_thick_m: with its foot.
     """
@@ -186,6 +190,9 @@ class PieceParameters:
     back_over_m: float = 0.05
     back_gap_m: float = 0.48
     under_table_m: float = 0.16
+    foot_bottom_m: float = 0.15
+    foot_off_m: float = 0.15
+    foot_reach_m: float = 0.16
     hanging_m: float = 0.17
     leaf: Range = (-0.035, 0.02)
     joining_bottom_m: float = 0.5
@@ -196,6 +203,8 @@ class PieceParameters:
     screen_width_m: Range = (0.4, 1.9)
     screen_height_m: Range = (0.24, 1.2)
     screen_shape: Range = (1.0, 3.0)
+    monitor_m: float = 0.8
+    monitor_flat: float = 0.7
     screen_filled: float = 0.35
     screen_thick_m: float = 0.22
 

@@ -9,6 +9,7 @@ from world2minecraft.label.components import Piece
 from world2minecraft.label.morphology import grown, shrunk
 from world2minecraft.label.parameters import PieceParameters, PlateParameters, within
 from world2minecraft.label.plates import Plate
+from world2minecraft.label.screens import screen_share
 from world2minecraft.label.seats import class_of_seat
 from world2minecraft.label.surface import Surface
 
@@ -28,6 +29,23 @@ class Table:
         reach = surface.cells_of(parameters.back_gap_m)
         outline = plate.footprint
         return cls(plate.height_m, grown(outline), shrunk(outline), grown(outline, reach))
+
+
+@dataclass(frozen=True, eq=False)
+class Seat:
+    """A chair's seat that was found: its height, its middle, and bool [X, Y] what is under it."""
+
+    height_m: float
+    middle_m: np.ndarray  # float64 [2]
+    under: np.ndarray
+
+    @classmethod
+    def of(cls, plate: Plate, surface: Surface, parameters: PieceParameters) -> "Seat":
+        """Return the seat of a plate."""
+        points = surface.points_m[plate.mask][:, :2].astype(np.float64)
+        reach = surface.cells_of(parameters.foot_reach_m)
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+        return cls(plate.height_m, middle, grown(plate.footprint, reach))
 
 
 def class_of_plate(
@@ -70,10 +88,14 @@ def _is_table_top(plate: Plate, parameters: PlateParameters) -> bool:
     return low and plate.area_m2 >= parameters.low_table_area_m2
 
 
-def class_of_piece(piece: Piece, tables: list[Table], parameters: PieceParameters) -> SemanticClass:
+def class_of_piece(
+    piece: Piece, tables: list[Table], seats: list[Seat], parameters: PieceParameters
+) -> SemanticClass:
     """Return what a piece is that no plate has claimed."""
     if any(_is_leg(piece, table, parameters) for table in tables):
         return SemanticClass.TABLE
+    if any(_is_foot(piece, seat, parameters) for seat in seats):
+        return SemanticClass.CHAIR
     if _is_screen(piece, parameters):
         return SemanticClass.TVS
     if any(_is_back_at(piece, table, parameters) for table in tables):
@@ -95,10 +117,23 @@ def _is_leg(piece: Piece, table: Table, parameters: PieceParameters) -> bool:
     return table.under[piece.at[:2]].mean() >= 0.8 and -0.04 <= below <= parameters.under_table_m
 
 
+def _is_foot(piece: Piece, seat: Seat, parameters: PieceParameters) -> bool:
+    """Return whether a piece stands under a seat: the star of a chair whose post is too thin."""
+    stands = piece.low_m[2] <= parameters.foot_bottom_m and piece.high_m[2] <= seat.height_m
+    off = np.linalg.norm((piece.low_m + piece.high_m)[:2] / 2 - seat.middle_m)
+    return bool(stands and off <= parameters.foot_off_m and seat.under[piece.at[:2]].mean() >= 0.8)
+
+
 def _is_screen(piece: Piece, parameters: PieceParameters) -> bool:
-    """Return whether a piece is a dark, thin, upright plate off the floor, wider than high."""
+    """Return whether a piece is a thin, upright plate off the floor, wider than high.
+
+    It is dark, or a small flat one blue, as a lit one is: cupboards may be blue too.
+    """
     off_floor = piece.low_m[2] >= parameters.screen_bottom_m
-    if not off_floor or piece.oklab[0] > parameters.screen_lightness:
+    dark = piece.oklab[0] <= parameters.screen_lightness
+    small = piece.long_m <= parameters.monitor_m and piece.flat_share >= parameters.monitor_flat
+    lit = small and screen_share(piece.oklab[None], parameters) > 0
+    if not (off_floor and (dark or lit)):
         return False
     sized = within(piece.long_m, parameters.screen_width_m)
     sized &= within(piece.tall_m, parameters.screen_height_m)

@@ -16,6 +16,7 @@ from world2minecraft.label.surface import Surface, turned
 from world2minecraft.label.walls import WallRun
 
 PLATE_GATE_M = 0.05  # A screen's cells lie within this of its plane.
+ALIKE = 0.12  # Oklab difference of one cloth in the light and in its own shadow.
 MAX_DEPTHS = 6  # How many depths before one wall are looked at.
 
 
@@ -44,6 +45,7 @@ def label_screens(
         cells = turned(rest, run.axis, run.sign)[box] & (before >= low) & (before <= high)
         target = turned(found, run.axis, run.sign)[box]
         colour = turned(surface.oklab, run.axis, run.sign)[box]
+        below = _just_below(surface, rest, run, box)
         for _ in range(MAX_DEPTHS):
             if cells.sum() * surface.voxel_m**2 < 0.05:
                 break
@@ -51,7 +53,8 @@ def label_screens(
             near = cells & (np.abs(before - depth) <= PLATE_GATE_M)
             cells = cells & ~near
             for plate in _plates(near):
-                if _is_screen(plate, colour, surface.voxel_m, parameters):
+                goes_on = below is not None and _goes_on(plate, colour, *below)
+                if not goes_on and _is_screen(plate, colour, surface.voxel_m, parameters):
                     target |= plate
     labels[found] = SemanticClass.TVS
     return found
@@ -78,6 +81,29 @@ def _plates(near: np.ndarray) -> list[np.ndarray]:
     """Return the parts of cells at one depth that hang together, seen face on."""
     parts, count = connected_parts(cast(np.ndarray, near.any(axis=0)))
     return [near & (parts == part)[None] for part in range(1, count + 1)]
+
+
+def _just_below(
+    surface: Surface, rest: np.ndarray, run: WallRun, box: tuple[slice, slice, slice]
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the layer under a box: which cells are no structure, bool [N, A], and its Oklab."""
+    under = box[2].start - 1
+    if under < 0:
+        return None
+    layer = (box[0], box[1], under)
+    oklab = turned(surface.oklab, run.axis, run.sign)[layer]
+    return turned(rest, run.axis, run.sign)[layer], oklab
+
+
+def _goes_on(plate: np.ndarray, oklab: np.ndarray, rest: np.ndarray, below: np.ndarray) -> bool:
+    """Return whether a plate goes on below where screens begin: the back of an easy chair does.
+
+    What a screen stands on has another colour.
+    """
+    foot = plate[:, :, 0]
+    alike = np.linalg.norm(below - np.median(oklab[plate], axis=0), axis=-1) <= ALIKE
+    under = (rest & alike).any(axis=0) & foot.any(axis=0)
+    return bool(under.sum() > 0.5 * plate.any(axis=(0, 2)).sum())
 
 
 def _is_screen(
