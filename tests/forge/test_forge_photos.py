@@ -54,6 +54,14 @@ def test_what_a_photo_shows_stands_where_the_room_has_cells(photos, small_run):
     assert np.median(shares) > 0.9, shares
 
 
+def test_the_scene_says_what_is_beside_it(small_run):
+    with served(Editor.open(small_run)) as server, client(server) as script:
+        told = script.get("/api/scene").json()["has"]
+    assert told == {"photos": FRAMES, "truth": True}
+    with served(small_editor()) as server, client(server) as script:
+        assert script.get("/api/scene").json()["has"] == {"photos": 0, "truth": False}
+
+
 def test_corrections_move_the_photos(photos, small_run, tmp_path):
     bare = tmp_path / "bare"
     shutil.copytree(small_run, bare, ignore=shutil.ignore_patterns("build"))

@@ -74,14 +74,16 @@ def run(
         InputError: there is no room in the source.
     """
     from world2minecraft.errors import UsageError
-    from world2minecraft.forge.captures import is_capture
+    from world2minecraft.forge.captures import is_capture, user_home
     from world2minecraft.forge.editor import Editor
     from world2minecraft.forge.serve import ForgeServer
+    from world2minecraft.forge.sources import DEMO_OUT
 
     if demo and source is not None:
         raise UsageError("--demo is a room of its own; leave out the file, or --demo")
     dropped = source is not None and is_capture(source)
-    editor = Editor.open(source) if demo or (source and not dropped) else None
+    place = (home or user_home()) / DEMO_OUT if demo else None
+    editor = Editor.open(source, out=place) if demo or (source and not dropped) else None
     places = {"home": home, "capture": capture, "most_upload_bytes": max_upload << 20}
     server = ForgeServer(editor, host=host, port=port, hosts=allow_host or (), **places)
     if source is not None:
@@ -91,6 +93,8 @@ def run(
             f"warning: whoever reaches {host} and has the link can edit, and nothing is "
             "encrypted; an SSH tunnel is safer (docs/forge.md)"
         )
+    if place is not None:
+        print(f"note: your demo room is kept in {place.parent}")
     for note in editor.notes if editor else ():
         print(f"note: {note}")
     if editor and editor.read_only:

@@ -1,5 +1,6 @@
 """The web application: a page, a small HTTP API and a websocket, all behind the guard."""
 
+import asyncio
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -81,9 +82,11 @@ def session_of(request: Request) -> Session:
 
 
 async def _scene(request: Request) -> Response:
-    session = session_of(request)
+    session, shop = session_of(request), request.app.state.workshop
     if session.editor is None:
         return JSONResponse({"error": NO_ROOM}, 404)
+    if shop is not None:
+        session.editor.has = await asyncio.to_thread(shop.beside)
     return JSONResponse(await session.scene())
 
 

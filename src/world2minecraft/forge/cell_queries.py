@@ -33,6 +33,7 @@ class Floaters(Query):
     def answer(self, editor: "Editor") -> Any:
         """Return ``[{"cells", "runs", "class_id", "object_ids", "at_m"}]``."""
         draft = editor.draft
+        editor.progress("pieces", 0, 0)
         return [
             {
                 "cells": len(one.cells),
@@ -59,8 +60,11 @@ class Holes(Query):
         """Return ``[{"plane", "class_id", "axis", "at_m", "area_m2", "share", "cells", "runs",
         "openings"}]``, floors and ceilings first.
         """  # noqa: D205
-        draft, rows = editor.draft, []
-        for plane in find_planes(draft):
+        draft, rows, progress = editor.draft, [], editor.progress
+        progress("planes", 0, 0)
+        planes = find_planes(draft)
+        for done, plane in enumerate(planes):
+            progress("planes", done, len(planes))
             gaps = plane_gaps(draft, plane, hole_m2=self.hole_m2)
             holes = hole_cells(draft, gaps, gaps.holes)
             area = int(gaps.own[plane.window].sum() + gaps.holes.sum())

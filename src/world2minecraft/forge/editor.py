@@ -26,6 +26,7 @@ from world2minecraft.forge.sources import Opened
 from world2minecraft.forge.tools import tools_of
 from world2minecraft.forge.unkept import Unkept
 from world2minecraft.forge.wire import PROTOCOL, classes_json, counts_json, objects_json
+from world2minecraft.progress import Progress, silent
 from world2minecraft.types import Operation
 
 Listener = Callable[[int, str, Operation], None]
@@ -37,8 +38,11 @@ class Editor:
     """One scene that is edited. All methods may be called from any thread; one runs at a time.
 
     ``document`` is its folder, with ``notes`` for the user. ``cells_of`` int64 [65536] counts
-    each object's cells. ``has`` is what there is beside the scene, for the page.
+    each object's cells. ``has`` is what there is beside the scene, for the page; ``progress`` is
+    told how far a long question is.
     """
+
+    progress: Progress = staticmethod(silent)
 
     def __init__(self, document: Unkept | Opened, clock: Callable[[], float] = time.time):
         """Take an open document, or a scene to be edited in memory alone; see ``Editor.open``."""

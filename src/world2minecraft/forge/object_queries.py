@@ -95,7 +95,7 @@ class Doubtful(Query):
 
     def answer(self, editor: "Editor") -> Any:
         """Return ``[{"at_m", "why", "kind", "doubt" 0 to 1, "object_id" or null}]``."""
-        found = ordered([*_clash_doubts(editor), *find_doubts(editor.draft)])
+        found = ordered([*_clash_doubts(editor), *find_doubts(editor.draft, editor.progress)])
         return [
             {
                 "at_m": np.round(one.at_m, 3).tolist(),

@@ -145,6 +145,18 @@ def find_capture_of(run: Path, given: Path | None) -> Path:
     )
 
 
+def count_photos(run: Path, capture: Path | None) -> int:
+    """Return how many photos a run says it was made of; 0 where they lie nowhere.
+
+    The pictures themselves are not looked at, so this takes no time.
+    """
+    try:
+        find_capture_of(run, capture)
+    except UsageError:
+        return 0
+    return len(_used_by(run))
+
+
 def ideal_camera(camera: Camera, longest_px: int = LONGEST_PX) -> Camera:
     """Return a camera that sees the largest part of a picture around its principal point.
 

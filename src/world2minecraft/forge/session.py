@@ -3,7 +3,8 @@
 Whatever asks something of the document takes its turn, first come, first served. A small edit is
 done at once; what takes long (objects found or matched anew, questions about the whole grid) is
 worked out by a thread, so that pages, pings and volumes are answered meanwhile, and then done as
-one operation, still in its turn.
+one operation, still in its turn. What takes seconds of a large scene runs as a job on a copy, so
+that nobody's turn waits for it.
 """
 
 import asyncio
@@ -14,6 +15,7 @@ from typing import Any, TypeVar
 
 from world2minecraft.edit.scene import Command, parse_command
 from world2minecraft.errors import UsageError
+from world2minecraft.forge.beside import TITLES, beside, copy_of
 from world2minecraft.forge.changes import change_of, preview_of
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.hub import Hub
@@ -87,6 +89,8 @@ class Session:
             World2MinecraftError: it cannot be done; nothing is changed.
         """
         checked = parse_command(command)
+        if command["op"] in TITLES and not self._is_small:
+            return await self._do_long(command["op"], checked, actor)
         async with self._turn:
             document = self.document
             if command["op"] in QUICK and self._is_small:
@@ -113,11 +117,19 @@ class Session:
         def work(document: Editor) -> dict[str, Any]:
             return preview_of(document.draft, _planned(document, checked))
 
+        if command["op"] in TITLES and not self._is_small:
+            return await self._beside(command["op"], work)
         return await self._asked(work)
 
     async def ask(self, name: str, fields: Mapping[str, Any]) -> Any:
         """Return the answer to a question about the scene. Raises as ``do``."""
-        return await self._asked(lambda document: document.ask(name, **fields))
+
+        def question(document: Editor) -> Any:
+            return document.ask(name, **fields)
+
+        if name in TITLES and not self._is_small:
+            return await self._beside(name, question)
+        return await self._asked(question)
 
     async def asked(self, question: Callable[[Editor], Value]) -> Value:
         """Return what a function of the document gives; it runs in a thread, in its turn."""
@@ -201,6 +213,20 @@ class Session:
             "counts_as": operation.counts_as,
             "cells": len(operation.cells),
         }
+
+    async def _beside(self, name: str, work: Callable[[Editor], Value]) -> Value:
+        """Return what long work on a copy of the scene gives; only copying takes a turn."""
+        copy = await self._asked(copy_of)
+        return await beside(self.jobs, name, copy, work)
+
+    async def _do_long(self, name: str, command: Command, actor: str) -> dict[str, Any]:
+        """Plan a command beside and do it, where its cells are still what they were."""
+        document = self.document
+        planned = await self._beside(name, lambda copy: _planned(copy, command))
+        async with self._turn:
+            if document is not self.editor:
+                raise UsageError("another room was opened meanwhile; nothing was done")
+            return await self._step(lambda: document.do(planned, actor=actor))
 
     async def _asked(self, question: Callable[[Editor], Value]) -> Value:
         async with self._turn:

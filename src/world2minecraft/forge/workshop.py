@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,12 @@ from world2minecraft.forge.captures import MOST_UPLOAD_BYTES, CaptureFolder, Cap
 from world2minecraft.forge.comparing import truth_folder
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.exports import snapshot
-from world2minecraft.forge.photos import RunPhotos, find_capture_of, read_photos
+from world2minecraft.forge.photos import (
+    RunPhotos,
+    count_photos,
+    find_capture_of,
+    read_photos,
+)
 from world2minecraft.forge.session import NO_ROOM, Session
 
 MOST_RECENT = 12
@@ -132,6 +138,11 @@ class Workshop:
                 made = read_photos(self.run, capture, editor.opened.scan_to_room)
                 self._photos = (editor, made)
             return self._photos[1]
+
+    def beside(self) -> dict[str, Any]:
+        """Return what there is beside the open scene, as ``Scene.has`` of ``wire.ts``."""
+        photos = count_photos(self.run, self.capture_of_run())
+        return {"photos": photos, "truth": self.truth_folder() is not None}
 
     def truth_folder(self) -> Path | None:
         """Return where the truth of the open run lies, None where there is none."""

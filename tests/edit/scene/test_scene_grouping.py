@@ -16,6 +16,7 @@ COMMANDS = (
     {"op": "relabel_objects", "ids": [CHAIR, LAMP], "class_id": 10},
     {"op": "split_object", "id": TABLE, "parts": 2},
     {"op": "split_object", "id": TABLE, "plane": {"axis": "x", "at_m": 1.5}},
+    {"op": "split_objects", "ids": [TABLE, CHAIR]},
     {"op": "merge_objects", "ids": [TABLE, CHAIR]},
     {"op": "recluster", "density_kernel": 3, "density_threshold": 0.2, "cluster_radius": 2},
     {"op": "snap_object", "id": CHAIR, "to": "wall"},
@@ -45,6 +46,15 @@ def test_a_command_changes_the_scene_and_its_inverse_restores_it(fields):
     assert state(draft) != before
     draft.apply(operation.inverse())
     assert state(draft) == before
+
+
+def test_objects_split_at_once_are_each_split_as_alone():
+    at_once, alone = furnished_room(), furnished_room()
+    done(at_once, op="split_objects", ids=[TABLE, CHAIR], parts=3)
+    for number in (TABLE, CHAIR):
+        done(alone, op="split_object", id=number, parts=3)
+    assert cells_held(at_once) == cells_held(alone)
+    assert sorted(at_once.objects) == sorted(alone.objects) and len(at_once.objects) == 7
 
 
 @given(st.sampled_from([{"parts": 2}, {"parts": 3}, {"parts": 8}]), st.booleans())

@@ -6,7 +6,7 @@ are rather wrong than right by their calibrated confidence, regions completed an
 seen. What a person painted is sure and observed, so that a place mended is a place less.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.floaters import find_floaters
 from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.progress import Progress, silent
 from world2minecraft.types import COMPLETED, Placement, SceneObject
 
 LOW_IOU = 0.5  # Under this the furniture and the cells have less in common than not.
@@ -41,9 +42,17 @@ class Doubt:
     object_id: int = 0
 
 
-def find_doubts(draft: SceneDraft) -> list[Doubt]:
-    """Return the doubts of a scene, one for each object and place, the most doubtful first."""
-    return ordered([*_of_objects(draft), *_of_cells(draft)])
+def find_doubts(draft: SceneDraft, progress: Progress = silent) -> list[Doubt]:
+    """Return the doubts of a scene, one for each object and place, the most doubtful first.
+
+    ``progress`` is told of each of the kinds that are looked for.
+    """
+    found: list[Doubt] = []
+    for done, kind in enumerate(KINDS):
+        progress("doubts", done, len(KINDS))
+        found.extend(kind(draft))
+    progress("doubts", len(KINDS), len(KINDS))
+    return ordered(found)
 
 
 def ordered(found: Iterable[Doubt]) -> list[Doubt]:
@@ -112,7 +121,7 @@ def _uncarried(draft: SceneDraft, one: SceneObject) -> Iterator[Doubt]:
         yield Doubt("unsupported", why, UNCARRIED, one.center_m, one.id)
 
 
-def _of_cells(draft: SceneDraft) -> Iterator[Doubt]:
+def _of_loose_cells(draft: SceneDraft) -> Iterator[Doubt]:
     loose = np.isin(draft.labels, OBJECT_CLASSES) & (draft.instance == 0)
     for one in find_floaters(draft, draft.labels.size):
         loose[tuple(one.cells.T)] = False
@@ -123,17 +132,31 @@ def _of_cells(draft: SceneDraft) -> Iterator[Doubt]:
         what = CLASS_NAMES[_commonest(draft, cells)]
         why = f"{_counted(len(cells), what)}, part of no object"
         yield Doubt("crumb", why, CRUMB, middle_m(draft, cells))
+
+
+def _of_unsure_cells(draft: SceneDraft) -> Iterator[Doubt]:
     unsure = (draft.labels % 255 > 0) & (draft.confidence < UNSURE)
     for cells in _parts(unsure, UNSURE_CELLS):
         mean = float(draft.confidence[tuple(cells.T)].astype(np.float64).mean())
         what = CLASS_NAMES[_commonest(draft, cells)]
         why = f"{_counted(len(cells), what)}, right with a chance of {100 * mean:.0f} %"
         yield Doubt("unsure_cells", why, 1 - mean, middle_m(draft, cells))
+
+
+def _of_completed_cells(draft: SceneDraft) -> Iterator[Doubt]:
     completed = (draft.source == COMPLETED) & (draft.labels % 255 > 0)
     for cells in _parts(completed, UNSURE_CELLS):
         what = CLASS_NAMES[_commonest(draft, cells)]
         why = f"{_counted(len(cells), what)}, completed and never seen"
         yield Doubt("completed", why, COMPLETED_DOUBT, middle_m(draft, cells))
+
+
+KINDS: tuple[Callable[[SceneDraft], Iterator[Doubt]], ...] = (
+    _of_objects,
+    _of_loose_cells,
+    _of_unsure_cells,
+    _of_completed_cells,
+)
 
 
 def _parts(mask: np.ndarray, least: int, most: int | None = None) -> Iterator[np.ndarray]:

@@ -74,10 +74,9 @@ class SplitObject(Command):
         one = object_named(draft, self.id)
         cells = draft.cells_of(one.id)
         sides = self._sides(draft, cells)
-        groups = [cells[sides == n] for n in np.unique(sides)]
+        groups = _largest_first(cells, sides)
         if len(groups) < 2:
             raise UsageError(f"{said(one)} lies on one side of that; split it where its cells are")
-        groups.sort(key=len, reverse=True)
         numbers = [one.id]
         while len(numbers) < len(groups):
             numbers.append(free_number(draft, numbers))
@@ -95,6 +94,34 @@ class SplitObject(Command):
         axis = "xyz".index(self.plane.axis)
         middles_m = draft.origin_m[axis] + (cells[:, axis] + 0.5) * draft.voxel_m
         return (middles_m >= self.plane.at_m).astype(np.int64)
+
+
+class SplitObjects(Command):
+    """Split each of several objects into a number of parts by where its cells lie.
+
+    As ``split_object`` does with each. Objects of fewer cells than parts stay as they are.
+    """
+
+    op: Literal["split_objects"] = "split_objects"
+    ids: Ids
+    parts: Annotated[int, Field(ge=2, le=8)] = 2
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the cells by part and the objects."""
+        patch, grid, objects, taken = Patch(draft), draft.grid(), [], []
+        for one in objects_named(draft, self.ids):
+            cells = draft.cells_of(one.id)
+            if len(cells) < self.parts:
+                continue
+            for number, group in _numbered(draft, one.id, cells, self.parts, taken):
+                if number != one.id:
+                    patch.give(group, number)
+                objects.append(found_object(grid, tools, number, one.class_id, group))
+        if not objects:
+            raise UsageError(f"none of these objects has {self.parts} cells to be split into parts")
+        classes = {one.class_id for one in objects}
+        told = {"class_id": classes.pop()} if len(classes) == 1 else {}
+        return patch.planned("split_objects", objects=objects, **told)
 
 
 class MergeObjects(Command):
@@ -187,6 +214,25 @@ def clusters_of(cells: np.ndarray, count: int) -> np.ndarray:
         for n in range(count):
             if (found == n).any():
                 centers[n] = points[found == n].mean(axis=0)
+    return found
+
+
+def _largest_first(cells: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
+    """Return the groups of cells int [N, 3] by their part, int64 [N]."""
+    return sorted((cells[sides == n] for n in np.unique(sides)), key=len, reverse=True)
+
+
+def _numbered(
+    draft: SceneDraft, first: int, cells: np.ndarray, parts: int, taken: list[int]
+) -> list[tuple[int, np.ndarray]]:
+    """Return the parts of an object, the largest first, with ids: its own and free ones.
+
+    ``taken`` are ids that other new objects have; those that are given here are added.
+    """
+    found = [(first, group) for group in _largest_first(cells, clusters_of(cells, parts))]
+    for at in range(1, len(found)):
+        taken.append(free_number(draft, taken))
+        found[at] = (taken[-1], found[at][1])
     return found
 
 

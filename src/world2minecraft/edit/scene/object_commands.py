@@ -7,6 +7,7 @@ from world2minecraft.edit.scene.grouping import (
     Recluster,
     RelabelObjects,
     SplitObject,
+    SplitObjects,
 )
 from world2minecraft.edit.scene.objects import (
     DeleteObjects,
@@ -28,5 +29,6 @@ OBJECT_COMMANDS: tuple[type[Command], ...] = (
     SetTemplate,
     SnapObject,
     SplitObject,
+    SplitObjects,
     TurnObjects,
 )

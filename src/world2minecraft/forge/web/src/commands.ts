@@ -173,6 +173,14 @@ export interface SplitObject {
   plane?: CutPlane | null;
 }
 
+/** Split each of several objects into a number of parts by where its cells lie. */
+export interface SplitObjects {
+  op: "split_objects";
+  ids: number[];
+  /** >= 2, <= 8 */
+  parts?: number;
+}
+
 /** Turn objects by quarters about their centres, counter-clockwise from above. */
 export interface TurnObjects {
   op: "turn_objects";
@@ -252,6 +260,7 @@ export type Command =
   | SetTemplate
   | SnapObject
   | SplitObject
+  | SplitObjects
   | TurnObjects;
 
 /** What each query is asked with. */

@@ -42,6 +42,7 @@ export class Connection {
   private waiting = new Map<number, Waiting>();
   private seq = 0;
   private attempt = 0;
+  private greeted = false; // by the socket that is open
   private loading = false;
   private early: Change[] = []; // came while the document was being loaded
   private jobListeners = new Set<(job: JobState) => void>();
@@ -100,6 +101,7 @@ export class Connection {
     url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
     const socket = new WebSocket(url);
     this.socket = socket;
+    this.greeted = false;
     socket.onmessage = (event) => this.hear(JSON.parse(event.data as string) as ServerMessage);
     socket.onopen = () => {
       this.attempt = 0;
@@ -110,11 +112,16 @@ export class Connection {
 
   private lost(): void {
     this.store.set({ online: false });
-    for (const one of this.waiting.values()) one.reject(new Error(TEXT.error.lost));
-    this.waiting.clear();
+    this.giveUp(TEXT.error.lost);
     const pause = RETRIES_MS[Math.min(this.attempt, RETRIES_MS.length - 1)] ?? 5000;
     this.attempt += 1;
     setTimeout(() => this.connect(), pause);
+  }
+
+  /** No answer will come to what waits. */
+  private giveUp(why: string): void {
+    for (const one of this.waiting.values()) one.reject(new Error(why));
+    this.waiting.clear();
   }
 
   private hear(message: ServerMessage): void {
@@ -131,6 +138,9 @@ export class Connection {
       this.store.set({ status: TEXT.error.protocol });
       return;
     }
+    // A second greeting: this tab did not keep up, and the server dropped what it had to say.
+    if (this.greeted) this.giveUp(TEXT.error.behind);
+    this.greeted = true;
     const { document, rev } = this.store.get().scene ?? { document: 0, rev: 0 };
     if (document !== hello.document || (document && rev !== hello.rev)) this.reload();
   }

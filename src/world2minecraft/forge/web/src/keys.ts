@@ -32,6 +32,7 @@ const ROWS: Row[] = [
   ["save", "page", ["Ctrl+S"]],
   ["export", "page", ["Ctrl+E"]],
   ["theme", "page", []],
+  ["start", "page", []],
   ["undo", "edit", ["Ctrl+Z"]],
   ["redo", "edit", ["Ctrl+Shift+Z", "Ctrl+Y"]],
   ["delete", "edit", ["Delete", "Backspace"], BOTH],
@@ -78,6 +79,14 @@ const ROWS: Row[] = [
   ["brush.larger", "tools", ["]"], VOXELS],
   ["brush.shape", "tools", ["Shift+X"], VOXELS],
   ["surface", "tools", ["U"], VOXELS],
+  ["cursor.right", "voxels", ["ArrowRight"], VOXELS],
+  ["cursor.left", "voxels", ["ArrowLeft"], VOXELS],
+  ["cursor.away", "voxels", ["ArrowUp"], VOXELS],
+  ["cursor.near", "voxels", ["ArrowDown"], VOXELS],
+  ["cursor.up", "voxels", ["Alt+ArrowUp"], VOXELS],
+  ["cursor.down", "voxels", ["Alt+ArrowDown"], VOXELS],
+  ["cursor.paint", "voxels", ["Space"], VOXELS],
+  ["cursor.erase", "voxels", ["Shift+Space"], VOXELS],
   ["cells.relabel", "voxels", ["Enter"], VOXELS],
   ["cells.fillBox", "voxels", ["Shift+Enter"], VOXELS],
   ["cells.smooth", "voxels", ["Shift+S"], VOXELS],
@@ -165,6 +174,7 @@ const BY_PLACE: Record<string, string> = {
 };
 
 function keyName({ key, code }: Stroke): string {
+  if (key === " ") return "Space";
   if (code.startsWith("Digit")) return code.slice(5);
   if (code.startsWith("Numpad") && /\d$/.test(code)) return code;
   if (key === "?" || key.length > 1) return key;

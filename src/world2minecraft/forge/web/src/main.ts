@@ -10,6 +10,7 @@ import "./style_start.css";
 import "./style_parts.css";
 import { registerCompare } from "./compare/panel";
 import { registerExports } from "./export/sheet";
+import { registerSceneJobs } from "./jobs/scene_jobs";
 import { registerPhotos } from "./photos/strip";
 import { registerStart } from "./start/page";
 import { Store } from "./store";
@@ -32,6 +33,7 @@ registerStart();
 registerPhotos();
 registerCompare();
 registerExports();
+registerSceneJobs();
 
 const drawn = (canvas: HTMLCanvasElement): SceneView => {
   try {

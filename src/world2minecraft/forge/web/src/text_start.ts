@@ -1,6 +1,10 @@
 // What the start page, jobs, photos, comparing and exports say; a part of TEXT.
 
 const STAGES: Record<string, string> = {
+  scene: "On the whole scene",
+  planes: "Planes",
+  pieces: "What hangs together",
+  doubts: "Objects and cells",
   look: "Looking at it",
   photos: "Reading the photos",
   poses: "Finding where each photo was taken",

@@ -30,6 +30,7 @@ test("a stroke has one name, whatever the board", () => {
   expect(strokeName(stroke("!", "Digit1", { shiftKey: true }))).toBe("Shift+1");
   expect(strokeName(stroke("|", "Backslash", { shiftKey: true }))).toBe("Shift+\\");
   expect(strokeName(stroke("7", "Numpad7"))).toBe("Numpad7");
+  expect(strokeName(stroke(" ", "Space", { shiftKey: true }))).toBe("Shift+Space");
 });
 
 test("a key means what its mode says", () => {

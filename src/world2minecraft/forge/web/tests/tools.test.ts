@@ -1,5 +1,6 @@
 import { expect, test } from "vitest";
 
+import { stepsSeen } from "../src/tools/cursor";
 import { boundsOf, cellOf, cellsOfRuns, component, flatOf, line, runsOf, stamp } from "../src/tools/cells";
 import { combined, combineOf, Selection } from "../src/tools/selection";
 import { shifted } from "../src/tools/objects_at";
@@ -85,4 +86,15 @@ test("undo of the selection goes back and forth, and forgets what a new one repl
   expect(selection.canUndo).toBe(false);
   selection.cells([5]);
   expect(selection.canRedo).toBe(false);
+});
+
+test("the cell cursor goes to the right and away as one sees the room", () => {
+  for (const [azimuth, right, away] of [
+    [0, [0, 1, 0], [-1, 0, 0]],
+    [Math.PI / 2, [-1, 0, 0], [0, -1, 0]],
+    [Math.PI, [0, -1, 0], [1, 0, 0]],
+    [-Math.PI / 2, [1, 0, 0], [0, 1, 0]],
+  ] as const) {
+    expect(stepsSeen(azimuth)).toEqual({ right, away });
+  }
 });

@@ -1,6 +1,7 @@
 // Puts the page together: frame, panels, keys; then opens the document or shows the start page.
 
 import { Connection, NoDocument, type AnyCommand } from "../connection";
+import { sendJson } from "../start/api";
 import type { Mode, Store } from "../store";
 import { TEXT } from "../text";
 import { Actions } from "./actions";
@@ -136,6 +137,10 @@ function pageActions({ actions, store, connection, toast }: App, tell: (error: u
     why: blocked,
   });
   actions.on("theme", () => switchTheme(store));
+  actions.on("start", {
+    run: () => void sendJson("api/start/close").catch(tell),
+    why: () => (store.get().scene ? "" : TEXT.why.noScene),
+  });
   for (const mode of MODES) {
     actions.on(`mode.${mode}`, {
       run: () => store.set({ mode }),

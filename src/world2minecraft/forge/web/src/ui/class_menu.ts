@@ -52,6 +52,11 @@ function objectItems(app: App, id: number, why: string): MenuItem[] {
       run: () => app.store.set({ mode: "objects", selectedObjects: new Set(ids) }),
     },
     { label: TEXT.legend.mergeAll(word), why: few, run: () => void app.do({ op: "merge_objects", ids }) },
+    {
+      label: TEXT.legend.splitEach(word),
+      why: missing,
+      run: () => void app.do({ op: "split_objects", ids, parts: 2 }),
+    },
     { label: TEXT.legend.rematch, why: missing, run: () => void app.do({ op: "rematch", ids }) },
     {
       label: TEXT.legend.recluster(word),

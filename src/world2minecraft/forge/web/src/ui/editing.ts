@@ -3,6 +3,7 @@
 import { addTool } from "../tools/add";
 import { boxTool, lassoTool } from "../tools/region";
 import { brushTool } from "../tools/brush";
+import { cursorActions } from "../tools/cursor";
 import { eyedropperTool } from "../tools/eyedropper";
 import { floodTool } from "../tools/flood";
 import { ToolManager } from "../tools/manager";
@@ -68,6 +69,7 @@ export function startEditing(app: App, hover: (at: Press | null) => void): ToolM
   objectActions(app);
   cellActions(app);
   pasteActions(desk);
+  cursorActions(app);
   selectionActions(app);
   optionActions(app);
   app.store.watch(["mode"], ({ tool }) => {

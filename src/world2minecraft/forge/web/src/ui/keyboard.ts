@@ -24,6 +24,7 @@ export function listenToKeys(store: Store, actions: Actions): void {
 function usesItself(event: KeyboardEvent): boolean {
   const target = event.target;
   if (!(target instanceof HTMLElement) || target instanceof HTMLCanvasElement) return false;
+  if (event.key === " ") return target.closest("button, a, input, select, summary, [role=treeitem], [role=tab]") !== null;
   if (event.key === "Enter") return target.closest("button, a, select, summary, [role=treeitem]") !== null;
   if (event.key.startsWith("Page")) return target.closest("input, select") !== null;
   if (event.key.startsWith("Arrow")) {

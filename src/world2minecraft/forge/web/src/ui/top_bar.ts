@@ -19,6 +19,7 @@ export function mountTopBar(host: HTMLElement, app: App): void {
     h(
       "div",
       { class: "top-scene" },
+      actions.button("start", { icon: "back" }),
       h("span", { class: "brand", "aria-hidden": "true" }),
       name,
       saved,
