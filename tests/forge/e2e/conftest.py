@@ -5,6 +5,7 @@ Set W2M_SHOTS to a folder outside the repository to keep pictures of the main st
 
 import os
 import shutil
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +17,10 @@ from world2minecraft.forge.demo import demo_room
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.serve import ForgeServer
 from world2minecraft.forge.sources import Opened
+
+TESTS = Path(__file__).resolve().parents[2]
+for part in ("plans", "server"):  # RoomPlans and a server's console, written for other tests.
+    sys.path.insert(0, str(TESTS / part))
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 ARGUMENTS = (

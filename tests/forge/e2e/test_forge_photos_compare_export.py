@@ -4,9 +4,9 @@ import json
 import math
 import shutil
 import time
-import zipfile
 
 import pytest
+from console import Console
 from forge_driving import Driver, opened_page
 
 from world2minecraft.forge.editor import Editor
@@ -140,13 +140,18 @@ def test_the_scene_is_downloaded_and_installed(forge, shot, tmp_path):
         page.locator("[data-export='occ']").click()
     held = json.loads(download.value.path().read_text())
     assert held["format"] == "world2minecraft/occ"
-    with page.expect_download(timeout=MOST_MS) as download:
-        page.locator("[data-export='world']").click()
-    assert download.value.suggested_filename == "room_world.zip"
-    assert "world/level.dat" in zipfile.ZipFile(download.value.path()).namelist()
     page.locator("[data-place='install']").click()
     until(forge, "document.querySelector('.export').textContent.includes('is in the game')")
     saves = tmp_path / "user" / ".minecraft" / "saves"
     assert [(path / "level.dat").is_file() for path in saves.iterdir()] == [True]
     shot(forge, "export-installed")
+    with Console() as console:
+        page.get_by_text("Build on a running server").click()
+        page.get_by_label("Address").fill(f"127.0.0.1:{console.port}")
+        page.get_by_label("Password").fill("secret")
+        page.locator("[data-place='server']").click()
+        until(forge, "/[0-9,]+ commands/.test(document.querySelector('.export').textContent)")
+        assert "minecraft:oak_planks" in {
+            name.partition("[")[0] for name in console.blocks.values()
+        }
     page.keyboard.press("Escape")

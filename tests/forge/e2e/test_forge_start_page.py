@@ -1,12 +1,19 @@
 """From a capture to a room that is open in the editor, by real mouse, without a shell."""
 
+import base64
+import io
+import json
 import os
-import shutil
 import time
+import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 from forge_driving import Driver
+from PIL import Image
+from roomplans import captured_room
+from scipy.ndimage import gaussian_filter
 
 from world2minecraft.forge.serve import ForgeServer
 from world2minecraft.rooms import generate_room, scan_room
@@ -65,7 +72,29 @@ def unexpected(driver) -> list[str]:
     return [text for text in driver.mistakes if "404 (Not Found)" not in text]
 
 
-def test_a_folder_becomes_a_room_in_the_editor(start, capture, shot):
+def drop(page, files: dict[str, bytes]) -> None:
+    """Drop files anywhere on the page."""
+    told = [[name, base64.b64encode(data).decode()] for name, data in files.items()]
+    page.evaluate(
+        """(told) => {
+            const files = new DataTransfer();
+            for (const [name, data] of told) {
+                const bytes = Uint8Array.from(atob(data), (one) => one.charCodeAt(0));
+                files.items.add(new File([bytes], name));
+            }
+            const page = document.querySelector(".start-page");
+            for (const kind of ["dragenter", "dragover", "drop"]) {
+                page.dispatchEvent(
+                    new DragEvent(kind, { dataTransfer: files, bubbles: true, cancelable: true }),
+                );
+            }
+        }""",
+        told,
+    )
+    page.wait_for_selector(".survey", timeout=MOST_MS)
+
+
+def test_a_folder_is_looked_at_before_anything_is_made(start, capture, shot):
     page = start.page
     assert page.locator(".drop strong").inner_text() == "Drop a capture here"
     keep(shot, start, "start")
@@ -76,7 +105,16 @@ def test_a_folder_becomes_a_room_in_the_editor(start, capture, shot):
     picture = page.locator(".survey-picture img")
     picture.evaluate("one => one.decode()")
     assert picture.evaluate("one => one.naturalWidth") == 1600
+    assert page.locator("[data-field='known']").count() == 0, "depth tells the scale"
     keep(shot, start, "start-found")
+    assert unexpected(start) == []
+
+
+def test_a_dropped_plan_becomes_a_room_and_one_comes_back_to_the_start(start, shot):
+    """Apple's RoomPlan as JSON: from the drop to the room in the editor, and back."""
+    page = start.page
+    layout = generate_room(3, kind="study").layout
+    drop(page, {"Room.json": json.dumps(captured_room(layout)).encode()})
     page.locator(".choices [data-value='2']").click()
     assert "usual size of rooms" in page.locator(".choices").inner_text()
     page.locator("[data-do='start']").click()
@@ -87,7 +125,46 @@ def test_a_folder_becomes_a_room_in_the_editor(start, capture, shot):
     start.until("s.scene.objects.length > 0")
     start.idle()
     keep(shot, start, "start-opened")
+    page.locator("[data-action='start']").click()
+    page.wait_for_selector(".drop")
+    assert "Room" in page.locator(".room-row").first.inner_text()
     assert unexpected(start) == []
+
+
+def test_a_dropped_video_is_asked_for_a_length_that_is_known(start, tmp_path):
+    page = start.page
+    write_video(tmp_path / "IMG_2041.MOV")
+    drop(page, {"IMG_2041.MOV": (tmp_path / "IMG_2041.MOV").read_bytes()})
+    assert page.locator(".capture-head h2").inner_text() == "IMG_2041"
+    button = page.locator("[data-do='start']")
+    page.locator("[data-field='known']").select_option("ceiling height")
+    assert button.get_attribute("aria-disabled") == "true", "how high is it?"
+    page.locator("[data-field='metres']").fill("2.6")
+    assert button.get_attribute("aria-disabled") != "true"
+    with page.expect_request("**/reconstruct") as asked:
+        button.click()
+    assert asked.value.post_data_json["known"] == ["ceiling height", 2.6]
+    page.get_by_role("button", name="Cancel").click()
+    until(page, "document.querySelector('.trouble:not([hidden])')?.textContent === 'Cancelled'")
+    assert unexpected(start) == []
+
+
+def write_video(path: Path) -> None:
+    """Write two seconds of a phone's video: sideways along a wall with marks of all sizes."""
+    av = pytest.importorskip("av")
+    random = np.random.default_rng(0)
+    layers = [
+        gaussian_filter(random.standard_normal((128, 900)), size) * size for size in (1, 2, 6)
+    ]
+    wall = np.clip(128 + 60 * sum(layers) / np.std(sum(layers)), 0, 255).astype(np.uint8)
+    with av.open(str(path), "w", format="mov") as container:
+        stream = container.add_stream("mpeg4", rate=24)
+        stream.width, stream.height, stream.pix_fmt = 192, 128, "yuv420p"
+        stream.bit_rate = 4_000_000
+        for left in np.linspace(0, 600, 48).astype(int):
+            picture = np.stack([wall[:, left : left + 192]] * 3, -1)
+            container.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
+        container.mux(stream.encode(None))
 
 
 def keep(shot, driver, name) -> None:
@@ -103,7 +180,7 @@ def test_what_is_no_capture_teaches_what_is(start, tmp_path):
     page.wait_for_selector(".trouble:visible", timeout=MOST_MS)
     until(page, "document.body.innerText.includes('a capture is one of these')")
     assert "a capture is one of these" in page.locator(".trouble:visible").inner_text()
-    page.get_by_role("button", name="Back").click()
+    page.get_by_role("button", name="Back", exact=True).click()
     page.wait_for_selector(".drop")
     row = page.locator(".room-row")
     assert row.count() == 1 and "Not started" in row.inner_text()
@@ -124,22 +201,21 @@ def test_making_a_room_can_be_cancelled(start):
     assert unexpected(start) == []
 
 
-def test_a_zip_dropped_on_the_page_is_looked_at(start, capture, tmp_path):
-    page = start.page
-    packed = shutil.make_archive(str(tmp_path / "den"), "zip", capture.parent, capture.name)
-    data = list(Path(packed).read_bytes())
-    page.evaluate(
-        """(data) => {
-            const files = new DataTransfer();
-            files.items.add(new File([new Uint8Array(data)], "den.zip"));
-            const page = document.querySelector(".start-page");
-            for (const kind of ["dragenter", "dragover", "drop"]) {
-                page.dispatchEvent(
-                    new DragEvent(kind, { dataTransfer: files, bubbles: true, cancelable: true }),
-                );
-            }
-        }""",
-        data,
-    )
-    page.wait_for_selector(".survey", timeout=MOST_MS)
+def test_a_zip_of_photos_of_a_phone_is_looked_at(start):
+    """HEIC, as phones write it, and JPEG in one zip."""
+    heif = pytest.importorskip("pillow_heif")
+    heif.register_heif_opener()
+    page, packed = start.page, io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        for number, suffix in enumerate((".HEIC", ".HEIC", ".jpg")):
+            noise = np.random.default_rng(number).integers(0, 255, (12, 16, 3), np.uint8)
+            picture = Image.fromarray(noise.repeat(20, axis=0).repeat(20, axis=1))
+            held = io.BytesIO()
+            picture.save(held, "HEIF" if suffix == ".HEIC" else "JPEG")
+            archive.writestr(f"den/IMG_{number}{suffix}", held.getvalue())
+    drop(page, {"den.zip": packed.getvalue()})
     assert page.locator(".capture-head h2").inner_text() == "den"
+    assert "3 " in page.locator(".survey").first.inner_text()
+    picture = page.locator(".survey-picture img")
+    picture.evaluate("one => one.decode()")
+    assert unexpected(start) == []

@@ -223,8 +223,10 @@ export class SceneView extends Looking {
     this.sight.step(now);
     this.resize(fineness.scale);
     const camera = this.sight.camera();
-    if (this.copy.length) this.aim(camera, fineness.coarse);
-    this.markers.dim((center) => this.reach.isCovered(center));
+    if (this.copy.length && this.store.get().scene) { // A room may have been closed just now.
+      this.aim(camera, fineness.coarse);
+      this.markers.dim((center) => this.reach.isCovered(center));
+    }
     this.compass.turn(this.sight.pose || !this.copy.length ? null : this.sight.axes);
     if (clear && pass !== null) this.addPass(pass, camera);
     else this.renderer.render(this.scene, camera);
