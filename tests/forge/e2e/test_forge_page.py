@@ -120,7 +120,9 @@ def test_the_objects_of_a_class_are_merged_matched_and_found_anew_by_their_menu(
     forge.key("Control+z", "Control+z")
     forge.until("s.scene.rev", 4)
     assert forge.state(tvs) == before
-    choose("Match templates again", 5)
+    choose("Split each tvs in two", 5)
+    assert forge.state(tvs) == 2 * before
+    choose("Match templates again", 6)
     assert forge.state("s.scene.undo") == "rematch"
 
 
@@ -183,6 +185,24 @@ def test_the_keyboard_alone_reaches_and_does_everything(forge):
     assert page.evaluate("document.activeElement.dataset.action") == "mode.voxels"
     forge.key("Enter")
     forge.until("s.mode", "voxels")
+    page.locator("canvas.canvas").focus()
+    forge.key("0", "ArrowRight")  # The class furn, and the cell cursor.
+    for _ in range(40):
+        if forge.state("s.status").endswith(": empty"):
+            break
+        forge.key("Alt+ArrowUp")
+    first = forge.state("s.status")
+    forge.key("ArrowRight", "ArrowUp", "ArrowLeft", "ArrowDown")
+    assert forge.state("s.status") == first, "four steps lead around to where one was"
+    assert page.locator("[data-status='said']").inner_text() == first
+    furn = forge.state("s.scene.counts[10]")
+    forge.key("Space")
+    forge.until("s.scene.rev", 1)
+    assert forge.state("s.scene.counts[10]") == furn + 1
+    forge.until("s.status", first.replace("empty", "furn"))
+    forge.key("Shift+Space")
+    forge.until("s.scene.rev", 2)
+    forge.until("s.status", first)
 
 
 def test_theme_and_a_narrow_window(open_tab, shot):
