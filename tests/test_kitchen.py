@@ -77,9 +77,10 @@ def is_wooden(red: float, green: float, blue: float) -> bool:
 
 @pytest.fixture(scope="module")
 def from_photos(kitchen, tmp_path_factory):
-    """A reconstruction from the colour images alone: no poses, no depth, no lens."""
+    """A reconstruction from three of four colour images alone: no poses, no depth, no lens."""
     folder = tmp_path_factory.mktemp("photos")
-    for path in sorted((kitchen / "frames").glob("*.color.*")):
+    images = sorted((kitchen / "frames").glob("*.color.*"))
+    for path in (path for number, path in enumerate(images) if number % 4 != 3):
         shutil.copy(path, folder / f"{path.name.split('.')[0]}{path.suffix}")
     out = tmp_path_factory.mktemp("from_photos") / "OUT"
     assert w2m(["reconstruct", str(folder), "--out", str(out)]) == 0

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -68,10 +69,10 @@ def test_the_room_is_right_within_one_voxel(out):
 def test_given_labels_are_used_and_help(out, capture, tmp_path):
     voted = json.loads((out / "report.json").read_text())["truth"]["occupancy"]
     assert voted["miou_present_classes"] > 0.5
-    assert (
-        w2m(["reconstruct", str(capture), "--out", str(tmp_path), "--labeller", "geometric"]) == 0
-    )
-    plain = json.loads((tmp_path / "report.json").read_text())["truth"]["occupancy"]
+    shutil.copytree(out, tmp_path / "plain")
+    words = ["reconstruct", str(capture), "--out", str(tmp_path / "plain"), "--from", "label"]
+    assert w2m([*words, "--labeller", "geometric"]) == 0
+    plain = json.loads((tmp_path / "plain/report.json").read_text())["truth"]["occupancy"]
     assert voted["miou_present_classes"] > plain["miou_present_classes"]
 
 

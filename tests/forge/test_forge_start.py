@@ -11,6 +11,8 @@ from PIL import Image
 
 from world2minecraft.forge.apart import run_apart
 from world2minecraft.forge.captures import Captures, is_capture
+from world2minecraft.forge.editor import Editor
+from world2minecraft.forge.identity import folder_of
 from world2minecraft.rooms import generate_room, scan_room
 
 
@@ -292,3 +294,21 @@ def test_a_run_and_an_occupancy_file_are_no_captures(small_run, tmp_path):
     assert not is_capture(small_run)
     assert not is_capture(small_run / "occ.json")
     assert not is_capture(tmp_path)
+
+
+def test_a_demo_room_that_was_closed_is_offered_again_with_its_edits(tmp_path):
+    home = tmp_path / "home"
+    with served(Editor.open(None, out=home / "demo-room"), home=home) as server:
+        server.workshop.begin_with(folder_of(None, home / "demo-room"), False)
+        with client(server) as script:
+            box = {"op": "fill_box", "low": [20, 20, 9], "high": [22, 22, 11], "class_id": 11}
+            assert script.post("/api/do", json=box).json()["rev"] == 1
+            script.post("/api/start/close")
+            (row,) = script.get("/api/start").json()["recent"]
+            assert row["name"] == "demo-room"
+            assert (
+                script.post("/api/start/open", json={"id": row["id"]}).json()["name"] == "Demo room"
+            )
+            assert script.get("/api/scene").json()["rev"] == 1
+            answer = script.post("/api/start/open", json={"id": "recent-1"})
+            assert "no recent room is named 'recent-1'" in answer.json()["error"]

@@ -123,9 +123,9 @@ def test_an_upper_storey_is_labelled_as_if_it_were_alone():
 
 def test_a_sloped_ceiling_and_the_low_wall_under_it_are_structure():
     room = rooms.SmallRoom(size_m=(3.2, 4.0, 2.4))
-    steps = np.arange(0.0, 1.2, 0.02)
+    steps = np.arange(0.0, 1.2, 0.04)
     for start in steps:  # A roof that rises from 1.0 m at x = 0 to 2.2 m at x = 1.2.
-        room.add((start, 0, 1.0 + start, start + 0.02, 4.0, 2.4), 1, WALL)
+        room.add((start, 0, 1.0 + start, start + 0.04, 4.0, 2.4), 1, WALL)
     result = GeometricLabeller().label(*room.scanned()[:2])
     assert np.isin(result.labels[result.occupied], (1, 2, 3)).mean() > 0.95
     roof = result.labels[rooms.MARGIN + 3 : rooms.MARGIN + 12, 4:-4, rooms.MARGIN + 14 : -4]

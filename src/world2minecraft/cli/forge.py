@@ -76,6 +76,7 @@ def run(
     from world2minecraft.errors import UsageError
     from world2minecraft.forge.captures import is_capture, user_home
     from world2minecraft.forge.editor import Editor
+    from world2minecraft.forge.identity import folder_of
     from world2minecraft.forge.serve import ForgeServer
     from world2minecraft.forge.sources import DEMO_OUT
 
@@ -86,8 +87,9 @@ def run(
     editor = Editor.open(source, out=place) if demo or (source and not dropped) else None
     places = {"home": home, "capture": capture, "most_upload_bytes": max_upload << 20}
     server = ForgeServer(editor, host=host, port=port, hosts=allow_host or (), **places)
-    if source is not None:
-        server.workshop.begin_with(source, dropped)
+    first = source or (editor and folder_of(None, place))
+    if first:
+        server.workshop.begin_with(first, dropped)
     if server.is_open:
         print(
             f"warning: whoever reaches {host} and has the link can edit, and nothing is "

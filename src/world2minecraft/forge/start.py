@@ -29,6 +29,7 @@ from world2minecraft.build.parameters import STYLES
 from world2minecraft.errors import ConflictError, InputError, UsageError
 from world2minecraft.forge.apart import run_apart
 from world2minecraft.forge.captures import PICTURE, CaptureFolder
+from world2minecraft.forge.identity import SUFFIX
 from world2minecraft.forge.jobs import JobState
 from world2minecraft.forge.requests import object_of, workshop_of
 from world2minecraft.forge.tasks import parameters_of
@@ -71,7 +72,11 @@ async def _all(request: Request) -> Response:
             "home": str(shop.home),
             "captures": [_told(shop, one) for one in shop.captures.all()],
             "recent": [
-                {"id": f"recent-{n}", "name": place.name, "folder": str(place.parent)}
+                {
+                    "id": f"recent-{n}",
+                    "name": place.name.removesuffix(SUFFIX),
+                    "folder": str(place.parent),
+                }
                 for n, place in enumerate(shop.recent())
             ],
             "demos": list(BASE_KINDS),

@@ -178,7 +178,8 @@ class Workshop:
         if kind == "recent" and index.isdecimal():
             recent = self.recent()
             if int(index) >= len(recent):
-                raise UnknownNameError("recent room", number, (f"recent-{n}" for n in range(9)))
+                known = (f"recent-{n}" for n in range(len(recent)))
+                raise UnknownNameError("recent room", number, known)
             return recent[int(index)]
         found = self.captures.named(number)
         if not found.has_room:
