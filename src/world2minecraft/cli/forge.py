@@ -2,9 +2,13 @@
 
 import webbrowser
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from world2minecraft.forge.editor import Editor
+    from world2minecraft.forge.serve import ForgeServer
 
 EXAMPLES = """\
 w2m forge OUT                   a run: its room, objects, photos, blocks
@@ -90,20 +94,25 @@ def run(
     first = source or (editor and folder_of(None, place))
     if first:
         server.workshop.begin_with(first, dropped)
-    if server.is_open:
-        print(
-            f"warning: whoever reaches {host} and has the link can edit, and nothing is "
-            "encrypted; an SSH tunnel is safer (docs/forge.md)"
-        )
     if place is not None:
         print(f"note: your demo room is kept in {place.parent}")
+    _tell(server, editor)
+    server.run(lambda: None if no_browser else _open(server.link))
+
+
+def _tell(server: "ForgeServer", editor: "Editor | None") -> None:
+    """Print what is to be known, and the link."""
+    if server.is_open:
+        print(
+            f"warning: whoever reaches {server.host} and has the link can edit, and nothing is "
+            "encrypted; an SSH tunnel is safer (docs/forge.md)"
+        )
     for note in editor.notes if editor else ():
         print(f"note: {note}")
     if editor and editor.read_only:
         print(f"note: open to be read only: {editor.read_only}")
     print(f"SceneForge: {server.link}", flush=True)
     print("Ctrl+C stops it; everything done is kept.", flush=True)
-    server.run(lambda: None if no_browser else _open(server.link))
 
 
 def _open(link: str) -> None:
