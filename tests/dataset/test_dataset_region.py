@@ -9,6 +9,7 @@ from label_worlds import poses_in, room_of_things
 from world2minecraft.coordinates import apply, invert, look_at, rotation_about_z
 from world2minecraft.dataset.labels import gathered, is_on_cells
 from world2minecraft.dataset.region import RegionRule, floor_under, region_in, region_of
+from world2minecraft.dataset.values import FineClass, SceneVoxels
 from world2minecraft.dataset.voxels import scene_voxels
 from world2minecraft.errors import UnknownNameError, UsageError
 
@@ -116,6 +117,18 @@ def test_the_floor_under_a_camera_is_found():
     for pose in poses_in(volume, 8, 1):
         assert floor_under(voxels, pose) == pytest.approx(0.0)
     assert floor_under(voxels, look_at([50.0, 50.0, 1.0], [51.0, 50.0, 1.0])) == pytest.approx(0)
+
+
+@pytest.mark.parametrize(("x", "height"), [(0.4, 0.0), (2.6, 1.04)])
+def test_a_rug_is_no_floor_and_a_gallery_is(x, height):
+    labels = np.zeros((50, 30, 40), np.uint8)
+    labels[:, :, :3] = labels[25:, :, 15] = 2
+    labels[3:9, 10:20, 3] = 2  # The rug that one stands on.
+    fine = (labels > 0).astype(np.uint16)
+    names = (FineClass("minecraft:air"), FineClass("minecraft:stone"))
+    voxels = SceneVoxels(labels, fine, 0 * fine, names, 0.08, np.array([0, 0, -0.24]))
+    pose = look_at([x, 1.2, 1.6 + height], [1.0, 5.0, 1.6 + height])
+    assert floor_under(voxels, pose) == pytest.approx(height)
 
 
 def test_a_camera_may_look_straight_down():
