@@ -160,8 +160,7 @@ def test_the_rooms_of_a_house_are_told_apart(seed):
     at = np.full(len(graph), -1)
     for room in rooms:
         at[room.places] = room.number
-    margin = -np.array(volume.corner)
-    cells = np.floor(graph.feet).astype(int) + margin - 2  # Of the house's own blocks.
+    cells = np.floor(graph.feet).astype(int)  # Block (0, 64, 0) is the first within the walls.
     deep = house.house.size[1]
     found = 0
     for own in house.house.rooms:

@@ -46,6 +46,8 @@ VERBS: dict[str, str] = {
     "undo": "Take back what was last built into a world.",
     "dataset build": "Make a labelled data set of generated houses, or of worlds of yours.",
     "dataset verify": "Check every byte of a data set.",
+    "dataset tour": "Plan which pictures of a world are taken, or take those of screenshots.",
+    "dataset sheet": "Draw many pictures of a data set or a tour on one page.",
     "doctor": "Check that this machine can run the program.",
 }
 

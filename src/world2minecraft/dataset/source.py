@@ -78,6 +78,11 @@ class SceneSource:
             self._cache["designs"] = designs_beside(source.folder, source.volume)
         return self._cache["designs"]
 
+    def start(self) -> tuple[float, float, float] | None:
+        """Return where its player starts, the feet in world blocks; None where it does not say."""
+        start = self._read().start
+        return None if start is None else (start.x, start.y, start.z)
+
     def has_truth(self) -> bool:
         """Whether classes lie beside the blocks, rather than being told by the map alone."""
         return bool(self._read().volume.semantic.any())

@@ -1,5 +1,6 @@
 """Which pictures of a world are taken: smooth walks through its rooms, and views worth having."""
 
+from world2minecraft.dataset.tours.beside import layouts_beside
 from world2minecraft.dataset.tours.files import read_views, view_line, write_views
 from world2minecraft.dataset.tours.planning import plan_views
 from world2minecraft.dataset.tours.values import (
@@ -14,6 +15,7 @@ __all__ = [
     "PlannedView",
     "TourRule",
     "kind_of_yaw",
+    "layouts_beside",
     "nyu_camera",
     "paper_camera",
     "plan_views",

@@ -22,6 +22,8 @@ THING_WORTH = 0.8  # More for a pixel of furniture,
 CEILING_COST = 0.3  # less for one of the ceiling,
 NEAR_COST = 1.0  # less for what is before one's nose,
 LOST_WORTH = 0.05  # and for the sky and windows.
+SEEN_COST = 0.7  # Less for where views from nearby looked already: these count,
+SEEN_M, SEEN_DEG, SEEN_VIEWS = 1.2, 25.0, 400  # so near, so alike, and the last ones alone.
 KIND_WORTH = 0.9  # More for a heading of the kind that a stretch asks for.
 TURN_COST = 0.12  # Of fifteen degrees from one frame to the next,
 MOST_TURN = 2  # and so many at most.
@@ -60,6 +62,22 @@ def rated_headings(
     apart = np.abs((yaws_deg[None] - wanted[:, None] + 180) % 360 - 180)
     within = (apart <= half_deg).astype(float)
     return columns @ (within / within.sum(axis=1, keepdims=True)).T
+
+
+def seen_before(eyes: np.ndarray, taken: np.ndarray, blocks_per_metre: float) -> np.ndarray:
+    """Return what each heading loses for views that looked there from nearby, [N, HEADINGS].
+
+    Args:
+        eyes: float64 [N, 3], world blocks.
+        taken: float64 [M, 5], the views so far: x, y, z, yaw, pitch.
+        blocks_per_metre: of the world.
+    """
+    last = taken[-SEEN_VIEWS:]
+    away_m = np.linalg.norm(eyes[:, None] - last[None, :, :3], axis=2) / blocks_per_metre
+    angle = np.arange(HEADINGS) * (360.0 / HEADINGS)
+    turn = np.abs((last[:, 3, None] - angle[None] + 180) % 360 - 180)
+    alike = np.exp(-((away_m / SEEN_M) ** 2)) @ np.exp(-((turn / SEEN_DEG) ** 2))
+    return SEEN_COST * (1 - np.exp(-alike / 3))
 
 
 def drawn_kinds(

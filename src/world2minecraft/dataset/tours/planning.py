@@ -1,6 +1,6 @@
 """``plan_views``: walks through all rooms of a volume, and the views of them that are worth it."""
 
-from world2minecraft.dataset.tours.rooms import find_rooms, shared
+from world2minecraft.dataset.tours.rooms import TourRoom, find_rooms, shared
 from world2minecraft.dataset.tours.tourist import Kinds, Tourist
 from world2minecraft.dataset.tours.values import PlannedView, TourRule
 from world2minecraft.dataset.tours.walks import Grounds, subgraph
@@ -8,7 +8,11 @@ from world2minecraft.errors import UsageError
 from world2minecraft.progress import Progress, silent
 from world2minecraft.render.scene import BlockScene, prepare_scene
 from world2minecraft.types import BlockVolume
-from world2minecraft.walk.graph import solid_of, walk_graph
+from world2minecraft.walk.columns import Solid
+from world2minecraft.walk.graph import WalkGraph, WalkRule, solid_of, walk_graph
+
+LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a slimmer body is tried,
+SLIM = 0.4  # so many times as wide as a player's: 0.24 m.
 
 
 def plan_views(
@@ -38,10 +42,8 @@ def plan_views(
     how = rule or TourRule()
     if count < 1:
         raise UsageError(f"a plan has one view or more, not {count}")
-    graph, solid = walk_graph(volume), solid_of(volume)
-    rooms = find_rooms(volume, graph, solid, how)
-    if not rooms:
-        raise UsageError("nobody can stand anywhere in this world, so there is no view to plan")
+    solid = solid_of(volume)
+    graph, rooms = _rooms(volume, solid, how)
     ready, kinds = scene or prepare_scene(volume), Kinds()
     tourists = []
     for room in rooms:
@@ -49,6 +51,19 @@ def plan_views(
         tourists.append(Tourist(volume, ready, room, grounds, how, seed, kinds))
     _fill(tourists, count, progress)
     return [view for tourist in tourists for view in tourist.views()]
+
+
+def _rooms(volume: BlockVolume, solid: Solid, rule: TourRule) -> tuple[WalkGraph, list[TourRoom]]:
+    """Return where a player walks in a volume; where none fits, where a slim one would.
+
+    A cluttered scan may leave no floor that is wide enough for a person, though a camera fits.
+    """
+    for slim in (1.0, SLIM):
+        graph = walk_graph(volume, WalkRule(scale=slim * volume.blocks_per_metre))
+        rooms = find_rooms(volume, graph, solid, rule)
+        if sum(room.floor_m2 for room in rooms) >= LEAST_FLOOR_M2 or (rooms and slim < 1):
+            return graph, rooms
+    raise UsageError("nobody can stand anywhere in this world, so there is no view to plan")
 
 
 def _fill(tourists: list[Tourist], count: int, progress: Progress) -> None:

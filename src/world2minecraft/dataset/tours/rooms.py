@@ -1,9 +1,9 @@
 """The rooms of a volume, and the places in each where one can stand.
 
-Layouts say the rooms where there are any. Else a room is what hangs together right under a ceiling:
-there doorways are closed by what is over them, and furniture ends below. Where such a part narrows
-to less than a wide door it is cut in two. Places under no ceiling of a room, such as those in a
-doorway, go to the nearest room.
+Layouts say the rooms where there are any that hold a place. Else a room is what hangs together
+right under a ceiling: there doorways are closed by what is over them, and furniture ends below.
+Where such a part narrows to less than a wide door it is cut in two. Places under no ceiling of a
+room, such as those in a doorway, go to the nearest room.
 """
 
 from dataclasses import dataclass
@@ -19,6 +19,7 @@ from world2minecraft.dataset.tours.values import TourRule
 from world2minecraft.jit import njit
 from world2minecraft.rooms.stands import is_inside
 from world2minecraft.types import BlockVolume
+from world2minecraft.walk.body import HEIGHT
 from world2minecraft.walk.columns import Solid
 from world2minecraft.walk.graph import WalkGraph
 from world2minecraft.walk.paths import parts, reachable
@@ -63,15 +64,17 @@ def find_rooms(
     if not len(graph):
         return []
     above = int(np.ceil(2 * volume.blocks_per_metre))  # One may stand on the very top.
-    blocked = np.pad(solid.kinds != 0, ((0, 0), (0, above), (0, 0)))
+    things = (volume.semantic >= SemanticClass.CHAIR) & (volume.semantic != 255)
+    # Lamps and tall cupboards part no rooms.
+    blocked = np.pad((solid.kinds != 0) & ~things, ((0, 0), (0, above), (0, 0)))
     cells = np.floor(graph.feet - np.array(volume.corner) + [0, 1e-6, 0]).astype(np.int64)
     roof = _roofs(blocked)[tuple(cells.T)]
     kept = _indoors(graph, blocked, cells, roof)
+    kept &= graph.headroom >= HEIGHT * graph.blocks_per_metre - 1e-6  # However slim the body is.
     if rule.start is not None and rule.reachable_only:
         kept &= reachable(graph, graph.nearest(rule.start))
-    if rule.layouts:
-        number = _by_layouts(volume, graph, rule)
-    else:
+    number = _by_layouts(volume, graph, rule)
+    if not (kept & (number >= 0)).any():
         number = _by_ceilings(graph, blocked, cells, roof, kept)
     rooms = []
     for one in np.unique(number[kept & (number >= 0)]):

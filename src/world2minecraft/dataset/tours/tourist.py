@@ -6,7 +6,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from world2minecraft.coordinates import PLAYER_EYE_BLOCKS
-from world2minecraft.dataset.tours.headings import best_yaws, drawn_kinds, rated_headings, wander
+from world2minecraft.dataset.tours.headings import (
+    best_yaws,
+    drawn_kinds,
+    rated_headings,
+    seen_before,
+    wander,
+)
 from world2minecraft.dataset.tours.judging import judged
 from world2minecraft.dataset.tours.rooms import TourRoom
 from world2minecraft.dataset.tours.values import KINDS, PlannedView, TourRule, kind_of_yaw
@@ -148,6 +154,9 @@ class Tourist:
         eyes[:, 1] += self._eyes_m(len(feet), spacing_m, rng) * self.volume.blocks_per_metre
         kinds = drawn_kinds(len(feet), spacing_m, self.kinds.wanted(rule, len(feet)), rng)
         rated = rated_headings(self.scene, eyes, self.volume.block_to_room, rule)
+        if self.taken.poses:
+            taken = np.concatenate(self.taken.poses)
+            rated = rated - seen_before(eyes, taken, self.volume.blocks_per_metre)
         yaws = best_yaws(rated, kinds, spacing_m, rng)
         pitch = rng.normal(PITCH_MEAN_DEG, PITCH_SPREAD_DEG / 2)
         pitch = pitch + PITCH_SPREAD_DEG * wander(len(feet), spacing_m, rng)
