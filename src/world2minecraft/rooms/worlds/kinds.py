@@ -1,46 +1,16 @@
-"""Rooms that the metric houses do not know: shops, storerooms, winter gardens, workshops and more.
+"""Which kinds the rooms of a house are of, and what more stands in those of the metric kinds."""
 
-Each kind is a list of steps, tried in order; what finds no place is left out. Rooms of the metric
-kinds get some more furniture in the same way.
-"""
-
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.rooms.kinds import KINDS
-from world2minecraft.rooms.worlds.dressing import hang_one
-from world2minecraft.rooms.worlds.furnishing import Furnisher, Thing
-from world2minecraft.rooms.worlds.house import BlockHouse, BlockRoom
-from world2minecraft.rooms.worlds.showing import Show
+from world2minecraft.rooms.worlds.house import BlockHouse
+from world2minecraft.rooms.worlds.recipes import PICTURES
+from world2minecraft.rooms.worlds.task import BOARDS, Task
 from world2minecraft.rooms.worlds.wares import HOME
 
-BOARDS = (  # Blocks with a slab that racks are made of, light and dark.
-    "oak", "spruce", "birch", "jungle", "acacia", "dark_oak", "mangrove", "cherry", "bamboo",
-    "bamboo_mosaic", "crimson", "warped", "smooth_stone", "stone", "smooth_quartz", "andesite",
-    "polished_andesite", "polished_diorite", "polished_granite", "brick", "mud_brick",
-    "stone_brick", "sandstone", "smooth_sandstone", "cut_sandstone", "smooth_red_sandstone",
-    "purpur", "prismarine", "prismarine_brick", "dark_prismarine", "nether_brick",
-    "red_nether_brick", "blackstone", "polished_blackstone", "polished_deepslate",
-    "deepslate_tile", "end_stone_brick", "waxed_cut_copper", "waxed_oxidized_cut_copper",
-    "waxed_weathered_cut_copper", "waxed_exposed_cut_copper", "quartz", "diorite", "granite",
-    "cobblestone", "mossy_cobblestone", "cobbled_deepslate", "deepslate_brick",
-    "polished_blackstone_brick", "red_sandstone", "cut_red_sandstone", "mossy_stone_brick",
-)  # fmt: skip
-PILLARS = (
-    "quartz_pillar[axis=y]", "purpur_pillar[axis=y]", "polished_basalt[axis=y]",
-    "chiseled_quartz_block", "chiseled_stone_bricks", "chiseled_deepslate", "chiseled_sandstone",
-    "chiseled_red_sandstone", "chiseled_polished_blackstone", "bone_block[axis=y]",
-    "polished_deepslate", "stripped_dark_oak_log[axis=y]", "stripped_birch_log[axis=y]",
-    "smooth_stone", "cut_sandstone", "stripped_cherry_log[axis=y]", "gilded_blackstone",
-)  # fmt: skip
-RIMS = (
-    "bricks", "mud_bricks", "spruce_planks", "stone_bricks", "mossy_cobblestone", "cut_sandstone",
-    "stripped_oak_log[axis=x]", "prismarine_bricks", "smooth_quartz", "packed_mud", "calcite",
-)  # fmt: skip
-# Which kind a room of a metric house may become, and how often.
 BECOMES: dict[str, tuple[tuple[str, float], ...]] = {
     "study": (("library", 0.2), ("music", 0.2), ("workshop", 0.1), ("shop", 0.1)),
     "office": (("shop", 0.3), ("gallery", 0.1), ("workshop", 0.15)),
@@ -97,7 +67,6 @@ SHELVES = {  # How many shelves hang in a room at most.
     "hall": 2, "library": 1, "games": 1, "music": 1,
 }  # fmt: skip
 SHELF_M = 1.3
-PICTURES = ("picture", "portrait", "wall_mirror")
 
 
 def with_own_kinds(house: BlockHouse, rng: np.random.Generator) -> BlockHouse:
@@ -124,199 +93,6 @@ def with_own_kinds(house: BlockHouse, rng: np.random.Generator) -> BlockHouse:
         for cell, room in zip(house.plan.cells, rooms, strict=True)
     )
     return replace(house, rooms=tuple(rooms), plan=replace(house.plan, cells=cells))
-
-
-@dataclass(frozen=True)
-class Task:
-    """What a recipe works with."""
-
-    furnisher: Furnisher
-    show: Show
-    room: BlockRoom
-    rng: np.random.Generator
-
-    def one(self, *choices: str) -> str:
-        """Return one of some words."""
-        return choices[int(self.rng.integers(len(choices)))]
-
-    def wall(self, *names: str, above_m: float | None = None) -> Thing | None:
-        """Set one of some designs at a wall."""
-        scale = self.furnisher.house.blocks_per_metre
-        above = None if above_m is None else round(above_m * scale)
-        number = self.furnisher.put_at_wall(names, self.room, self.rng, above=above)
-        return self.furnisher.of(number) if number else None
-
-    def free(self, *names: str) -> Thing | None:
-        """Set one of some designs anywhere on the floor."""
-        number = self.furnisher.put_free(names, self.room, self.rng)
-        return self.furnisher.of(number) if number else None
-
-    def hang(self, name: str, count: int) -> None:
-        """Hang things of one design from the ceiling, in a row."""
-        for n in range(count):
-            hang_one(self.furnisher, self.room, name, (n + 0.5) / count, self.rng)
-
-    def on(self, thing: Thing | None, *names: str) -> None:
-        """Set one of some small designs on a thing."""
-        if thing is not None:
-            self.furnisher.put_on(names, thing, self.rng)
-
-    def seats(self, table: Thing | None, most: int, *names: str) -> None:
-        """Set seats of one design around a table, looking at it."""
-        if table is None:
-            return
-        name = self.one(*names)
-        for turns in self.rng.permutation(4)[:most].tolist():
-            found = self.furnisher.design(name, self.room, turns, self.rng)
-            if found is None:
-                return
-            # A seat that looks along a turn stands on the other side of the table.
-            axis, low = turns % 2, [0, 0, self.room.ground]
-            sides = (found.size[0], found.size[2])
-            low[axis] = table.low[axis] - sides[axis] if turns < 2 else table.high[axis]
-            other = 1 - axis
-            low[other] = (table.low[other] + table.high[other] - sides[other]) // 2
-            self.furnisher.put(name, found, low, self.room, turns, ((0, 0), (1, 0), (0, 1)))
-
-    def racks(self, count: int, boards: tuple[int, ...] | None = None) -> int:
-        """Stand racks of one material along the walls; return how many wares they hold."""
-        board, held = self.one(*BOARDS), 0
-        for _ in range(count):
-            levels = (
-                boards or ((0, 2, 4, 6), (0, 3, 5), (0, 2, 5), (1, 3, 5))[int(self.rng.integers(4))]
-            )
-            own = tuple(level for level in levels if level < self.room.height - 1)
-            held += self.show.put_rack(self.room, own, board)
-        return held
-
-
-def _shop(task: Task) -> None:
-    task.racks(4)
-    counter = task.free("counter", "table_bar", "kitchen_island")
-    pillar = task.one(*PILLARS, "barrel", "hay_block", "stripped_spruce_log[axis=y]")
-    for _ in range(6):
-        task.show.put_plinth(task.room, pillar, 2 + int(task.rng.integers(2)))
-    task.wall("coffee_table_stone", "table_trestle", "table_side")
-    if counter is not None:
-        task.show.put_on(counter, most=2)
-    task.show.put_bed(task.room)
-    task.show.hang_on_walls(task.room, 6, 7)
-
-
-def _storage(task: Task) -> None:
-    task.racks(2, (0, 2, 4, 6))
-    for _ in range(4):
-        box = task.wall("crate", "box", "pantry_rack", "blanket_chest", "locker")
-        if box is not None:
-            task.show.put_on(box, most=1)
-    for _ in range(5):
-        task.show.put_plinth(task.room, task.one("barrel", "hay_block", "oak_planks"), 1)
-    for _ in range(3):
-        task.show.put_bed(task.room)
-    task.show.hang_on_walls(task.room, 4, 6)
-
-
-def _greenhouse(task: Task) -> None:
-    rim = task.one(*RIMS)
-    task.show.put_trough(task.room, rim, "water", (3, 4))
-    for size in ((2, 5), (5, 2), (2, 4), (3, 3)):
-        task.show.put_trough(task.room, rim, "soil", size)
-    for _ in range(4):
-        task.wall("indoor_tree", "palm", "fir", "cactus", "planter_box", "plant", "plant_flowering")
-    task.wall("bench", "bench_stone")
-    task.racks(1, (1, 4))
-    task.hang("hanging_plant", 3)
-    task.show.hang_from_ceiling(task.room, 8)
-
-
-def _workshop(task: Task) -> None:
-    bench = task.wall("table_trestle", "desk_drawers", "dining_table_steel")
-    task.on(bench, "desk_lamp", "lantern_lamp")
-    task.seats(bench, 1, "stool_lab", "stool")
-    if bench is not None:
-        task.show.put_on(bench, most=3)
-    task.racks(2, (2, 4, 6))
-    task.wall("locker", "filing_cabinet", "pantry_rack")
-    task.wall("bicycle")
-    for _ in range(5):
-        task.show.put_plinth(task.room, task.one("smooth_stone", "oak_log[axis=y]"), 1)
-    task.show.hang_on_walls(task.room, 8, 5)
-
-
-def _library(task: Task) -> None:
-    for _ in range(6):
-        task.wall("bookcase", "bookcase", "bookcase_low", "cube_shelf", "display_cabinet")
-    desk = task.free("desk_partners", "round_table", "desk")
-    task.seats(desk, 2, "chair_carver", "chair_high_back", "office_chair_executive")
-    task.on(desk, "table_lamp", "candles")
-    chair = task.wall("armchair_wing", "armchair_leather")
-    if chair is not None:
-        task.wall("lamp", "arc_lamp", "paper_lamp")
-    task.wall("bust", "vase", "grandfather_clock")
-    task.racks(1, (3, 5))
-
-
-def _music(task: Task) -> None:
-    piano = task.free("grand_piano") or task.wall("piano")
-    task.seats(piano, 1, "stool_piano")
-    task.wall("sofa_chesterfield", "sofa_two_seats", "sofa_leather")
-    for _ in range(3):
-        task.wall("chair_padded", "armchair", "bust", "indoor_tree", "display_cabinet")
-    task.wall("picture", "portrait", above_m=1.1)
-    task.racks(1, (2, 4))
-
-
-def _games(task: Task) -> None:
-    task.free("pool_table", "table_tennis")
-    bar = task.wall("table_bar", "counter")
-    task.seats(bar, 2, "stool_bar")
-    if bar is not None:
-        task.show.put_on(bar, most=3)
-    task.wall("sofa_wooden_arms", "sofa_armless", "bench")
-    stand = task.wall("tv_stand", "sideboard")
-    task.on(stand, "tv_tube", "tv_on_foot")
-    task.show.hang_on_walls(task.room, 5, 6)
-
-
-def _laundry(task: Task) -> None:
-    for _ in range(3):
-        task.wall("washing_machine", "washer_dryer", "washing_machine")
-    task.wall("sink_unit", "pedestal_basin")
-    for _ in range(2):
-        task.wall("laundry_basket", "towel_radiator", "shoe_rack")
-    task.racks(1, (5,))
-
-
-def _cafe(task: Task) -> None:
-    bar = task.wall("counter", "table_bar")
-    task.seats(bar, 2, "stool_bar")
-    if bar is not None:
-        task.show.put_on(bar, most=4)
-    for _ in range(4):
-        table = task.free("table_bistro", "round_table_white", "round_table_dark", "picnic_table")
-        task.seats(table, 3, "chair_cafe", "chair_white", "stool_padded")
-        task.on(table, "candles", "flowers")
-    task.racks(1, (3, 5))
-    for _ in range(2):
-        task.wall("display_cabinet", "plant", "palm")
-
-
-def _gallery(task: Task) -> None:
-    pillar = task.one(*PILLARS)
-    for _ in range(14):
-        task.show.put_plinth(task.room, pillar, 2 + int(task.rng.integers(3)))
-    for _ in range(4):
-        task.wall(*PICTURES, above_m=1.0)
-    task.free("bench", "bench_stone", "ottoman")
-    task.wall("bust", "vase", "standing_mirror")
-    task.show.hang_on_walls(task.room, 6, 6)
-
-
-OWN: dict[str, Callable[[Task], None]] = {
-    "shop": _shop, "storage": _storage, "greenhouse": _greenhouse, "workshop": _workshop,
-    "library": _library, "music": _music, "games": _games, "laundry": _laundry, "cafe": _cafe,
-    "gallery": _gallery,
-}  # fmt: skip
 
 
 def _lay_about(task: Task) -> None:

@@ -18,10 +18,12 @@ from world2minecraft.rooms.worlds.dressing import dress_windows, hang_lamps, han
 from world2minecraft.rooms.worlds.furnishing import Furnisher, Thing
 from world2minecraft.rooms.worlds.garden import garden_blocks, put_garden
 from world2minecraft.rooms.worlds.house import BlockHouse, BlockRoom, plan_block_house
-from world2minecraft.rooms.worlds.kinds import OWN, Task, furnish_more, with_own_kinds
+from world2minecraft.rooms.worlds.kinds import furnish_more, with_own_kinds
 from world2minecraft.rooms.worlds.looks import RoomLook, Style, draw_look, styles
+from world2minecraft.rooms.worlds.recipes import OWN
 from world2minecraft.rooms.worlds.shell import put_shell, put_stairs
 from world2minecraft.rooms.worlds.showing import Show
+from world2minecraft.rooms.worlds.task import Task
 from world2minecraft.rooms.worlds.wares import Deck
 from world2minecraft.rooms.worlds.ways import Ways
 from world2minecraft.types import BlockVolume
