@@ -197,6 +197,10 @@ def test_rooms_come_from_the_scenes_that_tell_them(tmp_path):
     (tmp_path / "e.poses.jsonl").write_text('{"room": 1}\n')
     scenes.append({"scene_id": "../e"})
     assert rooms_of(tmp_path, {"scenes": scenes}) == {"a": 4, "b": 2}
+    (tmp_path / "worlds" / "b").mkdir(parents=True)
+    (tmp_path / "worlds" / "b" / "house.json").write_text('{"rooms": [{}, {}, {}]}')
+    scenes[1]["source"] = "worlds/b"
+    assert rooms_of(tmp_path, {"scenes": scenes}) == {"a": 4, "b": 3}
 
 
 def test_empty_labels_are_a_picture_without_voxels():

@@ -17,10 +17,11 @@ from world2minecraft.dataset.statistics.values import DatasetStatistics
 from world2minecraft.dataset.store import OccStore, open_store
 from world2minecraft.dataset.store.layout import META, SCENES
 from world2minecraft.errors import InputError, WorkerError
-from world2minecraft.files import read_bytes
+from world2minecraft.files import read_bytes, read_json
 from world2minecraft.progress import Progress, silent
 
 SCENE_ID = re.compile(r"[A-Za-z0-9_-]{1,90}")
+HOUSE = "house.json"
 MAX_VIEWS_BYTES = 256 << 20
 PART = 200  # Pictures that a process counts at once: two seconds of work.
 
@@ -97,17 +98,30 @@ def store_statistics(
 def rooms_of(folder: Path, meta: dict[str, Any]) -> dict[str, int]:
     """Return how many rooms each scene has, of those scenes that tell it.
 
-    ``dataset.json`` tells it, or else the scene's planned views, each of which names its room.
+    ``dataset.json`` tells it, or the ``house.json`` of a generated house, or else the scene's
+    planned views, each of which names its room.
     """
     found = {}
     for scene in meta.get("scenes", ()):
         name = str(scene.get("scene_id")) if isinstance(scene, dict) else ""
         if not SCENE_ID.fullmatch(name):
             continue
-        rooms = scene.get("rooms") or _rooms_of_views(folder / SCENES / f"{name}.poses.jsonl")
+        rooms = (
+            scene.get("rooms")
+            or _rooms_of_house(folder / str(scene.get("source", name)) / HOUSE)
+            or _rooms_of_views(folder / SCENES / f"{name}.poses.jsonl")
+        )
         if isinstance(rooms, int) and rooms > 0:
             found[name] = rooms
     return found
+
+
+def _rooms_of_house(path: Path) -> int | None:
+    """Return how many rooms a generated house has; None where there is none."""
+    try:
+        return len(read_json(path, MAX_VIEWS_BYTES)["rooms"])
+    except (InputError, KeyError, TypeError):
+        return None
 
 
 def _rooms_of_views(path: Path) -> int | None:
