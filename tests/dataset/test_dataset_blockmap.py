@@ -19,9 +19,9 @@ from world2minecraft.dataset.blockmap import (
     remapped,
 )
 from world2minecraft.dataset.blockmap.conditions import CONDITIONS, MEASURES
+from world2minecraft.dataset.blockmap.pieces import columns, joined_parts
 from world2minecraft.dataset.blockmap.rules import Rule
 from world2minecraft.dataset.blockmap.storeys import NONE, next_above
-from world2minecraft.dataset.blockmap.things import columns, joined_parts
 from world2minecraft.dataset.values import FineClass
 from world2minecraft.errors import InputError, LimitError, UnknownNameError, UsageError
 from world2minecraft.minecraft.states import known_blocks
@@ -335,7 +335,7 @@ def test_json_holds_every_block_and_rule(tmp_path):
 BAD = {
     "[]": "a block map must be keys with values, not []",
     "a: 1": "a block map has no 'a'; it has: name, about, extends, blocks, words, kinds, whole, "
-    "other, structure, apart, sheets, rules, designs, unless_known, entities",
+    "other, structure, apart, sheets, plates, rules, designs, unless_known, entities",
     "about: x": "a block map needs a name, such as name: mine",
     "{name: m, extends: lyu}": "extends must be one of nyu, paper, not 'lyu'",
     "{name: m, blocks: {stone: rock}}": "block stone is 'rock', which is none of empty, ceiling, "

@@ -49,8 +49,7 @@ def classes_of(volume: BlockVolume, rules: BlockMap) -> np.ndarray:
     scale = volume.blocks_per_metre
     ids = [state.partition("[")[0] for state in volume.palette]
     blocks = np.unique(ids, return_inverse=True)[1][volume.states]
-    parts = (rules.structure, rules.apart, rules.sheets, blocks, turned[volume.states], scale)
-    context = Context(kinds, names, *parts)
+    context = Context(kinds, names, rules, blocks, turned[volume.states], scale)
     flat = semantic.reshape(-1)
     for name in asked:
         left = np.flatnonzero(kinds == number_of[name])

@@ -3,7 +3,8 @@
 import numpy as np
 
 from world2minecraft.dataset.blockmap.conditions import NEIGHBOURS
-from world2minecraft.dataset.blockmap.rules import Rule, Span
+from world2minecraft.dataset.blockmap.pieces import pieces_of
+from world2minecraft.dataset.blockmap.rules import BlockMap, Rule, Span
 from world2minecraft.dataset.blockmap.storeys import (
     CEILING,
     FLOOR,
@@ -13,7 +14,7 @@ from world2minecraft.dataset.blockmap.storeys import (
     zones_of,
 )
 from world2minecraft.dataset.blockmap.surroundings import MAKERS, shifted
-from world2minecraft.dataset.blockmap.things import shares_of, things_of
+from world2minecraft.dataset.blockmap.things import measured, shares_of
 
 COARSE = 2.0  # Blocks per metre under which a chair is one block.
 ZONES = {"outside": OUTSIDE, "floor": FLOOR, "ceiling": CEILING, "wall": WALL, "inside": INSIDE}
@@ -25,9 +26,7 @@ class Context:
     Args:
         kinds: int [X, Y, Z], a number for each block's class or kind; 0 is air.
         names: the name of each number.
-        structure: the kinds that floors, walls and ceilings can be of.
-        apart: what is no part of the things that it touches.
-        sheets_of: what curtains are of.
+        rules: the map that says what structure, curtains and pictures are of.
         blocks: int [X, Y, Z], a number for each block's id.
         turned: bool [X, Y, Z], blocks that are upside down.
         scale: blocks per metre.
@@ -37,20 +36,20 @@ class Context:
         self,
         kinds: np.ndarray,
         names: tuple[str, ...],
-        structure: frozenset[str],
-        apart: frozenset[str],
-        sheets_of: frozenset[str],
+        rules: BlockMap,
         blocks: np.ndarray,
         turned: np.ndarray,
         scale: float,
     ):
         self.kinds, self.names, self.scale = kinds, names, scale
         self.filled = ~self._are(("empty",))[kinds]
-        self.building = self._are(structure)[kinds]
+        self.building = self._are(rules.structure)[kinds]
         self.zones = zones_of(self.building, scale)
-        held = self.filled & (self.zones.zone == INSIDE) & ~self._are(apart)[kinds]
-        sheets = self._are(sheets_of)[kinds]
-        self.things = things_of(held, blocks, sheets, self.zones.ground, scale)
+        ground = self.zones.ground
+        held = self.filled & (self.zones.zone == INSIDE) & ~self._are(rules.apart)[kinds]
+        sheets, plates = self._are(rules.sheets)[kinds], self._are(rules.plates)[kinds]
+        pieces = pieces_of(held, blocks, sheets, plates, ground, scale)
+        self.things = measured(*pieces, ground, scale)
         self.shares = shares_of(self.things.parts, kinds, len(names))
         self._found: dict[str, np.ndarray] = {
             "turned": turned,

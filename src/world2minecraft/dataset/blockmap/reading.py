@@ -23,10 +23,10 @@ MAX_NAMES = 8192
 LONGEST = 120
 KEYS = (
     "name", "about", "extends", "blocks", "words", "kinds", "whole", "other", "structure", "apart",
-    "sheets", "rules", "designs", "unless_known", "entities",
+    "sheets", "plates", "rules", "designs", "unless_known", "entities",
 )  # fmt: skip
 _TABLES = ("blocks", "kinds", "rules", "designs", "entities")
-_LISTS = ("structure", "apart", "sheets", "unless_known")
+_LISTS = ("structure", "apart", "sheets", "plates", "unless_known")
 SPAN_SIZE = 2
 
 
@@ -101,6 +101,7 @@ def block_map_of(raw: Any) -> BlockMap:
         structure=frozenset(_known("structure", k, kinds) for k in _names("structure", whole)),
         apart=frozenset(_known("apart", k, known) for k in _names("apart", whole)),
         sheets=frozenset(_known("sheets", k, kinds) for k in _names("sheets", whole)),
+        plates=frozenset(_known("plates", k, kinds) for k in _names("plates", whole)),
         rules=rules,
         designs=_pairs("design", _table(whole, "designs")),
         unless_known=frozenset(

@@ -78,6 +78,7 @@ class BlockMap:
     structure: frozenset[str]  # the kinds that floors, walls and ceilings can be of
     apart: frozenset[str]  # the kinds and classes that are no part of the thing they touch
     sheets: frozenset[str]  # the kinds that curtains are of
+    plates: frozenset[str]  # the kinds that pictures are of
     rules: Mapping[str, tuple[Rule, ...]]  # of each kind
     designs: tuple[tuple[Pattern, str], ...]  # our furniture designs -> a class
     unless_known: frozenset[str]  # kinds whose class gives way to what is known already

@@ -1,22 +1,11 @@
-"""The things inside rooms: blocks that belong together, as one piece with its measures.
-
-In: what is inside and how it is floored. Out: a number for each thing, and its measures in metres.
-Furniture stands side by side, so blocks beside each other are of one thing only where they are the
-same; blocks on one another always are. In eight generated houses at 2 to 4 blocks a metre that
-gave things as many as there are (1 to 1.4 times), of one class in 85 to 96 of 100 blocks; all that
-touches gave half as many.
-"""
+"""The things inside rooms, with their measures in metres and what they are made of."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage, sparse
-from scipy.sparse import csgraph
+from scipy import ndimage
 
 from world2minecraft.dataset.blockmap.conditions import MEASURES
-
-SHEET_M, RAISED_M = 1.2, 1.0  # Of a curtain; of one that hangs over a sofa's back.
-TALL_M = 1.4
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,23 +16,15 @@ class Things:
     measures: dict[str, np.ndarray]
 
 
-def things_of(
-    held: np.ndarray, blocks: np.ndarray, sheets: np.ndarray, ground: np.ndarray, scale: float
-) -> Things:
-    """Return the things of a volume.
+def measured(parts: np.ndarray, count: int, ground: np.ndarray, scale: float) -> Things:
+    """Return things with their measures.
 
     Args:
-        held: bool [X, Y, Z], the blocks inside that are part of some thing.
-        blocks: int [X, Y, Z], which block each is, whatever its properties.
-        sheets: bool [X, Y, Z], those that curtains are of.
-        ground: int16 [X, Y, Z], the layer of the floor under each.
+        parts: int32 [X, Y, Z], the number of the thing that each block is part of, 0 for none.
+        count: how many things there are.
+        ground: int16 [X, Y, Z], the layer of the floor under each block.
         scale: blocks per metre.
     """
-    height, first = columns(blocks)
-    least = np.where(first > ground + 1, RAISED_M, SHEET_M) * scale
-    tall = sheets & (height >= least - 1e-6)
-    parts, count = joined_parts(held, 2 * blocks.astype(np.int64) + tall, tall)
-    parts, count = _abreast(parts, count, max(2, round(TALL_M * scale)))
     found = {name: np.zeros(count + 1) for name in MEASURES if name != "at_m"}
     for number, box in enumerate(ndimage.find_objects(parts), 1):
         if box is None:
@@ -62,75 +43,6 @@ def things_of(
         found["filled"][number] = own.mean()
         found["open"][number] = (held_columns & ~at_floor).sum() / held_columns.sum()
     return Things(parts, found)
-
-
-def _abreast(parts: np.ndarray, count: int, tall: int) -> tuple[np.ndarray, int]:
-    """Join tall things that touch and are of one height: the doors of a wardrobe of two woods."""
-    low, high = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
-    for number, box in enumerate(ndimage.find_objects(parts), 1):
-        if box is not None:
-            low[number], high[number] = box[1].start, box[1].stop
-    pairs = []
-    for axis in (0, 2):
-        first, second = (
-            np.take(parts, np.arange(a, parts.shape[axis] - 1 + a), axis) for a in (0, 1)
-        )
-        met = (first > 0) & (second > 0) & (first != second)
-        pairs.append(np.stack([first[met], second[met]]))
-    one, other = np.unique(np.concatenate(pairs, axis=1), axis=1)
-    alike = (low[one] == low[other]) & (high[one] == high[other]) & (high[one] - low[one] >= tall)
-    edges = (one[alike], other[alike])
-    graph = sparse.coo_matrix((np.ones(len(edges[0]), bool), edges), (count + 1, count + 1))
-    found, own = csgraph.connected_components(graph, directed=False)
-    order = np.zeros(found, np.int32)  # Nothing, 0, is joined to none; it keeps its number.
-    order[own[0]] = 0
-    rest = np.setdiff1d(np.arange(found), own[:1])
-    order[rest] = np.arange(1, found)
-    return order[own][parts], found - 1
-
-
-def joined_parts(held: np.ndarray, blocks: np.ndarray, alone: np.ndarray) -> tuple[np.ndarray, int]:
-    """Number blocks that belong together: on one another, or beside each other and the same.
-
-    Args:
-        held: bool [X, Y, Z], the blocks.
-        blocks: int [X, Y, Z], which each is.
-        alone: bool [X, Y, Z], those that belong to nothing else that is under or over them.
-
-    Returns:
-        int32 of the shape of ``held``, 0 outside and 1 to n inside, and n.
-    """
-    number = np.full(held.shape, -1, np.int64)
-    number[held] = np.arange(int(held.sum()))
-    pairs = []
-    for axis in range(3):
-        first = tuple(slice(0, -1) if a == axis else slice(None) for a in range(3))
-        second = tuple(slice(1, None) if a == axis else slice(None) for a in range(3))
-        joined = held[first] & held[second]
-        same = blocks[first] == blocks[second]
-        joined &= same | ~(alone[first] | alone[second]) if axis == 1 else same
-        pairs.append(np.stack([number[first][joined], number[second][joined]]))
-    edges = np.concatenate(pairs, axis=1)
-    count = int(held.sum())
-    graph = sparse.coo_matrix((np.ones(edges.shape[1], bool), tuple(edges)), (count, count))
-    found, own = csgraph.connected_components(graph, directed=False)
-    parts = np.zeros(held.shape, np.int32)
-    parts[held] = own + 1
-    return parts, int(found) if count else 0
-
-
-def columns(blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return how many of the same block stand on one another where each is, and the lowest's layer.
-
-    Both int [X, Y, Z].
-    """
-    layers = np.arange(blocks.shape[1])[None, :, None]
-    begins, ends = np.ones(blocks.shape, bool), np.ones(blocks.shape, bool)
-    begins[:, 1:] = blocks[:, 1:] != blocks[:, :-1]
-    ends[:, :-1] = begins[:, 1:]
-    first = np.maximum.accumulate(np.where(begins, layers, 0), axis=1)
-    last = np.where(ends, layers, blocks.shape[1])[:, ::-1]
-    return np.minimum.accumulate(last, axis=1)[:, ::-1] - first + 1, first
 
 
 def shares_of(parts: np.ndarray, kinds: np.ndarray, count: int) -> np.ndarray:
