@@ -210,6 +210,61 @@ def test_furniture_built_of_blocks_is_told_by_its_measures(blocks, name):
     assert {CLASS_NAMES[n] for n in told[at]} == {name}
 
 
+@pytest.mark.parametrize(
+    ("condition", "place", "holds"),
+    [
+        ("floor", (5, 1, 5), True),
+        ("ceiling", (5, 5, 5), True),
+        ("wall", (1, 3, 5), True),
+        ("inside", (5, 3, 6), True),
+        ("outside", (5, 6, 5), True),
+        ("outside", (5, 3, 6), False),
+        ("over_ceiling", (5, 6, 5), True),
+        ("over_ceiling", (5, 3, 6), False),
+        ("under_floor", (5, 0, 5), True),
+        ("wall_line", (1, 5, 5), True),
+        ("wall_line", (5, 5, 5), False),
+        ("open_floor", (5, 1, 5), False),
+        ("air_above", (5, 3, 6), True),
+        ("air_above", (5, 4, 6), False),
+        ("air_below", (5, 3, 6), True),
+        ("air_below", (5, 2, 6), False),
+        ("on_floor", (5, 2, 6), True),
+        ("on_floor", (5, 3, 6), False),
+        ("at_wall", (2, 3, 4), True),
+        ("at_wall", (5, 3, 6), False),
+        ("under_ceiling", (5, 4, 6), True),
+        ("under_ceiling", (5, 3, 6), False),
+        ("coarse", (5, 3, 6), True),
+        ("over fence", (5, 3, 4), True),
+        ("over fence", (5, 3, 6), False),
+        ("under chest", (5, 3, 6), False),
+    ],
+)
+def test_conditions_hold_where_they_say(condition, place, holds):
+    """A gold block put somewhere into the cottage is a screen where the condition holds."""
+    rules = {"probe": [{"class": "tvs", "where": [condition]}, "objs"]}
+    probe = {"name": "m", "extends": "nyu", "kinds": {"probe": ["gold_block"]}, "rules": rules}
+    mine = block_map_of(probe | {"structure": ["probe"]})
+    made = cottage()
+    made.put(place, "minecraft:gold_block")
+    told = CLASS_NAMES[classify(made.volume(), mine).semantic[place]]
+    assert told == ("tvs" if holds else "objs")
+
+
+def test_blocks_beside_their_like_are_in_a_row_and_steps_climb():
+    rules = {"step": [{"class": "tvs", "where": ["climbs"]}, {"class": "bed", "where": ["in_row"]},
+                      "objs"]}  # fmt: skip
+    own = {"name": "m", "extends": "nyu", "kinds": {"step": ["gold_block"]}, "rules": rules}
+    made = cottage()
+    for place in ((3, 2, 4), (4, 3, 4), (6, 2, 6), (7, 2, 6), (4, 2, 7)):
+        made.put(place, "minecraft:gold_block")
+    told = classify(made.volume(), block_map_of(own)).semantic
+    places = ((3, 2, 4), (4, 3, 4), (6, 2, 6), (7, 2, 6), (4, 2, 7))
+    names = [CLASS_NAMES[told[place]] for place in places]
+    assert names == ["tvs", "tvs", "bed", "bed", "objs"]
+
+
 def test_entities_get_classes_too():
     volume = cottage().volume()
     picture = Entity((3.0, 63.0, 2.0), "minecraft:painting")
