@@ -12,11 +12,12 @@ from world2minecraft.render.scene import BlockScene
 
 WIDE_PX = 64  # Of the small pictures.
 NEAR_M, NEAR_SHARE = 0.5, 0.25  # Blocked: so much of the picture is nearer than this,
-CLOSE_M = 0.8  # or half of it is nearer than this.
+CLOSE_M = 0.95  # or half of it is nearer than this.
 OUT_SHARE = 0.45  # Looks out: so much of it is window or sky.
 LEAST_CLASSES, LEAST_THINGS = 3, 0.05  # Empty: fewer classes, or a smaller share of objects,
 LEAST_CELLS, MOST_ASKED = 20, 60  # or few blocks: this, and one more for each in a square metre.
-FLAT_SHARE = 0.55  # Flat: so much of it is one wall.
+FLAT_SHARE = 0.55  # Flat: so much of it is one wall,
+PLANE_SHARE = 0.85  # or so much of it faces one way, whatever hangs there.
 DARKEST, BRIGHTEST = 0.10, 0.97  # Of 1, the mean of the small picture.
 
 
@@ -31,6 +32,7 @@ class Judged:
     things: np.ndarray  # the share of pixels of furniture and objects
     cells: np.ndarray  # how many blocks are seen
     flat: np.ndarray  # the share of the largest wall
+    plane: np.ndarray  # the share of what faces one way
     bright: np.ndarray  # 0 to 1
 
     def is_good(self, blocks_per_metre: float, labelled: bool) -> np.ndarray:
@@ -41,7 +43,8 @@ class Judged:
         if labelled:
             empty |= self.things < LEAST_THINGS
         dark = (self.bright < DARKEST) | (self.bright > BRIGHTEST)
-        return ~(blocked | empty | dark | (self.flat > FLAT_SHARE))
+        flat = (self.flat > FLAT_SHARE) | (self.plane > PLANE_SHARE)
+        return ~(blocked | empty | dark | flat)
 
 
 def judged(scene: BlockScene, states: np.ndarray, poses: np.ndarray, rule: TourRule) -> Judged:
@@ -71,7 +74,6 @@ def judged(scene: BlockScene, states: np.ndarray, poses: np.ndarray, rule: TourR
         known = states.reshape(-1)[np.maximum(block, 0)].astype(np.int32)
     classes = _distinct(np.where(is_sky | (semantic == 255), -1, known))
     wall = np.where(things | is_sky, 255, face)
-    flat = np.max([(wall == side).mean(axis=1) for side in (0, 1, 4, 5)], axis=0)
     return Judged(
         (there < NEAR_M).mean(axis=1),
         np.median(there, axis=1),
@@ -79,9 +81,15 @@ def judged(scene: BlockScene, states: np.ndarray, poses: np.ndarray, rule: TourR
         classes,
         things.mean(axis=1),
         _distinct(block),
-        flat,
+        _largest(wall),
+        _largest(np.where(is_sky, 255, face)),
         np.asarray(seen.colour).mean(axis=(1, 2, 3)) / 255,
     )
+
+
+def _largest(faces: np.ndarray) -> np.ndarray:
+    """Return the share of each row that the commonest of the four upright faces has."""
+    return np.max([(faces == side).mean(axis=1) for side in (0, 1, 4, 5)], axis=0)
 
 
 def _distinct(values: np.ndarray) -> np.ndarray:
