@@ -77,7 +77,7 @@ def test_screenshots_become_a_tour_file(world, tmp_path, capsys):
     ("words", "code", "text"),
     [
         (["--at", "feet"], 2, "--at, --poses and --pattern tell of --screenshots DIR; name them"),
-        (["--screenshots", "."], 2, "say --at feet (what F3 and most mods tell) or --at eye"),
+        (["--screenshots", "."], 2, "--at feet, as F3 and most mods tell, or --at eye"),
         (["--screenshots", "none", "--at", "eye"], 3, "is no folder of screenshots"),
         (["--count", "0"], 2, "a plan has one view or more, not 0"),
         (["--camera", "nyy"], 2, "no camera is named 'nyy'; did you mean 'nyu'?"),

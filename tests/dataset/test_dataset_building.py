@@ -338,7 +338,11 @@ def test_the_command_builds_goes_on_and_verifies(worlds, tmp_path, capsys):
         (["--houses", "0", "--images", "5"], "--houses is 1 or more, not 0", 2),
         (["--houses", "2", "--world", "x"], "--houses are generated; give them alone", 2),
         (["--tour", "t.jsonl", "--screenshots", "d"], "are two kinds of views; give one", 2),
-        (["--houses", "2", "--screenshots", "gone"], "gone: is no folder of screenshots", 3),
+        (
+            ["--houses", "2", "--screenshots", "gone", "--at", "eye"],
+            "gone: is no folder of screenshots",
+            3,
+        ),
         (["--world", "gone"], "gone: is not there", 3),
         (["--worlds", "gone"], "gone: is no folder of worlds", 3),
         (["--houses", "2", "--camera", "nyuu"], "no camera is named 'nyuu'; did you mean 'nyu'", 2),

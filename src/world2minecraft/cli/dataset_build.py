@@ -29,7 +29,7 @@ def run(
     world: option.World = None,
     tour: option.TourFile = None,
     screenshots: option.Screenshots = None,
-    at: option.At = "feet",
+    at: option.At = "",
     images: option.Images = None,
     preset: option.Preset = "",
     test_share: option.TestShare = 0.2,

@@ -3,11 +3,12 @@
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, cast
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from world2minecraft.cli.dataset_options import (
+    At,
     BlockMap,
     CameraName,
     Fov,
@@ -15,6 +16,7 @@ from world2minecraft.cli.dataset_options import (
     Seed,
     Size,
     camera_named,
+    said_at,
 )
 
 if TYPE_CHECKING:
@@ -42,9 +44,6 @@ Reachable = Annotated[
 Shots = Annotated[
     Path | None,
     typer.Option("--screenshots", metavar="DIR", help="Take the poses of these screenshots."),
-]
-At = Annotated[
-    str, typer.Option("--at", metavar="feet|eye", help="What the screenshots' x, y, z is.")
 ]
 Poses = Annotated[
     Path | None, typer.Option("--poses", metavar="FILE", help="Their poses, as JSONL or CSV.")
@@ -135,13 +134,8 @@ def _write_recorded(
 ) -> None:
     from world2minecraft.dataset.screenshots import read_screenshots
     from world2minecraft.dataset.tours.recorded import write_recorded
-    from world2minecraft.errors import UsageError
 
-    if at not in ("feet", "eye"):
-        raise UsageError(
-            "say --at feet (what F3 and most mods tell) or --at eye; a slip of 1.62 spoils labels"
-        )
-    told = cast(Literal["feet", "eye"], at)
+    told = said_at(at)
     views = read_screenshots(
         folder, at=told, poses=poses, pattern=pattern, vertical_fov_deg=fov_deg or GAME_FOV_DEG
     )

@@ -19,7 +19,7 @@ from world2minecraft.dataset.naming import fine_names
 from world2minecraft.dataset.plan import Recipe, SceneSpec
 from world2minecraft.dataset.source import SceneSource, open_scene_source
 from world2minecraft.dataset.store.layout import SCENES
-from world2minecraft.dataset.tours import TourRule, plan_views, write_views
+from world2minecraft.dataset.tours import TourRule, layouts_beside, plan_views, write_views
 from world2minecraft.dataset.values import FineClass
 from world2minecraft.errors import ConflictError, DamagedFileError
 from world2minecraft.files import read_json, write_json
@@ -152,7 +152,11 @@ def _surveyed(
     if spec.given is not None:
         views = given_views(spec.given, volume.block_to_room, recipe.camera)[: spec.images]
     else:
-        rule = TourRule(camera=recipe.camera, light=LookLight(hour=hour))
+        rule = TourRule(
+            camera=recipe.camera,
+            light=LookLight(hour=hour),
+            layouts=layouts_beside(source.path),
+        )
         views = plan_views(volume, spec.images, recipe.seed, rule, scene=prepare_scene(volume))
     write_views(poses_path(folder, spec.scene_id), views, volume.block_to_room, spec.scene_id)
     east, up, south = volume.states.shape
