@@ -80,6 +80,10 @@ def test_other_scales_are_made(house):
     assert len(small.things) > 20
 
 
+def test_a_room_too_low_for_a_rack_goes_without():
+    assert generate_world(44, rooms=5, blocks_per_metre=2.0).volume.states.any()
+
+
 def test_rooms_stand_where_the_room_frame_says(house):
     to_room, corner = house.volume.block_to_room, np.array(house.volume.corner)
     floor = np.argwhere(house.volume.semantic == SemanticClass.FLOOR) + corner

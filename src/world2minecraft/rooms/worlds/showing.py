@@ -48,6 +48,8 @@ class Show:
         Returns:
             How many wares it holds; 0 where there is no room.
         """
+        if not boards:  # At two blocks a metre a room is too low for some.
+            return 0
         found = self._longest_wall(room, (boards[0], boards[-1] + 2), least)
         if found is None:
             return 0
