@@ -1,12 +1,26 @@
 """Build and Walk as a person sees them: blocks by their colours, clicks, walls that stop one."""
 
 import io
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
+import pytest
 from PIL import Image
+
+from world2minecraft.forge.editor import Editor
+from world2minecraft.forge.serve import ForgeServer
 
 BLOCKS = "window.__forge.build.blocks"
 FEET = "window.__forge.walk.walker.feet"
+
+
+@pytest.fixture(scope="module")
+def server(room, tmp_path_factory) -> Iterator[ForgeServer]:
+    """One server for all of these tests, which keeps the blocks that it has built."""
+    editor = Editor(replace(room, folder=tmp_path_factory.mktemp("built")))
+    with ForgeServer(editor, port=0) as running:
+        yield running
 
 
 def build(forge, **wish):
