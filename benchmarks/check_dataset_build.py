@@ -1,0 +1,84 @@
+"""How fast data sets are made: ``python -m benchmarks.check_dataset_build [--only NAME]``.
+
+- ``small``: the issue's command, 2,000 images of 640x480 of 40 generated houses on all cores.
+- ``large``: a slice at the paper's 1920x1129, told for its 100,165 images.
+- ``labels``: the same slice, labels and masks alone.
+
+CPU times are of all processes together, by stage; hours are those of two cores. Houses and views
+of the large slices are told apart, since the paper's sets have many more images a house.
+"""
+
+import argparse
+import resource
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+from world2minecraft.dataset.building import TITLES, BuildReport, build_dataset
+from world2minecraft.dataset.engine import opened_engine
+from world2minecraft.dataset.plan import Recipe, house_scenes, plan_dataset
+from world2minecraft.dataset.tours import paper_camera
+from world2minecraft.render.batch.hands import usual_workers
+
+PAPER_IMAGES = 100_165
+BUDGET_MS = {"render": 120, "encode": 65, "labels": 60}
+BUDGET_ALL_MS, BUDGET_MINUTES = 285, 10
+CASES = ("small", "large", "labels")
+
+
+def built(folder: Path, houses: int, images: int, recipe: Recipe, jobs: int) -> BuildReport:
+    plan = plan_dataset(house_scenes(houses), images, recipe=recipe)
+    with opened_engine("pool", jobs) as engine:
+        return build_dataset(folder, plan, engine)
+
+
+def told(title: str, report: BuildReport, images: int) -> None:
+    """Print CPU milliseconds an image by stage, and what so many images take on two cores."""
+    each = report.milliseconds
+    print(f"{title}: {report.made:,} images in {report.seconds:.0f} s")
+    for stage, name in TITLES.items():
+        budget = f"   budget {BUDGET_MS[stage]}" if stage in BUDGET_MS else ""
+        print(f"  {name:18} {each[stage]:7.1f} ms{budget}")
+    hours = each["all"] * images / 1000 / 3600 / 2
+    print(f"  {'all':18} {each['all']:7.1f} ms: {images:,} images in {hours:.2f} h on two cores")
+
+
+def peak_mb() -> float:
+    """Return the most that a process of this run has had, in MB."""
+    most = (resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, -1))
+    return max(most) / 1024
+
+
+def main() -> int:
+    options = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    options.add_argument("--only", choices=CASES, action="append")
+    options.add_argument("--images", type=int, default=2000, help="of the small case")
+    options.add_argument("--houses", type=int, default=40, help="of the small case")
+    options.add_argument("--slice", type=int, default=120, help="images of the large cases")
+    options.add_argument("--jobs", type=int, default=usual_workers())
+    words = options.parse_args()
+    cases, is_late = words.only or list(CASES), False
+    large = Recipe(camera=paper_camera())
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        if "small" in cases:
+            report = built(folder / "small", words.houses, words.images, Recipe(), words.jobs)
+            told("640x480", report, words.images)
+            size = sum(path.stat().st_size for path in (folder / "small").rglob("*.tar"))
+            print(f"  {size / words.images / 1e3:.0f} kB an image, {peak_mb():.0f} MB a process")
+            is_late = report.seconds > 60 * BUDGET_MINUTES
+        if "large" in cases:
+            report = built(folder / "large", 1, words.slice, large, words.jobs)
+            told("1920x1129", report, PAPER_IMAGES)
+            size = sum(path.stat().st_size for path in (folder / "large").rglob("*.tar"))
+            print(f"  {size / words.slice / 1e3:.0f} kB an image, {peak_mb():.0f} MB a process")
+            is_late |= report.milliseconds["all"] > BUDGET_ALL_MS
+        if "labels" in cases:
+            bare = replace(large, pictures=False)
+            report = built(folder / "labels", 1, words.slice, bare, words.jobs)
+            told("1920x1129, labels alone", report, PAPER_IMAGES)
+    return 1 if is_late else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
