@@ -6,7 +6,8 @@ import type { App } from "../ui/slots";
 import type { Vec3 } from "../wire";
 import { cellOf, flatOf, isInside, runsOf, UNSEEN } from "./cells";
 
-const COLOUR = "#ffffff";
+const COLOUR = "#ff2bd6"; // like no class, no photo and neither theme
+const OPACITY = 0.85;
 
 /** The whole step along one axis of the grid that is nearest to a way in the plane of the floor. */
 export function stepAlong(x: number, y: number): Vec3 {
@@ -26,7 +27,7 @@ export function cursorActions(app: App): void {
   const show = (): void => {
     const { scene, mode, labels } = store.get();
     const shown = cell && scene && mode === "voxels" && isInside(cell, scene.shape);
-    view.setOverlay("cursor", shown ? runsOf([flatOf(cell!, scene.shape)]) : null, COLOUR);
+    view.setOverlay("cursor", shown ? runsOf([flatOf(cell!, scene.shape)]) : null, COLOUR, OPACITY);
     if (!shown) return;
     const label = labels[flatOf(cell!, scene.shape)] ?? UNSEEN;
     store.set({ status: TEXT.cursor(cell!.join(", "), TEXT.classes[label] ?? TEXT.status.unseen) });

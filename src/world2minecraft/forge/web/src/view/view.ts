@@ -133,9 +133,9 @@ export class SceneView extends Looking {
   }
 
   /** Light up cells under a name, or no longer (null). */
-  setOverlay(name: string, runs: readonly Run[] | null, colour = "#ffffff"): void {
+  setOverlay(name: string, runs: readonly Run[] | null, colour = "#ffffff", opacity?: number): void {
     const { scene } = this.store.get();
-    if (scene) this.overlays.set(name, runs, scene.shape, colour);
+    if (scene) this.overlays.set(name, runs, scene.shape, colour, opacity);
     this.invalidate();
   }
 
