@@ -3,6 +3,7 @@
 import pytest
 
 from world2minecraft import cli
+from world2minecraft.files import read_json
 from world2minecraft.rooms import read_generated
 
 
@@ -34,3 +35,31 @@ def test_words_that_cannot_be_are_refused_in_one_line(tmp_path, capsys, words, m
     out = tmp_path / "made"
     assert cli.run(["rooms", "generate", *words, "--out", str(out)]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_houses_become_worlds(tmp_path, capsys):
+    out = tmp_path / "worlds"
+    words = ["rooms", "generate", "--houses", "1", "--seed", "3", "--style", "polar"]
+    assert cli.run([*words, "--worlds", str(out)]) == 0
+    assert {path.name for path in (out / "house_0001").iterdir()} == {
+        "world", "scene.json", "scene.npz", "designs.json", "layout.json", "house.json",
+    }  # fmt: skip
+    assert read_json(out / "house_0001" / "house.json")["style"] == "polar"
+    assert f"play   w2m install {out / 'house_0001'}" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--houses", "2"], "--houses says how many and --worlds where; give both"),
+        (["--houses", "0", "--worlds", "W"], "--houses must be 1 or more, not 0"),
+        (["--houses", "1", "--worlds", "W", "--rooms", "5"], "--houses draws kinds, rooms and"),
+        (["--houses", "1", "--worlds", "W", "--style", "retrro"], "did you mean 'retro'?"),
+        (["--houses", "1", "--worlds", "W", "--seed", "-1"], "--seed must be 0 or more, not -1"),
+    ],
+)
+def test_words_of_worlds_are_checked(tmp_path, monkeypatch, capsys, words, message):
+    monkeypatch.chdir(tmp_path)
+    assert cli.run(["rooms", "generate", *words]) == 2
+    assert message in capsys.readouterr().err
+    assert not list(tmp_path.rglob("level.dat"))

@@ -42,6 +42,9 @@ def run(
     worlds: Annotated[
         Path | None, typer.Option("--worlds", help="The folder of the worlds.")
     ] = None,
+    style: Annotated[
+        str | None, typer.Option("--style", help="Of all houses; each draws its own if not said.")
+    ] = None,
 ) -> None:
     """Generate a furnished room or a house of several rooms, with exact truth.
 
@@ -51,9 +54,9 @@ def run(
     With --houses and --worlds, houses become Minecraft worlds instead, in styles of their own:
     a folder each, with world/, scene.json, scene.npz and designs.json.
     """
-    if houses is not None or worlds is not None:
+    if houses is not None or worlds is not None or style is not None:
         _check_worlds(houses, worlds, kind, shape, house, rooms, storeys)
-        _write_worlds(houses or 0, seed, worlds or Path())
+        _write_worlds(houses or 0, seed, worlds or Path(), style)
         return
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
@@ -101,7 +104,7 @@ def _check_worlds(
     check_writable(worlds)
 
 
-def _write_worlds(houses: int, seed: int, worlds: Path) -> None:
+def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None) -> None:
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.errors import UsageError
@@ -111,10 +114,11 @@ def _write_worlds(houses: int, seed: int, worlds: Path) -> None:
         raise UsageError(f"--seed must be 0 or more, not {seed}")
     compiling_note()
     with shown() as progress:
-        written = write_worlds(worlds, houses, seed, progress=progress)
+        written = write_worlds(worlds, houses, seed, style=style, progress=progress)
     print(f"\n{len(written)} houses in {worlds}.")
     print(f"  look   w2m render {written[0]} --out house.png")
     print(f"  play   w2m install {written[0]}")
+    print(f"  next   w2m dataset tour {written[0]}     where pictures are taken")
 
 
 def _check_words(

@@ -42,8 +42,10 @@ def _hang_leaf(furnisher: Furnisher, gap: BlockGap, room: BlockRoom) -> None:
     turn = (along + 2 if near else along) % 4 if along == 0 else (1 if not near else 3)
     facing = FACINGS[turn] if along == 0 else FACINGS[(turn + 2) % 4]
     state = f"minecraft:{look.wood}_trapdoor[facing={facing},half=bottom,open=true]"
-    canvas.set(box, state, OBJS, furnisher.next_instance())
     columns = np.argwhere(np.ones((high[0] - low[0], high[1] - low[1]), bool)) + low
+    if not furnisher.ways.stay(room, columns):
+        return
+    canvas.set(box, state, OBJS, furnisher.next_instance())
     furnisher.ways.take(room, columns)
 
 

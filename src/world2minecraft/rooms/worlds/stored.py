@@ -81,24 +81,41 @@ def _facts(made: HouseWorld) -> dict[str, Any]:
 
 
 def write_worlds(
-    folder: str | Path, houses: int, seed: int, *, progress: Progress = silent
+    folder: str | Path,
+    houses: int,
+    seed: int,
+    *,
+    style: str | None = None,
+    progress: Progress = silent,
 ) -> list[Path]:
-    """Write ``house_0001`` to ``house_N`` below a folder; a longer series begins with a shorter."""
+    """Write ``house_0001`` to ``house_N`` below a folder; a longer series begins with a shorter.
+
+    Args:
+        folder: where; made when it is not there.
+        houses: how many.
+        seed: of the series.
+        style: of all houses; each draws its own where None.
+        progress: told of each house.
+
+    Raises:
+        OutputError: the folder cannot be written. UnknownNameError: no style has this name.
+    """
     target, written = Path(folder), []
     for number in range(1, houses + 1):
         progress("houses", number - 1, houses, f"house_{number:04d}")
         name = f"house_{number:04d}"
-        made = house_of(seed, number)
+        made = house_of(seed, number, style=style)
         write_house(made, target / name, name=name.replace("_", " "))
         written.append(target / name)
     progress("houses", houses, houses)
     return written
 
 
-def house_of(seed: int, number: int) -> HouseWorld:
-    """Return one house of a series."""
+def house_of(seed: int, number: int, *, style: str | None = None) -> HouseWorld:
+    """Return one house of a series, by its number from 1; its style is drawn where None."""
     rng = np.random.default_rng([seed, number])
     rooms = int(rng.integers(ROOMS[0], ROOMS[1] + 1))
     storeys = 2 if rng.random() < STOREYS_SHARE else 1
     deck = (seed, number * WARES_A_HOUSE)
-    return generate_world(int(rng.integers(1 << 31)), rooms=rooms, storeys=storeys, deck=deck)
+    own = int(rng.integers(1 << 31))
+    return generate_world(own, rooms=rooms, storeys=storeys, style=style, deck=deck)

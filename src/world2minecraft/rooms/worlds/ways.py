@@ -49,13 +49,16 @@ class Ways:
         """Whether ways stay free when columns, int [N, 2], are taken too."""
         if not len(columns):
             return True
-        before = self._reached(room, self.taken[room.number])
         after = self.taken[room.number].copy()
         after[tuple(columns.T)] = True
-        now = self._reached(room, after)
-        if before is None:
-            return True  # Ways that a plan shut already are not ours to keep.
-        return now is not None and now.sum() >= KEPT_SHARE * (~after).sum()
+        for body in range(self.body, 0, -1):
+            now = self._reached(room, after, body)
+            if now is not None:
+                return bool(now.sum() >= KEPT_SHARE * (~after).sum())
+            # Where a plan is too narrow for a person, its ways are kept for somebody thinner.
+            if self._reached(room, self.taken[room.number], body) is not None:
+                return False
+        return False
 
     def take(self, room: BlockRoom, columns: np.ndarray) -> None:
         """Take columns, int [N, 2]."""
@@ -65,16 +68,16 @@ class Ways:
         """Return the columns, bool [X, Y] of the house, that nothing stands on."""
         return ~self.taken[room.number]
 
-    def _reached(self, room: BlockRoom, taken: np.ndarray) -> np.ndarray | None:
+    def _reached(self, room: BlockRoom, taken: np.ndarray, body: int) -> np.ndarray | None:
         """Return the floor, bool of the room's box, that a body reaches from all doors, or None."""
         box = (slice(room.low[0], room.high[0]), slice(room.low[1], room.high[1]))
         free = ~taken[box]
         # Places of the body's first corner, then all columns that it covers from there.
-        places = _eroded(free, self.body)
+        places = _eroded(free, body)
         parts, count = connected_parts(places, corners=False)
         ends = [end[box] for end in self.ends[room.number]]
         for number in range(1, count + 1):
-            reached = _grown(parts == number, self.body)
+            reached = _grown(parts == number, body)
             if all((reached & end).any() for end in ends) and (ends or reached.any()):
                 return reached
         return None
