@@ -24,7 +24,7 @@ def test_the_papers_map_says_its_own(capsys):
 def test_a_map_is_shown_and_exported(name, tmp_path, capsys):
     assert cli.run(["dataset", "map", "--map", name]) == 0
     told = capsys.readouterr().out
-    assert told.startswith(f"{name}: ") and "\n  bed: black_bed, " in told
+    assert told.startswith(f"{name}: ") and told.count("\n  bed: black_bed, ") == 1
     path = tmp_path / "map.json"
     assert cli.run(["dataset", "map", "--map", name, "--json", str(path)]) == 0
     tree = json.loads(path.read_text())

@@ -79,7 +79,7 @@ def lines_of(rules: "BlockMap") -> list[str]:
     for block in known_blocks():
         held.setdefault(rules.meaning(block), []).append(block.removeprefix("minecraft:"))
     lines = [f"{rules.name}: {' '.join(rules.about.split())}"]
-    for name in (*CLASS_NAMES, *rules.kinds):
+    for name in dict.fromkeys((*CLASS_NAMES, *rules.kinds)):
         blocks = held.get(name, [])
         if not blocks:
             continue
