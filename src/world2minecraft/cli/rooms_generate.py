@@ -57,20 +57,31 @@ def run(
     if houses is not None or worlds is not None or style is not None:
         _check_worlds(houses, worlds, kind, shape, house, rooms, storeys)
         _write_worlds(houses or 0, seed, worlds or Path(), style)
-        return
+    else:
+        _check_words(kind, shape, house, rooms, storeys)
+        _generate(seed, kind, shape, (rooms, storeys) if house else None, clutter, out)
+
+
+def _generate(
+    seed: int,
+    kind: str | None,
+    shape: str,
+    house: tuple[int | None, int | None] | None,
+    clutter: float,
+    out: Path,
+) -> None:
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.errors import UsageError
     from world2minecraft.run_folder import check_writable
 
-    _check_words(kind, shape, house, rooms, storeys)
     check_writable(out)
     compiling_note()
     with shown() as progress:
         progress("room", 0, 1)
         try:
             if house:
-                made = _house(seed, rooms, storeys, clutter)
+                made = _house(seed, *house, clutter)
             else:
                 made = _room(seed, kind, shape, clutter)
         except ValueError as error:
