@@ -80,10 +80,7 @@ def _generate(
     with shown() as progress:
         progress("room", 0, 1)
         try:
-            if house:
-                made = _house(seed, *house, clutter)
-            else:
-                made = _room(seed, kind, shape, clutter)
+            made = _house(seed, *house, clutter) if house else _room(seed, kind, shape, clutter)
         except ValueError as error:
             raise UsageError(f"--{error}") from error
         progress("room", 1, 1, f"{len(made.layouts)} rooms, {len(made.objects)} objects")
