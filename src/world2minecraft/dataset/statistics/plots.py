@@ -77,7 +77,7 @@ def scene_plot(statistics: DatasetStatistics) -> Image.Image:
 def fine_plot(statistics: DatasetStatistics) -> Image.Image:
     """Draw the pixels of each fine class that is seen enough, most first, on a log scale."""
     values = [one.pixels for one in statistics.fine or () if one.is_seen_enough]
-    under = f"{len(values):,} fine classes that are seen enough; pixels, each step of ten alike"
+    under = f"{len(values):,} fine classes that are seen enough, by their pixels on a log scale"
     return _steps(f"Fine classes of {statistics.name}", under, values, "fine classes", log=True)
 
 
