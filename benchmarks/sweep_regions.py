@@ -1,6 +1,6 @@
 """How much of what an image shows does its region hold, by the fallback offset?
 
-``python -m benchmarks.sweep_regions [--houses 50 --views 8]``
+``python -m benchmarks.sweep_regions [--houses 50 --views 6]``
 
 People stand in generated houses of seeds 500 on and look any way. A cell of the scene is visible
 where some pixel sees it first, wherever it lies. The table says which share of those cells, and of
@@ -70,7 +70,7 @@ def main() -> int:
     """Print the table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--houses", type=int, default=50)
-    parser.add_argument("--views", type=int, default=8)
+    parser.add_argument("--views", type=int, default=6)
     chosen = parser.parse_args()
     table = Table("camera", "case", "offset", "views", "cells held", "pixels held", box=None)
     for (camera, kind, offset), rows in sorted(shares(chosen.houses, chosen.views).items()):

@@ -16,7 +16,7 @@ from world2minecraft.minecraft.displays import display_cubes
 from world2minecraft.render.elements import Element, LookSource
 from world2minecraft.types import BlockVolume, Camera
 
-SLACK_M, THICK_M, AROUND_M, REACH_M, CROSSED_M = 0.001, 0.004, 5e-5, 0.006, 0.001
+SLACK_M, THICK_M, AROUND_M, REACH_M, CROSSED_M = 0.001, 0.004, 5e-6, 0.006, 0.001
 
 
 def solid_parts(volume: BlockVolume, looks: LookSource) -> Iterator[tuple[tuple, np.ndarray]]:

@@ -1,8 +1,7 @@
 """The labels of one image: what its region holds, and what of it the image shows.
 
 In: the cells of a scene, a region, a camera and the depth of its image. Out: ``OccLabels``. The
-labels are the scene's own. Masks follow from the camera and from the depth alone, so that whoever
-has an image's files can make them again:
+labels are the scene's own. Masks follow from them, the camera and the depth as it was drawn:
 
 - in the frustum: the cell's middle is before the camera and falls into the image (the paper's);
 - hit: how many pixels' points lie in the cell. Along a pixel's ray, from ``AROUND_M`` before its
@@ -32,7 +31,7 @@ from world2minecraft.dataset.values import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.render import BlockScene, render_volume
 from world2minecraft.types import Camera
 
-AROUND_M = 5e-5  # Far more than depth is rounded by, far less than shapes are thick.
+AROUND_M = 5e-6  # More than a depth under 40 m is rounded by, along the same ray.
 REACH_M = 0.006  # A point so far from a solid cell is rounding at a shape's edge.
 LABEL_WIDTH_PX = 640  # Of an image that is cast for labels alone.
 

@@ -27,8 +27,8 @@ from world2minecraft.dataset.values import (
 from world2minecraft.errors import UnknownNameError, UsageError
 
 KINDS = ("paper", "free")
-AXIS_OFFSET_CELLS = 0  # The sweep of docs/occupancy-labels.md.
-DIAGONAL_OFFSET_CELLS = 0
+AXIS_OFFSET_CELLS = 0  # Both by the sweep of docs/occupancy-labels.md.
+DIAGONAL_OFFSET_CELLS = 4
 FLOOR_LAYERS = 1  # Of the box, below the floor's top face.
 RUG_M = 0.25  # What lies so much higher than a floor that spreads wider is no floor of its own.
 _STEP = 1e-6  # Cells: a place so near a border is on it.
