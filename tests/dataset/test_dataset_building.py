@@ -171,14 +171,24 @@ def stops(folder):
         first = member_at(io.BytesIO(data), 0, len(data))
         shard.with_name(shard.name + ".part").write_bytes(data[: first.end + 700])
         shard.unlink()
-        (copy / ".dataset.json.abcdef").write_text("{")
+        (copy / ".dataset.json.abcdef_1").write_text("{")
 
     def scenes_half_looked_at(copy):
         part_of_a_shard(copy)
         (copy / "scenes/first.json").unlink()
-        (copy / "scenes/.first.json.xyz").write_text("{")
+        (copy / "scenes/.first.json.xyz12345").write_text("{")
 
     return [unfinished, no_index, part_of_a_shard, scenes_half_looked_at]
+
+
+def test_what_is_somebody_elses_is_left_alone(made, plan, tmp_path):
+    copy = shutil.copytree(made[0], tmp_path / "copy")
+    (copy / ".git").mkdir()
+    (copy / ".git/config").write_text("mine")
+    stops(copy)[2](copy)
+    build(copy, plan)
+    assert (copy / ".git/config").read_text() == "mine"
+    assert not verify_store(copy).faults
 
 
 def plan_only(meta):

@@ -21,9 +21,11 @@ from world2minecraft.dataset.store.layout import (
     CLASSES,
     INDEX,
     KIND,
+    LEFTOVER,
     LOCK,
     META,
     SHARDS,
+    SPLITS,
     WORLDS,
     read_meta,
     write_classes,
@@ -113,8 +115,8 @@ def sweep(folder: Path) -> None:
     """Take away what an interrupted run has left half written, but for the parts of shards."""
     for place in (folder, folder / "scenes", folder / WORLDS, *(folder / SHARDS).glob("*")):
         for path in place.glob(".*") if place.is_dir() else ():
-            if path.name == LOCK:
-                continue
+            if not LEFTOVER.fullmatch(path.name):
+                continue  # Somebody's own, such as .git.
             shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
     for path in (folder / SHARDS).glob(f"*/*{PART}"):
         if path.with_name(path.name.removesuffix(PART)).exists():
@@ -127,7 +129,8 @@ def _finished(folder: Path) -> BuildReport | None:
     shards = meta.get("shards") if meta.get("complete") else None
     if not shards or not all((folder / name).is_file() for name in (*shards, INDEX, CLASSES)):
         return None
-    return BuildReport(dict(meta["images"]), 0, len(shards), str(meta["sha256"]), 0.0, {})
+    images = {split: meta["images"][split] for split in SPLITS if split in meta["images"]}
+    return BuildReport(images, 0, len(shards), str(meta["sha256"]), 0.0, {})
 
 
 @dataclass(eq=False)

@@ -31,6 +31,10 @@ META, CLASSES, INDEX, CARD, LOCK = (
 )
 SHARDS, SCENES, WORLDS = "shards", "scenes", "worlds"
 SPLITS = ("train", "test")
+# What a killed run leaves of files that were being written, and of houses.
+LEFTOVER = re.compile(
+    r"\.(?:[\w.-]+\.(?:json|jsonl|md)\.\w{8}|index\.parquet\.part|house_\d+\.part)"
+)
 SHARD_NAME = re.compile(r"shards/(?:train|test|all)/[A-Za-z0-9_-]{1,90}\.tar")
 KIND = "minecraftocc"
 MAX_META_BYTES, MAX_FINE = 64 << 20, 65_535

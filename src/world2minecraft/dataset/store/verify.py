@@ -10,6 +10,7 @@ from world2minecraft.dataset.store.layout import (
     CARD,
     CLASSES,
     INDEX,
+    LEFTOVER,
     LOCK,
     META,
     SCENES,
@@ -82,7 +83,11 @@ def _strays(root: Path, known: Iterable[str]) -> list[str]:
     """Name files that belong to no data set: parts, leftovers, shards that no row is in."""
     shards = {root / name for name in known}
     own = {META, CLASSES, INDEX, CARD, LOCK, SHARDS, SCENES, WORLDS}
-    strays = [path for path in root.iterdir() if path.name not in own]
+    strays = [
+        path
+        for path in root.iterdir()
+        if path.name not in own and (path.name[0] != "." or LEFTOVER.fullmatch(path.name))
+    ]
     strays += [path for path in (root / SHARDS).rglob("*") if path.is_file() and path not in shards]
     return [f"{path.relative_to(root)}: belongs to no data set" for path in sorted(strays)]
 
