@@ -23,8 +23,8 @@ from world2minecraft.render.views import (
     with_open_doors,
     write_lines,
 )
-from world2minecraft.render.views.floor import floor_of
 from world2minecraft.render.views.heading import TURN_COST, _best_sequence
+from world2minecraft.render.views.hiding import hiding_of
 from world2minecraft.render.views.orbit import corner_points_m
 from world2minecraft.types import AIR, BlockVolume
 
@@ -82,28 +82,15 @@ def test_an_orbit_goes_around_once_at_one_height():
     assert [shot.t_s for shot in shots] == [n / 4 for n in range(8)]
 
 
-# Where one stands.
+# What hides the view.
 
 
-def test_one_stands_on_floors_with_headroom():
-    floor = floor_of(house())
-    assert set(np.argwhere(floor.stands)[:, 1]) == {1}
-    assert floor.stands[:, 1].sum() == 2 * 16 + 1  # And in the door.
-    assert (floor.feet_y[:, 1][floor.stands[:, 1]] == 61).all()
-
-
-def test_carpets_are_walked_on_slabs_climbed_and_lava_is_neither():
-    states = house().states.copy()
-    states[1, 1, 1], states[2, 1, 1], states[3, 1, 1] = 4, 5, 6
-    floor = floor_of(built(states))
-    assert floor.stands[1, 1, 1] and floor.stands[2, 1, 1] and not floor.stands[3, 1, 1]
-    assert floor.feet_y[1, 1, 1] == pytest.approx(61 + 1 / 16)
-    assert floor.feet_y[2, 1, 1] == 61.5
-
-
-def test_a_large_player_needs_more_room():
-    """At four blocks a metre the rooms are too low for one who is 7.2 blocks high."""
-    assert not floor_of(house(scale=4.0)).stands[:, 1].any()
+def test_walls_hide_and_doors_do_not_and_what_is_under_a_ceiling_is_roofed():
+    hiding = hiding_of(house())
+    assert hiding.hides[0].all() and not hiding.hides[1:5, 1:4, 1:5].any()
+    assert not hiding.hides[5, 1:3, 2].any()
+    assert hiding.roofed[1:5, 1:4, 1:5].all()
+    assert not hiding_of(built(np.zeros((2, 2, 2), np.uint16))).roofed.any()
 
 
 # Tours.

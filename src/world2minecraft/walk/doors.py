@@ -11,6 +11,11 @@ _OPENED = ("_door", "_fence_gate")
 _LOCKED = ("minecraft:iron_door",)
 
 
+def is_door(state: str) -> bool:
+    """Whether a block state is a door or a gate, of any kind, open or shut."""
+    return state.partition("[")[0].endswith(_OPENED)
+
+
 def is_shut(state: str) -> bool:
     """Whether a block state is a door or gate that a player would open.
 
@@ -18,8 +23,8 @@ def is_shut(state: str) -> bool:
         >>> is_shut("minecraft:oak_door[facing=west,half=lower,open=false]")
         True
     """
-    name = state.partition("[")[0]
-    return name.endswith(_OPENED) and name not in _LOCKED and "open=false" in state
+    locked = state.partition("[")[0] in _LOCKED
+    return is_door(state) and not locked and "open=false" in state
 
 
 def opened(state: str) -> str:

@@ -5,7 +5,7 @@ blocks a metre a person of 1.8 m is 7.2 blocks high. He walks up steps of 0.6, j
 may, and drops 3, all times the scale. Steps lead to the eight neighbours; no corner is cut.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -20,6 +20,7 @@ from world2minecraft.walk.doors import doors_opened
 from world2minecraft.walk.world import BlockWorld
 
 JUMP_HEIGHT = 1.25  # Blocks; the game's jump reaches 1.2522.
+SLIM = 0.4  # Of a player's scale: where cluttered scans leave no floor, a camera still fits.
 DROP = 3.0  # Blocks: from higher a fall hurts.
 SPACING_M = 0.25  # Between columns, or finer where a body is narrower.
 _LIQUIDS = ("minecraft:water", "minecraft:lava", "minecraft:fire")
@@ -31,7 +32,8 @@ class WalkRule:
     """How one walks; lengths are those of a player of the game's size.
 
     ``scale`` None takes the volume's blocks a metre. ``on_furniture`` lets one stand on what is
-    labelled chair to furniture, as the game does; where nothing is labelled one may anyway.
+    labelled chair to furniture, and on beds, as the game does; where nothing is labelled one may
+    anyway.
     """
 
     scale: float | None = None
@@ -66,6 +68,24 @@ class WalkGraph:
         if not len(self):
             raise ValueError("the graph has no place to stand")
         return int(((self.feet - np.asarray(position)) ** 2).sum(axis=1).argmin())
+
+    def part(self, places: np.ndarray) -> "WalkGraph":
+        """Return the graph of some places alone, in their order, with the steps between them."""
+        number = np.full(len(self), -1, np.int32)
+        number[places] = np.arange(len(places))
+        kept = (number[self.edge_from] >= 0) & (number[self.edge_to] >= 0)
+        begins, ends = number[self.edge_from[kept]], number[self.edge_to[kept]]
+        order = np.argsort(begins, kind="stable")
+        counts = np.bincount(begins, minlength=len(places))
+        return replace(
+            self,
+            feet=self.feet[places],
+            headroom=self.headroom[places],
+            ground=self.ground[places],
+            edge_start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+            edge_to=ends[order],
+            edge_m=self.edge_m[kept][order],
+        )
 
     @cached_property
     def edge_from(self) -> np.ndarray:
@@ -131,13 +151,15 @@ def solid_of(volume: BlockVolume, opens_doors: bool = True) -> Solid:
     wet = np.array([state.startswith(_LIQUIDS) for state in volume.palette])[volume.states]
     shapes = [*world.shapes, FULL_CUBE]
     kinds = np.where(wet, len(shapes) - 1, world.kinds).astype(np.uint16)
+    beds = np.array([state.partition("[")[0].endswith("_bed") for state in volume.palette])
+    classes = np.where(beds[volume.states], int(SemanticClass.BED), volume.semantic)
     counts = [len(shape) for shape in shapes]
     full = [len(shape) == 1 and np.array_equal(shape, FULL_CUBE) for shape in shapes]
     return Solid(
         kinds,
         np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
         np.concatenate(shapes).astype(np.float64).reshape(-1, 6),
-        np.where(wet, WET, volume.semantic).astype(np.uint8),
+        np.where(wet, WET, classes).astype(np.uint8),
         np.array(full),
     )
 

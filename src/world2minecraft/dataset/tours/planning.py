@@ -3,16 +3,15 @@
 from world2minecraft.dataset.tours.rooms import TourRoom, find_rooms, shared
 from world2minecraft.dataset.tours.tourist import Kinds, Tourist
 from world2minecraft.dataset.tours.values import PlannedView, TourRule
-from world2minecraft.dataset.tours.walks import Grounds, subgraph
+from world2minecraft.dataset.tours.walks import Grounds
 from world2minecraft.errors import UsageError
 from world2minecraft.progress import Progress, silent
 from world2minecraft.render.scene import BlockScene, prepare_scene
 from world2minecraft.types import BlockVolume
 from world2minecraft.walk.columns import Solid
-from world2minecraft.walk.graph import WalkGraph, WalkRule, solid_of, walk_graph
+from world2minecraft.walk.graph import SLIM, WalkGraph, WalkRule, solid_of, walk_graph
 
-LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a slimmer body is tried,
-SLIM = 0.4  # so many times as wide as a player's: 0.24 m.
+LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a slimmer body is tried.
 
 
 def plan_views(
@@ -47,7 +46,7 @@ def plan_views(
     ready, kinds = scene or prepare_scene(volume), Kinds()
     tourists = []
     for room in rooms:
-        grounds = Grounds(subgraph(graph, room.places), solid, volume.corner)
+        grounds = Grounds(graph.part(room.places), solid, volume.corner)
         tourists.append(Tourist(volume, ready, room, grounds, how, seed, kinds))
     _fill(tourists, count, progress)
     return [view for tourist in tourists for view in tourist.views()]

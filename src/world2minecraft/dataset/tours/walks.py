@@ -50,27 +50,6 @@ class Grounds:
         return (self.graph.spacing / self.graph.blocks_per_metre) ** 2
 
 
-def subgraph(graph: WalkGraph, places: np.ndarray) -> WalkGraph:
-    """Return the graph of some places alone, in their order, with the steps between them."""
-    number = np.full(len(graph), -1, np.int32)
-    number[places] = np.arange(len(places))
-    kept = (number[graph.edge_from] >= 0) & (number[graph.edge_to] >= 0)
-    begins, ends = number[graph.edge_from[kept]], number[graph.edge_to[kept]]
-    order = np.argsort(begins, kind="stable")
-    counts = np.bincount(begins, minlength=len(places))
-    return WalkGraph(
-        graph.feet[places],
-        graph.headroom[places],
-        graph.ground[places],
-        np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        ends[order],
-        graph.edge_m[kept][order],
-        graph.scale,
-        graph.blocks_per_metre,
-        graph.spacing,
-    )
-
-
 def plan_walk(grounds: Grounds, rng: np.random.Generator) -> np.ndarray:
     """Return a smooth walk, the feet every ``SAMPLE_M``, float64 [N, 3] in world blocks."""
     stops = _stops(grounds, rng)

@@ -7,7 +7,7 @@ too, is found exactly by going through the places once.
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
-from world2minecraft.render.views.floor import Floor
+from world2minecraft.render.views.hiding import Hiding
 from world2minecraft.render.views.sight import look_around
 
 HEADINGS = 72  # Five degrees apart.
@@ -23,7 +23,7 @@ MOST_TURN = 5  # Headings from one place to the next.
 
 
 def best_headings(
-    floor: Floor,
+    hiding: Hiding,
     semantic: np.ndarray,
     eyes: np.ndarray,
     ways: np.ndarray,
@@ -34,14 +34,14 @@ def best_headings(
     Both are float64 [N]; a view's worth is about 0 for a wall before one's nose, 1 for a good one.
 
     Args:
-        floor: what hides the view.
+        hiding: what hides the view.
         semantic: uint8 [X, Y, Z], the classes of blocks.
         eyes: float64 [N, 3], world blocks, along a way.
         ways: float64 [N], the game yaw of the way there, degrees.
         half_fov_deg: half the camera's horizontal field of view.
     """
     yaws_deg = np.arange(HEADINGS) * (360.0 / HEADINGS)
-    far_m, cell = look_around(floor, eyes, yaws_deg, np.array(PITCHES_DEG))
+    far_m, cell = look_around(hiding, eyes, yaws_deg, np.array(PITCHES_DEG))
     thing = (cell >= 0) & (semantic.reshape(-1)[cell] >= SemanticClass.CHAIR)
     worth = np.clip((far_m - NEAR_M) / (GOOD_M - NEAR_M), 0, 1)
     worth = np.where(cell < 0, LOST_WORTH, worth) + THING_WORTH * thing

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.render.views.floor import Floor
+from world2minecraft.render.views.hiding import Hiding
 
 FAR_M = 12.0  # Rays end there.
 STRIDE_BLOCKS = 0.35
@@ -22,12 +22,12 @@ class Around(NamedTuple):
 
 
 def look_around(
-    floor: Floor, eyes: np.ndarray, yaws_deg: np.ndarray, pitches_deg: np.ndarray
+    hiding: Hiding, eyes: np.ndarray, yaws_deg: np.ndarray, pitches_deg: np.ndarray
 ) -> Around:
     """Cast rays from eyes, float64 [N, 3] in world blocks, to all pairs of pitch and yaw.
 
     Args:
-        floor: what hides the view.
+        hiding: what hides the view.
         eyes: where from.
         yaws_deg: the game's, [Y].
         pitches_deg: the game's, down is positive, [P].
@@ -36,22 +36,22 @@ def look_around(
     down = np.broadcast_to(-np.sin(pitch), (len(pitches_deg), len(yaws_deg)))
     rays = np.stack([-np.sin(yaw) * np.cos(pitch), down, np.cos(yaw) * np.cos(pitch)], axis=-1)
     count = rays.shape[0] * rays.shape[1]
-    start = np.repeat(eyes - np.array(floor.corner), count, axis=0)
+    start = np.repeat(eyes - np.array(hiding.corner), count, axis=0)
     ahead = np.tile(rays.reshape(-1, 3), (len(eyes), 1)) * STRIDE_BLOCKS
-    shape = np.array(floor.hides.shape)
-    limit = FAR_M * floor.blocks_per_metre
+    shape = np.array(hiding.hides.shape)
+    limit = FAR_M * hiding.blocks_per_metre
     far, cell = np.full(len(start), limit), np.full(len(start), -1, np.int64)
     going = np.arange(len(start))
     for n in range(1, int(limit / STRIDE_BLOCKS) + 1):
         at = np.floor(start[going] + ahead[going] * n).astype(np.int64)
         inside = ((at >= 0) & (at < shape)).all(axis=1)
         going, at = going[inside], at[inside]
-        met = floor.hides[tuple(at.T)]
+        met = hiding.hides[tuple(at.T)]
         hit = going[met]
         far[hit] = n * STRIDE_BLOCKS
-        cell[hit] = np.ravel_multi_index(tuple(at[met].T), floor.hides.shape)
+        cell[hit] = np.ravel_multi_index(tuple(at[met].T), hiding.hides.shape)
         going = going[~met]
         if not len(going):
             break
     every = (len(eyes), *rays.shape[:2])
-    return Around(far.reshape(every) / floor.blocks_per_metre, cell.reshape(every))
+    return Around(far.reshape(every) / hiding.blocks_per_metre, cell.reshape(every))

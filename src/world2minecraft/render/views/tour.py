@@ -7,8 +7,8 @@ from scipy.ndimage import gaussian_filter1d
 
 from world2minecraft.coordinates import eye_height_blocks
 from world2minecraft.errors import UsageError
-from world2minecraft.render.views.floor import Floor, floor_of
 from world2minecraft.render.views.heading import best_headings
+from world2minecraft.render.views.hiding import Hiding, hiding_of
 from world2minecraft.render.views.poses import GamePose, Shot
 from world2minecraft.render.views.ways import Ways
 from world2minecraft.types import BlockVolume, Camera
@@ -57,22 +57,22 @@ def plan_tour(
         UsageError: nowhere in the volume can a person stand.
     """
     volume = _with_headroom(volume)
-    floor = floor_of(volume)
-    ways = Ways(floor)
-    if not len(ways.cells):
+    hiding = hiding_of(volume)
+    ways = Ways(volume, hiding)
+    if not len(ways.feet):
         raise UsageError(
             "nobody can stand anywhere in this build, so there is no tour; try --orbit"
         )
-    eye_blocks = eye_height_blocks(floor.blocks_per_metre)
-    feet = ways.feet(ways.way(None if start is None else np.array(start)))
-    feet = _sampled(feet, SAMPLE_M * floor.blocks_per_metre)
-    eyes = _smoothed(feet, floor, eye_blocks)
-    yaws_deg, worth = _yaws_deg(eyes, floor, volume.semantic, camera)
-    length_m = _length(eyes) / floor.blocks_per_metre
+    eye_blocks = eye_height_blocks(hiding.blocks_per_metre)
+    feet = ways.feet[ways.way(None if start is None else np.array(start))]
+    feet = _sampled(feet, SAMPLE_M * hiding.blocks_per_metre)
+    eyes = _smoothed(feet, hiding, eye_blocks)
+    yaws_deg, worth = _yaws_deg(eyes, hiding, volume.semantic, camera)
+    length_m = _length(eyes) / hiding.blocks_per_metre
     if length_m < SHORT_M:
         eyes, yaws_deg = np.repeat(eyes[:1], 73, axis=0), yaws_deg[0] + np.arange(73) * 5.0
         worth = np.ones(73)
-    times = _times_s(eyes / floor.blocks_per_metre, yaws_deg)
+    times = _times_s(eyes / hiding.blocks_per_metre, yaws_deg)
     columns = np.column_stack([eyes, yaws_deg, _pitches_deg(eyes)])
     moments = _moments_s(times, worth, frames, rate_hz)
     rows = np.column_stack([np.interp(moments, times, column) for column in columns.T])
@@ -130,7 +130,7 @@ def _sampled(points: np.ndarray, spacing: float) -> np.ndarray:
     return np.column_stack([np.interp(places, along, column) for column in points.T])
 
 
-def _smoothed(feet: np.ndarray, floor: Floor, eye_blocks: float) -> np.ndarray:
+def _smoothed(feet: np.ndarray, hiding: Hiding, eye_blocks: float) -> np.ndarray:
     """Return the eyes over a way, rounded where that leads through nothing."""
     eyes = feet + np.array([0, eye_blocks, 0])
     sigma = SMOOTH_M / SAMPLE_M
@@ -138,7 +138,7 @@ def _smoothed(feet: np.ndarray, floor: Floor, eye_blocks: float) -> np.ndarray:
     share = np.ones(len(eyes))
     for _ in range(6):
         mixed = share[:, None] * best + (1 - share[:, None]) * eyes
-        bad = _in_something(mixed, floor)
+        bad = _in_something(mixed, hiding)
         if not bad.any():
             break
         share[bad] = 0
@@ -146,26 +146,26 @@ def _smoothed(feet: np.ndarray, floor: Floor, eye_blocks: float) -> np.ndarray:
     return share[:, None] * best + (1 - share[:, None]) * eyes
 
 
-def _in_something(eyes: np.ndarray, floor: Floor) -> np.ndarray:
+def _in_something(eyes: np.ndarray, hiding: Hiding) -> np.ndarray:
     """Tell which eyes come within a hand's breadth of a cell that hides the view."""
-    reach = 0.12 * floor.blocks_per_metre
+    reach = 0.12 * hiding.blocks_per_metre
     bad = np.zeros(len(eyes), bool)
     for dx in (-reach, reach):
         for dz in (-reach, reach):
-            at = np.floor(eyes + np.array([dx, 0, dz]) - np.array(floor.corner)).astype(np.int64)
-            inside = ((at >= 0) & (at < floor.hides.shape)).all(axis=1)
-            safe = np.clip(at, 0, np.array(floor.hides.shape) - 1)
-            bad |= inside & floor.hides[tuple(safe.T)]
+            at = np.floor(eyes + np.array([dx, 0, dz]) - np.array(hiding.corner)).astype(np.int64)
+            inside = ((at >= 0) & (at < hiding.hides.shape)).all(axis=1)
+            safe = np.clip(at, 0, np.array(hiding.hides.shape) - 1)
+            bad |= inside & hiding.hides[tuple(safe.T)]
     return bad
 
 
 def _yaws_deg(
-    eyes: np.ndarray, floor: Floor, semantic: np.ndarray, camera: Camera
+    eyes: np.ndarray, hiding: Hiding, semantic: np.ndarray, camera: Camera
 ) -> tuple[np.ndarray, np.ndarray]:
     going = np.gradient(eyes, axis=0)
     ways = np.degrees(np.arctan2(-going[:, 0], going[:, 2]))
     half = np.degrees(np.arctan(camera.width_px / 2 / camera.fx_px))
-    yaws_deg, worth = best_headings(floor, semantic, eyes, ways, float(half))
+    yaws_deg, worth = best_headings(hiding, semantic, eyes, ways, float(half))
     return gaussian_filter1d(yaws_deg, TURN_SMOOTH_M / SAMPLE_M, mode="nearest"), worth
 
 
