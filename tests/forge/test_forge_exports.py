@@ -15,8 +15,10 @@ from world2minecraft.exchange.forms import form_names, read_form
 from world2minecraft.exchange.paper import read_occ_json
 from world2minecraft.exchange.room import read_room
 from world2minecraft.files import read_json
+from world2minecraft.forge import export_routes
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.exports import forms, snapshot, stats_csv, write_data
+from world2minecraft.forge.worker import TASKS
 from world2minecraft.minecraft.worlds.world import read_world
 from world2minecraft.steps import built_volume
 
@@ -31,12 +33,24 @@ def editor(small_run):
 
 
 @pytest.fixture
-def script(editor, tmp_path, monkeypatch):
+def apart(editor, tmp_path, monkeypatch):
+    """A script of a server whose work is done in processes of their own."""
     monkeypatch.setenv("HOME", str(tmp_path / "user"))
     (tmp_path / "user" / ".minecraft" / "saves").mkdir(parents=True)
     with served(editor, home=tmp_path / "home") as server, client(server) as script:
         script.jobs = server.session.jobs
         yield script
+
+
+@pytest.fixture
+def script(apart, monkeypatch):
+    """The same, but the work is done here: a process takes seconds to begin."""
+
+    def here(task, within=None, **needs):
+        return lambda report: TASKS.load(task)(progress=report, **needs)
+
+    monkeypatch.setattr(export_routes, "run_apart", here)
+    return apart
 
 
 def ended(script, path, **told):
@@ -79,8 +93,8 @@ def test_data_files_hold_the_edited_scene(editor, tmp_path):
     assert sum(int(row["objects"]) for row in rows) == len(editor.draft.objects)
 
 
-def test_a_schematic_is_read_by_another_program(script, editor, tmp_path):
-    name, data, lost = exported(script, "schem", blocks_per_metre=2)
+def test_a_schematic_is_read_by_another_program(apart, editor, tmp_path):
+    name, data, lost = exported(apart, "schem", blocks_per_metre=2)
     assert name == "room.schem" and [what for what, _ in lost if "labels" in what] == [
         "labels of blocks (class and object)"
     ]
