@@ -179,7 +179,7 @@ def _plant(
     count = round(garden.planted * len(places))
     for x, y in places[rng.permutation(len(places))[:count]].tolist():
         ware = deck.deal("soil")
-        cells = slice(level, level + len(ware.states) - 1)
+        cells = slice(level, level + max(1, len(ware.states) - 1))
         if canvas.states[x, y, cells].any():
             continue
         for n, state in enumerate(ware.turned("south")):

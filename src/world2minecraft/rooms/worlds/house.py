@@ -1,7 +1,7 @@
 """A house plan in whole blocks: where each room's inside lies, where doors and windows are cut.
 
 Plans are metric, with walls of 12 cm. Here every wall is one block thick: it takes the block that
-its middle lies in, so that rooms keep their sides to within a block, and two storeys their walls.
+its middle lies in, so rooms keep their sides to within two blocks, and two storeys their walls.
 """
 
 from collections.abc import Sequence
@@ -130,6 +130,8 @@ def _gap(gap: Gap, rooms: tuple[BlockRoom, ...], cells: tuple[Cell, ...], scale:
         max(rooms[n].low[along] for n in gap.cells),
         min(rooms[n].high[along] for n in gap.cells),
     )
+    if across == 0 and room.blocked and at > room.blocked[0][0]:
+        most = min(most, room.blocked[0][1])  # At the end of a corridor, beside the bay.
     first = int(np.clip(first, least, max(least, most - width)))
     low, high = [0, 0], [0, 0]
     low[across], high[across] = at, at + 1

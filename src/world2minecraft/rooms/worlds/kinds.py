@@ -15,15 +15,13 @@ BECOMES: dict[str, tuple[tuple[str, float], ...]] = {
     "study": (("library", 0.2), ("music", 0.2), ("workshop", 0.1), ("shop", 0.1)),
     "office": (("shop", 0.3), ("gallery", 0.1), ("workshop", 0.15)),
     "dining": (
-        ("shop", 0.13), ("cafe", 0.15), ("greenhouse", 0.1), ("office", 0.12), ("study", 0.1),
-        ("games", 0.08), ("music", 0.06),
+        ("cafe", 0.12), ("office", 0.1), ("study", 0.08), ("games", 0.06), ("music", 0.06),
     ),
     "children": (
-        ("office", 0.12), ("study", 0.1), ("shop", 0.11), ("storage", 0.07), ("games", 0.07),
-        ("gallery", 0.06), ("greenhouse", 0.07), ("library", 0.04), ("workshop", 0.05),
-        ("music", 0.04), ("cafe", 0.03),
+        ("office", 0.12), ("study", 0.1), ("games", 0.06), ("library", 0.05), ("music", 0.04),
+        ("cafe", 0.03),
     ),
-    "bed": (("storage", 0.04), ("children", 0.08), ("shop", 0.03)),
+    "bed": (("children", 0.08),),
     "bathroom": (("laundry", 0.12),),
 }  # fmt: skip
 SHOWING = ("shop", "storage", "greenhouse", "gallery", "workshop")  # Every house has one,

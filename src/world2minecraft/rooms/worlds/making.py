@@ -120,6 +120,8 @@ def _put_flight(furnisher: Furnisher, house: BlockHouse, look: RoomLook) -> None
     box = (flight.x0, flight.y0, flight.x1, flight.y0 + flight.steps)
     for room in (lower, upper):
         furnisher.ways.close(room, box)
+    ceiling = upper.ground + upper.height
+    furnisher.kept[furnisher.canvas.box((*box[:2], 0), (*box[2:], ceiling))] = True
     foot = (flight.x0, flight.y0 - 1, flight.x1, flight.y0)
     head = (flight.x0, flight.y0 + flight.steps, flight.x1, flight.y0 + flight.steps + 1)
     furnisher.ways.end(lower, foot)

@@ -26,7 +26,7 @@ class Show:
         """Set a ware with its foot at a free place of the house; say whether it fits."""
         states = ware.turned(facing)
         cells = [self.canvas.at(at[0], at[1], at[2] + n) for n in range(len(states))]
-        if any(self.canvas.states[cell] for cell in cells):
+        if any(self.canvas.states[cell] or self.furnisher.kept[cell] for cell in cells):
             return False
         instance = self.furnisher.next_instance()
         for cell, state in zip(cells, states, strict=True):
@@ -106,7 +106,7 @@ class Show:
             foot[axis] += step
             columns = np.array([foot, head])
             cells = [self.canvas.at(x, y, room.ground) for x, y in columns.tolist()]
-            free = not any(self.canvas.states[cell] for cell in cells)
+            free = not any(self.canvas.states[at] or furnisher.kept[at] for at in cells)
             if free and self._is_bare((head[0], head[1]), room, turns, (0, 2)):
                 if not furnisher.ways.stay(room, columns):
                     continue
@@ -208,7 +208,7 @@ class Show:
         box = self.canvas.box((*low, ground), (low[0] + size[0], low[1] + size[1], ground + 4))
         columns = np.argwhere(np.ones(size, bool)) + low
         inside = room.floor(self.furnisher.house.size)[tuple(columns.T)].all()
-        if self.canvas.states[box].any() or not inside:
+        if self.canvas.states[box].any() or self.furnisher.kept[box].any() or not inside:
             return 0
         if not self.furnisher.ways.stay(room, columns):
             return 0
@@ -279,6 +279,7 @@ class Show:
         wall = self.canvas.box((behind[0], behind[1], low), (behind[0] + 1, behind[1] + 1, high))
         here = self.canvas.box((*column, low), (column[0] + 1, column[1] + 1, high))
         bare = (self.canvas.semantic[wall] == WALL).all() and not self.canvas.states[here].any()
+        bare &= not self.furnisher.kept[here].any()
         return bool(bare and room.floor(self.furnisher.house.size)[column])
 
     def _is_top(self, cell: Corner) -> bool:

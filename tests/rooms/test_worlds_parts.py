@@ -1,0 +1,130 @@
+"""The parts of a world: plans in blocks, ways, wares and looks, each by what it promises."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from world2minecraft.furniture.materials import kinds
+from world2minecraft.minecraft.states import complete, known_blocks, parse_state
+from world2minecraft.rooms.worlds.choices import DESIGNS
+from world2minecraft.rooms.worlds.house import plan_block_house
+from world2minecraft.rooms.worlds.looks import draw_look, styles
+from world2minecraft.rooms.worlds.recipes import OWN, PILLARS, RIMS
+from world2minecraft.rooms.worlds.task import BOARDS
+from world2minecraft.rooms.worlds.wares import HOME, MOUNTS, Deck, table, wares
+from world2minecraft.rooms.worlds.ways import Ways
+
+PLANS = [(seed, rooms, storeys) for seed, (rooms, storeys) in enumerate([(4, 1), (9, 1), (8, 2)])]
+
+
+def is_block(state):
+    return str(complete(parse_state(f"minecraft:{state}")))
+
+
+@pytest.mark.parametrize(("seed", "rooms", "storeys"), PLANS)
+@pytest.mark.parametrize("scale", [2.0, 4.0])
+def test_rooms_in_blocks_are_apart_and_near_their_metres(seed, rooms, storeys, scale):
+    house = plan_block_house((seed,), rooms, storeys, scale)
+    for room, cell in zip(house.rooms, house.plan.cells, strict=True):
+        sides = np.array(cell.ground.size_m[:2]) * scale
+        assert (np.abs(np.array(room.size) - sides) < 2).all()
+    for one, other in itertools.combinations(house.rooms, 2):
+        if one.storey == other.storey:
+            wide = np.pad(one.floor(house.size), 1)
+            near = [
+                wide[1 + dx : wide.shape[0] - 1 + dx, 1 + dy : wide.shape[1] - 1 + dy]
+                for dx in (-1, 0, 1)
+                for dy in (-1, 0, 1)
+            ]
+            assert not (np.any(near, axis=0) & other.floor(house.size)).any()
+
+
+@pytest.mark.parametrize(("seed", "rooms", "storeys"), PLANS)
+def test_gaps_lie_in_walls_between_their_rooms(seed, rooms, storeys):
+    house = plan_block_house((seed,), rooms, storeys, 4.0)
+    for gap in house.gaps:
+        across = gap.turn % 2
+        assert gap.high[across] - gap.low[across] == 1
+        for number in gap.rooms:
+            room = house.rooms[number]
+            inside = np.pad(room.floor(house.size), 2)
+            low, high = np.array(gap.low) + 2, np.array(gap.high) + 2
+            assert not inside[low[0] : high[0], low[1] : high[1]].any()
+            low[across] -= 1
+            high[across] += 1
+            beside = inside[low[0] : high[0], low[1] : high[1]]
+            assert beside.any(axis=across).all()
+
+
+def test_ways_refuse_what_shuts_a_door():
+    house = plan_block_house((1,), 5, 1, 4.0)
+    ways, room = Ways(house), house.rooms[1]
+    (strip,) = ways.ends[1][:1]
+    assert strip.any()
+    door = np.argwhere(strip)
+    assert not ways.stay(room, door)
+    everything = np.argwhere(room.floor(house.size))
+    assert not ways.stay(room, everything)
+    assert ways.stay(room, np.zeros((0, 2), int))
+    corner = [
+        (x, y)
+        for x in (room.low[0], room.high[0] - 1)
+        for y in (room.low[1], room.high[1] - 1)
+        if not strip[x, y]
+    ]
+    assert ways.stay(room, np.array(corner[:1]))
+
+
+def test_every_ware_is_of_blocks_and_named_once():
+    names = [ware.name for ware in wares()]
+    assert len(set(names)) == len(names) > 900
+    for ware in wares():
+        assert ware.mount in MOUNTS
+        for state in ware.turned("west"):
+            complete(parse_state(state))
+    skipped = {name for group in table()["skipped"].values() for name in group}
+    known = {block.removeprefix("minecraft:") for block in known_blocks()}
+    assert skipped | set(names) == known
+
+
+def test_a_deck_deals_all_before_it_begins_again():
+    deck, other = Deck(3, 10), Deck(3, 10)
+    for mount in (*MOUNTS, HOME):
+        first = deck.deal(mount)
+        dealt = [first]
+        while (ware := deck.deal(mount)) != first:
+            dealt.append(ware)
+        assert len({one.name for one in dealt}) == len(dealt)
+        assert other.deal(mount) == first
+    assert {one.name for one in wares() if one.mount == "water"} >= {"kelp", "fire_coral"}
+
+
+def test_styles_are_of_blocks_and_of_materials_of_the_library():
+    for style in styles().values():
+        lists = (style.walls, style.wet_walls, style.ceilings, style.glass, style.skirtings)
+        for state in [*itertools.chain(*lists, *style.floors, *style.wet_floors)]:
+            is_block(state)
+        assert set(style.cloths) <= set(kinds()["cloth"].blocks)
+        assert set(style.stones) <= set(kinds()["stone"].blocks)
+        for wood in style.woods:
+            is_block(f"{wood}_stairs")
+            is_block(f"{wood}_trapdoor")
+            is_block(f"{wood}_fence")
+        assert all(0 <= hour < 24 for hour in style.hours)
+        look = draw_look(style, "living", np.random.default_rng(0))
+        assert look.wall in look.accents
+
+
+def test_racks_pillars_and_rims_are_blocks():
+    for board in BOARDS:
+        is_block(f"{board}_slab")
+    for state in (*PILLARS, *RIMS):
+        is_block(state)
+    assert len(OWN) == 10
+
+
+def test_things_of_layouts_have_designs_of_the_library():
+    from world2minecraft.furniture import TEMPLATES
+
+    assert set(itertools.chain(*DESIGNS.values())) <= set(TEMPLATES.names())
