@@ -24,6 +24,8 @@ REQUIREMENTS = [
     *(item for item in EXTRAS["dev"] if not item.startswith(PROJECT["name"])),
     *EXTRAS["capture"],
     *EXTRAS["data"],
+    *EXTRAS["hf"],
+    *EXTRAS["train"],
     *EXTRAS["usd"],
 ]
 
