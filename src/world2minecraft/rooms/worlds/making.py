@@ -28,6 +28,8 @@ from world2minecraft.rooms.worlds.wares import Deck
 from world2minecraft.rooms.worlds.ways import Ways
 from world2minecraft.types import BlockVolume
 
+# 0.24 m a block: three of the cells that pictures are labelled with, so no cell holds two blocks.
+BLOCKS_PER_METRE = 25 / 6
 SCALES = (2.0, 6.0)  # Blocks per metre that the library's designs are made for in blocks.
 DAWN, DUSK = 7, 18  # Before and after, rooms are lit by more lamps.
 
@@ -52,7 +54,7 @@ def generate_world(
     rooms: int = 6,
     storeys: int = 1,
     style: str | None = None,
-    blocks_per_metre: float = 4.0,
+    blocks_per_metre: float = BLOCKS_PER_METRE,
     deck: tuple[int, int] | None = None,
 ) -> HouseWorld:
     """Return the world of a seed: the same seed and numbers give the same blocks.
@@ -62,7 +64,7 @@ def generate_world(
         rooms: how many rooms in all, 3 to 14, the hall of each storey among them.
         storeys: 1 or 2; two need 4 rooms or more.
         style: one of ``styles()``; drawn where none is given.
-        blocks_per_metre: 2 to 6.
+        blocks_per_metre: from 2 to under 6.
         deck: the seed of the order of wares and how many were dealt before; drawn where None.
 
     Raises:
