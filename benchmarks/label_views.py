@@ -8,6 +8,7 @@ from scipy.ndimage import minimum_filter
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import look_at
+from world2minecraft.dataset.tours import nyu_camera
 from world2minecraft.dataset.values import SceneVoxels
 from world2minecraft.dataset.voxels import scene_voxels
 from world2minecraft.render import BlockScene, prepare_scene
@@ -15,7 +16,7 @@ from world2minecraft.rooms.worlds import generate_world
 from world2minecraft.types import BlockVolume, Camera
 
 EYE_M, TALL_M, ASIDE_M = 1.62, 1.8, 0.3  # The last: as near as one stands to a wall.
-NYU = Camera(640, 480, 518.8579, 518.8579, 320.0, 240.0)
+NYU = nyu_camera()
 GAME = Camera(1920, 1129, 806.19, 806.19, 960.0, 564.5)  # The paper's window at FOV 70.
 
 

@@ -68,7 +68,9 @@ def test_screenshots_become_a_tour_file(world, tmp_path, capsys):
     assert cli.run([*words, "--at", "feet"]) == 0
     assert "1 screenshots (1 by its name by" in capsys.readouterr().out
     (line,) = lines_of(out)
-    assert line["image"] == "6.5_64_5.5_90_10.png" and line["y"] == pytest.approx(64 + 1.62 * 25 / 6)
+    assert line["image"] == "6.5_64_5.5_90_10.png" and line["y"] == pytest.approx(
+        64 + 1.62 * 25 / 6
+    )
     assert cli.run([*words, "--at", "eye"]) == 0
     assert lines_of(out)[0]["y"] == 64
 

@@ -5,20 +5,23 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from world2minecraft.coordinates import focal_px_of_fov
+from world2minecraft.dataset.formats.cameras import NYU_CAMERA
 from world2minecraft.errors import UsageError
 from world2minecraft.render.lamps import DAY
 from world2minecraft.render.light import LookLight
 from world2minecraft.render.views.poses import GamePose
 from world2minecraft.types import Camera, Layout
 
-NYU_FOCAL_PX = 518.8579  # Of NYUv2's colour camera, as its loaders write it; 640x480.
 PAPER_SIZE, PAPER_FOV_DEG = (1920, 1129), 70.0  # Of MinecraftOcc's pictures; the FOV is vertical.
 KINDS = ("axis", "diagonal", "free")
 
 
 def nyu_camera() -> Camera:
-    """Return 640x480 pixels with NYU's focal length: a vertical field of view of 49.6 degrees."""
-    return Camera(640, 480, NYU_FOCAL_PX, NYU_FOCAL_PX, 320.0, 240.0)
+    """Return the camera of NYUv2 as its loaders have it, 640x480, a vertical FOV of 49.6 degrees.
+
+    Its principal point is (320.5, 240.5), since they count pixel centres as whole numbers.
+    """
+    return NYU_CAMERA
 
 
 def paper_camera() -> Camera:
