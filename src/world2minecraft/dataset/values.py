@@ -4,11 +4,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from world2minecraft.coordinates import apply
+from world2minecraft.geometry.region import USUAL_SHAPE, USUAL_VOXEL_M, LabelRegion
 from world2minecraft.types import Camera, checks
 
-USUAL_SHAPE = (60, 60, 36)  # x right, y forward, z up: 60x36x60 as the papers write it
-USUAL_VOXEL_M = 0.08
+__all__ = [
+    "USUAL_SHAPE",
+    "USUAL_VOXEL_M",
+    "FineClass",
+    "LabelRegion",
+    "OccLabels",
+    "OccSample",
+    "SceneVoxels",
+]
 
 
 @dataclass(frozen=True, order=True)
@@ -55,34 +62,6 @@ class SceneVoxels:
         put(self, "origin_m", checks.floats("origin_m", self.origin_m, (3,)))
         if self.fine.size and int(self.fine.max()) >= len(self.fine_classes):
             raise ValueError(f"fine goes to {self.fine.max()} of {len(self.fine_classes)} classes")
-
-
-@dataclass(frozen=True, eq=False)
-class LabelRegion:
-    """The box of cells that an image is labelled with: x right, y forward, z up as it is seen.
-
-    The centre of cell (i, j, k) lies at ``region_to_room`` times ``(i + 0.5) * voxel_m, ...``.
-    """
-
-    shape: tuple[int, int, int]
-    voxel_m: float
-    region_to_room: np.ndarray  # float64 [4, 4], a turn about z and a shift
-    kind: str = "axis"  # axis, diagonal (the paper's two cases) or free (turned with the view)
-
-    def __post_init__(self):
-        put = object.__setattr__
-        put(self, "shape", tuple(int(side) for side in self.shape))
-        if len(self.shape) != 3 or min(self.shape) < 1:
-            raise ValueError(f"a region has three sides of a cell or more, not {self.shape}")
-        put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
-        put(self, "region_to_room", checks.transform("region_to_room", self.region_to_room))
-        if abs(self.region_to_room[2, 2] - 1) > 1e-9:
-            raise ValueError("region_to_room must keep z up")
-
-    def centers_m(self) -> np.ndarray:
-        """Return the centres of all cells in the room, float64 [X, Y, Z, 3]."""
-        places = np.moveaxis(np.indices(self.shape), 0, -1) + 0.5
-        return apply(self.region_to_room, places * self.voxel_m)
 
 
 @dataclass(frozen=True, eq=False)
