@@ -1,0 +1,185 @@
+"""The ONNX file of a monocular occupancy network: what it must hold, checked before it is run.
+
+In: one picture with its camera, and where the grid lies before that camera. Out: probabilities of
+the 12 classes. docs/networks-onnx.md is the contract in words; ``METADATA`` below is what writers
+put into the file, so that a reader never has to guess a shape, a frame or an order of classes.
+"""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import onnxruntime
+
+from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES
+from world2minecraft.errors import DamagedFileError
+from world2minecraft.files import read_bytes
+from world2minecraft.geometry.region import KINDS
+
+CONTRACT = "occupancy-1"
+INPUTS = {"image": (1, 3, 0, 0), "intrinsics": (1, 3, 3), "camera_to_grid": (1, 4, 4)}
+DEPTH = {"depth_m": (1, 0, 0)}  # The one input that a network may do without.
+OUTPUT = "logits"  # float32 [1, 12, X, Y, Z]
+PREFIX = "w2m_"
+MAX_BYTES = 1 << 30
+MAX_CELLS = 4_000_000
+
+
+@dataclass(frozen=True)
+class NetworkFacts:
+    """What a file states of its network.
+
+    ``image_size_px`` is width and height. ``region`` is the kind of box that it was trained on.
+    Logits are divided by ``temperature``, which calibrates them.
+    """
+
+    name: str
+    grid_shape: tuple[int, int, int]
+    voxel_m: float
+    image_size_px: tuple[int, int]
+    wants_depth: bool = False
+    region: str = "paper"
+    temperature: float = 1.0
+
+    def metadata(self) -> dict[str, str]:
+        """Return what a writer puts into the file's metadata; sizes stand in its inputs."""
+        values = {
+            "contract": CONTRACT,
+            "name": self.name,
+            "classes": ",".join(CLASS_NAMES),
+            "grid_shape": ",".join(map(str, self.grid_shape)),
+            "voxel_m": repr(float(self.voxel_m)),
+            "region": self.region,
+            "temperature": repr(float(self.temperature)),
+        }
+        return {PREFIX + key: value for key, value in values.items()}
+
+
+class OccupancyNetwork:
+    """A network that is ready to run, on one thread of the processor: always the same bits.
+
+    ``digest`` is of the file's content.
+
+    Raises:
+        InputError: there is no such file. DamagedFileError: it breaks the contract.
+    """
+
+    def __init__(self, path: str | Path):
+        data = read_bytes(path, MAX_BYTES)
+        self.digest = hashlib.sha256(data).hexdigest()
+        options = onnxruntime.SessionOptions()
+        options.intra_op_num_threads = options.inter_op_num_threads = 1
+        options.log_severity_level = 3
+        try:
+            self._session = onnxruntime.InferenceSession(
+                data, options, providers=["CPUExecutionProvider"]
+            )
+        except Exception as error:  # The library has no class of its own for what it cannot read.
+            raise DamagedFileError(path, f"is no ONNX file: {_first_line(error)}") from None
+        try:
+            self.facts = _facts(self._session)
+        except ValueError as error:
+            raise DamagedFileError(
+                path, f"{error}; docs/networks-onnx.md says what such a file holds"
+            ) from None
+        self._path = path
+        self._wanted = {entry.name for entry in self._session.get_inputs()}
+
+    def probabilities(
+        self,
+        image: np.ndarray,
+        intrinsics: np.ndarray,
+        camera_to_grid: np.ndarray,
+        depth_m: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """Return float32 [X, Y, Z, 12], the probabilities of a cell's classes.
+
+        Args:
+            image: float32 [3, H, W], RGB, 0 to 1, of the network's size.
+            intrinsics: [3, 3] of that picture; pixel centres lie at +0.5.
+            camera_to_grid: [4, 4], OpenCV camera to metres from the corner of cell (0, 0, 0).
+            depth_m: float32 [H, W], 0 where there is none; left out for a network without depth.
+
+        Raises:
+            DamagedFileError: the network fails, or gives what is no number.
+        """
+        given = {"image": image, "intrinsics": intrinsics, "camera_to_grid": camera_to_grid}
+        given["depth_m"] = np.zeros(image.shape[1:]) if depth_m is None else depth_m
+        fed = {name: given[name].astype(np.float32)[None] for name in sorted(self._wanted)}
+        try:
+            logits = np.asarray(self._session.run([OUTPUT], fed)[0])[0]
+        except Exception as error:
+            raise DamagedFileError(self._path, f"fails: {_first_line(error)}") from None
+        if not np.isfinite(logits).all():
+            raise DamagedFileError(self._path, "gives values that are no numbers")
+        logits = np.moveaxis(logits / np.float32(self.facts.temperature), 0, -1)
+        raised = np.exp(logits - logits.max(axis=-1, keepdims=True))
+        return raised / raised.sum(axis=-1, keepdims=True)
+
+
+def _facts(session: Any) -> NetworkFacts:
+    """Return what a file states. Raises ValueError where it breaks the contract."""
+    stated = session.get_modelmeta().custom_metadata_map
+    contract = stated.get(PREFIX + "contract")
+    if contract != CONTRACT:
+        raise ValueError(f"is of the contract {contract!r}, not {CONTRACT!r}")
+    if stated.get(PREFIX + "classes") != ",".join(CLASS_NAMES):
+        raise ValueError(f"has other classes than {', '.join(CLASS_NAMES)}")
+    shape = _numbers(stated, "grid_shape")
+    if len(shape) != 3 or min(shape) < 1 or any(n % 1 for n in shape) or np.prod(shape) > MAX_CELLS:
+        raise ValueError(f"has no grid of three sides: {stated.get(PREFIX + 'grid_shape')!r}")
+    (voxel_m,), (temperature,) = _numbers(stated, "voxel_m"), _numbers(stated, "temperature", "1")
+    region = stated.get(PREFIX + "region", "paper")
+    if not (0 < voxel_m < 10 and 0 < temperature < 100) or region not in KINDS:
+        raise ValueError("states a voxel, a temperature or a region that makes no sense")
+    x, y, z = (int(n) for n in shape)
+    sizes = _input_sizes(session)
+    _check_output(session, (1, CLASS_COUNT, x, y, z))
+    _, _, high, wide = sizes["image"]
+    if sizes.get("depth_m", (1, high, wide)) != (1, high, wide):
+        raise ValueError("wants depth of another size than the picture")
+    name = stated.get(PREFIX + "name", "network")
+    return NetworkFacts(
+        name, (x, y, z), voxel_m, (wide, high), "depth_m" in sizes, region, temperature
+    )
+
+
+def _numbers(stated: Mapping[str, str], key: str, usual: str = "") -> list[float]:
+    text = stated.get(PREFIX + key, usual)
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise ValueError(f"states no number {PREFIX}{key}: {text!r}") from None
+
+
+def _input_sizes(session: Any) -> dict[str, tuple[int, ...]]:
+    found = {}
+    for entry in session.get_inputs():
+        wanted = (INPUTS | DEPTH).get(entry.name)
+        if wanted is None:
+            raise ValueError(f"has an input {entry.name!r}; known: {', '.join(INPUTS | DEPTH)}")
+        whole = all(isinstance(side, int) and side > 0 for side in entry.shape)
+        fits = whole and len(entry.shape) == len(wanted)
+        fits = fits and all(w in (0, s) for w, s in zip(wanted, entry.shape, strict=True))
+        if not fits or entry.type != "tensor(float)":
+            raise ValueError(
+                f"has an input {entry.name!r} of {entry.type} {entry.shape}; float32 of fixed "
+                f"sizes {[side or 'any' for side in wanted]} expected"
+            )
+        found[entry.name] = tuple(entry.shape)
+    if "image" not in found:
+        raise ValueError("lacks the input 'image'")
+    return found
+
+
+def _check_output(session: Any, wanted: tuple[int, ...]) -> None:
+    shapes = {entry.name: tuple(entry.shape) for entry in session.get_outputs()}
+    if shapes.get(OUTPUT) != wanted:
+        raise ValueError(f"has no output {OUTPUT!r} of {list(wanted)}: {shapes}")
+
+
+def _first_line(error: Exception) -> str:
+    return (str(error).strip().splitlines() or [type(error).__name__])[0]
