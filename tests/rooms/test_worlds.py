@@ -1,5 +1,7 @@
 """Houses as worlds: the same seed gives the same blocks, and every block knows what it is of."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,8 +16,9 @@ from world2minecraft.minecraft.worlds.reading import read_level
 from world2minecraft.minecraft.worlds.world import read_world
 from world2minecraft.rooms.worlds import generate_world, write_worlds
 from world2minecraft.rooms.worlds.layouts import house_layouts
-from world2minecraft.rooms.worlds.reach import reached, reached_floors, standing
-from world2minecraft.types import BlockVolume
+from world2minecraft.rooms.worlds.reach import LEVEL, reached_floors
+from world2minecraft.walk.graph import walk_graph
+from world2minecraft.walk.paths import shortest_path
 
 GONE = ("falls", "pops off", "breaks", "flows")  # What a block does that cannot stay.
 
@@ -28,6 +31,11 @@ def house():
 @pytest.fixture(scope="module")
 def tall():
     return generate_world(9, rooms=7, storeys=2)
+
+
+@pytest.fixture(scope="module")
+def game_scale():
+    return generate_world(2, rooms=6, storeys=2, blocks_per_metre=4.0)
 
 
 def test_the_same_seed_gives_the_same_world(house):
@@ -59,14 +67,52 @@ def test_a_house_has_structure_and_furniture(house):
     assert len(house.things) >= 6 * 5
 
 
-@pytest.mark.parametrize("which", ["house", "tall"])
+@pytest.mark.parametrize("which", ["house", "tall", "game_scale"])
 def test_every_room_is_reached_on_foot_from_the_spawn(which, request):
     made = request.getfixturevalue(which)
     counts = reached_floors(made.volume, made.house, made.spawn.position)
     assert len(counts) == len(made.house.rooms)
     for there, places in counts:
         assert there >= 0.7 * places > 0
-    assert sum(a for a, _ in counts) > 0.9 * sum(b for _, b in counts)
+    assert sum(a for a, _ in counts) > 0.95 * sum(b for _, b in counts)
+
+
+def test_a_room_whose_door_is_walled_up_is_not_reached(tall):
+    room = tall.house.rooms[1]
+    states, corner = tall.volume.states.copy(), tall.volume.corner
+    stone = states[tall.volume.semantic == SemanticClass.FLOOR][0]
+    for gap in tall.house.gaps:
+        if gap.kind != "window" and room.number in gap.rooms:
+            x = slice(gap.low[0] - corner[0], gap.high[0] - corner[0])
+            north = tall.house.size[1]
+            z = slice(north - gap.high[1] - corner[2], north - gap.low[1] - corner[2])
+            y = slice(gap.bottom + 64 - corner[1], gap.top + 64 - corner[1])
+            states[x, y, z] = stone
+    shut = replace(tall.volume, states=states)
+    counts = reached_floors(shut, tall.house, tall.spawn.position)
+    before = reached_floors(tall.volume, tall.house, tall.spawn.position)
+    assert counts[room.number][0] == 0 < before[room.number][0]
+    assert counts[0][0] > 0.9 * before[0][0]
+
+
+def test_one_who_walks_up_the_stairs_never_bumps_into_the_floor_over_them(tall):
+    house, graph = tall.house, walk_graph(tall.volume)
+    flight = house.flight
+    assert flight is not None
+    column = (flight.x0 + 1.5, house.size[1] - flight.y0 + 0.5)
+    foot = graph.nearest((column[0], 64.0, column[1] + 1))
+    head = graph.nearest((column[0], 64.0 + house.grounds[1], house.size[1] - flight.end - 0.5))
+    way = shortest_path(graph, foot, head)
+    assert way is not None
+    assert way.length_m < 2.2 * flight.steps / house.blocks_per_metre
+    assert (graph.headroom[way.places] >= 1.8 * house.blocks_per_metre).all()
+
+
+def test_one_begins_on_the_lowest_storey_where_a_person_fits(tall):
+    graph = walk_graph(tall.volume)
+    start = np.array(tall.spawn.position)
+    assert np.abs(graph.feet[graph.nearest(tall.spawn.position)] - start).max() == 0
+    assert 64 <= start[1] < 64 + LEVEL
 
 
 def test_nothing_falls_or_breaks(tall):
@@ -132,28 +178,6 @@ def test_the_garden_is_of_no_class_and_outside(house):
     empty = np.argwhere(garden & ~outside)
     floors = np.any([room.floor(house.house.size) for room in house.house.rooms], axis=0)
     assert not floors[empty[:, 0] - x, house.house.size[1] - 1 - (empty[:, 2] - z)].any()
-
-
-def test_a_jump_is_one_block_and_a_fence_too_high():
-    palette = ("minecraft:air", "minecraft:stone", "minecraft:oak_fence")
-    states = np.zeros((6, 6, 1), np.uint16)
-    states[:, 0] = 1
-    states[3, 1] = 1  # A step that is jumped on; the one behind it is two high.
-    states[5, 1:3] = 1
-    volume = BlockVolume(
-        states, palette, np.zeros(states.shape, np.uint8), np.zeros(states.shape, np.uint16),
-        (0, 0, 0), np.eye(4),
-    )  # fmt: skip
-    found = reached(volume, (0.5, 1.0, 0.5))
-    assert found[2, 1, 0]
-    assert found[3, 2, 0]
-    assert found[4, 1, 0]
-    assert not found[5].any()
-    states = states.copy()
-    states[3, 1] = 2
-    fenced = BlockVolume(states, palette, volume.semantic, volume.instance, (0, 0, 0), np.eye(4))
-    assert not reached(fenced, (0.5, 1.0, 0.5))[4:].any()
-    assert not standing(fenced)[0][3, 2, 0]
 
 
 def test_written_worlds_are_read_back(tmp_path):

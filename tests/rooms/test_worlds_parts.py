@@ -8,12 +8,15 @@ import pytest
 from world2minecraft.furniture.materials import kinds
 from world2minecraft.minecraft.states import complete, known_blocks, parse_state
 from world2minecraft.rooms.worlds.choices import DESIGNS
-from world2minecraft.rooms.worlds.house import plan_block_house
+from world2minecraft.rooms.worlds.house import person_blocks, plan_block_house
 from world2minecraft.rooms.worlds.looks import draw_look, styles
 from world2minecraft.rooms.worlds.recipes import OWN, PILLARS, RIMS
+from world2minecraft.rooms.worlds.shell import rails
 from world2minecraft.rooms.worlds.task import BOARDS
 from world2minecraft.rooms.worlds.wares import HOME, MOUNTS, Deck, table, wares
 from world2minecraft.rooms.worlds.ways import Ways
+from world2minecraft.types import BlockVolume
+from world2minecraft.walk.graph import walk_graph
 
 PLANS = [(seed, rooms, storeys) for seed, (rooms, storeys) in enumerate([(4, 1), (9, 1), (8, 2)])]
 
@@ -60,10 +63,11 @@ def test_gaps_lie_in_walls_between_their_rooms(seed, rooms, storeys):
 def test_ways_refuse_what_shuts_a_door():
     house = plan_block_house((1,), 5, 1, 4.0)
     ways, room = Ways(house), house.rooms[1]
-    (strip,) = ways.ends[1][:1]
-    assert strip.any()
-    door = np.argwhere(strip)
-    assert not ways.stay(room, door)
+    x, y = ways.ends[1][0]
+    before = {(x + dx, y + dy) for dx in range(ways.body) for dy in range(ways.body)}
+    assert all(room.floor(house.size)[column] for column in before)
+    for column in before:
+        assert not ways.stay(room, np.array([column]))
     everything = np.argwhere(room.floor(house.size))
     assert not ways.stay(room, everything)
     assert ways.stay(room, np.zeros((0, 2), int))
@@ -71,9 +75,54 @@ def test_ways_refuse_what_shuts_a_door():
         (x, y)
         for x in (room.low[0], room.high[0] - 1)
         for y in (room.low[1], room.high[1] - 1)
-        if not strip[x, y]
+        if (x, y) not in before
     ]
     assert ways.stay(room, np.array(corner[:1]))
+
+
+def test_ways_refuse_what_parts_a_room():
+    house = plan_block_house((1,), 5, 1, 4.0)
+    ways, room = Ways(house), house.rooms[0]  # The hall, with doors on all of its length.
+    middle = (room.low[0] + room.high[0]) // 2
+    across = np.array([(middle, y) for y in range(room.low[1], room.high[1])])
+    assert not ways.stay(room, across)
+    assert ways.stay(room, across[:1])
+    ways.take(room, across[:1])
+    assert not ways.free(room)[tuple(across[0])]
+
+
+@pytest.mark.parametrize("scale", [2.0, 2.5, 3.0, 4.0, 25 / 6, 4.5, 5.0, 5.9])
+def test_a_person_covers_as_many_blocks_as_the_walkable_graph_asks_for(scale):
+    wide, high = person_blocks(scale)
+    free = []
+    for width in range(1, wide + 2):  # A passage between walls, as high as a person.
+        states = np.ones((8, high + 2, width + 2), np.uint16)
+        states[:, 1 : high + 1, 1:-1] = 0
+        palette = ("minecraft:air", "minecraft:stone")
+        nothing = np.zeros(states.shape, np.uint8)
+        volume = BlockVolume(
+            states, palette, nothing, nothing.astype(np.uint16), (0, 0, 0),
+            np.diag([1 / scale, 1 / scale, 1 / scale, 1.0])[[0, 2, 1, 3]] * [[1], [-1], [1], [1]],
+        )  # fmt: skip
+        free.append(bool((walk_graph(volume).feet[:, 1] < high).any()))
+    assert free == [width >= wide for width in range(1, wide + 2)]
+
+
+@pytest.mark.parametrize("scale", [4.0, 25 / 6])
+@pytest.mark.parametrize("seed", range(6))
+def test_stairs_leave_room_for_a_person(seed, scale):
+    house = plan_block_house((seed, 2), 8, 2, scale)
+    flight, (wide, _) = house.flight, person_blocks(scale)
+    assert flight is not None
+    upper = next(room for room in house.rooms if room.storey == 1)
+    bay, corridor_end = upper.blocked[0][:2]
+    assert flight.x1 - flight.x0 >= wide
+    assert bay - flight.x1 > wide  # A rail, and the way beside it.
+    assert flight.hole > corridor_end  # The rail before it is not in the corridor.
+    assert upper.high[1] - (flight.end - 1) >= wide
+    assert {low for low, _ in rails(house)} == {
+        (flight.x0, flight.hole - 1), (flight.x1, flight.hole - 1),
+    }  # fmt: skip
 
 
 def test_every_ware_is_of_blocks_and_named_once():

@@ -12,8 +12,10 @@ import numpy as np
 
 from world2minecraft.rooms.house_gaps import Gap, house_gaps
 from world2minecraft.rooms.house_plan import WALL_M, Cell, HousePlan, plan_house
+from world2minecraft.walk.body import HEIGHT, WIDTH
+from world2minecraft.walk.graph import columns_per_block
 
-DOOR_BLOCKS = 2  # A door is at least so high, whatever the scale.
+RAIL = 1  # A rail takes a block.
 
 
 @dataclass(frozen=True)
@@ -58,12 +60,21 @@ class BlockGap:
 
 @dataclass(frozen=True)
 class BlockFlight:
-    """Stairs that rise along +y: their columns [x0, x1), the row of the first step, their count."""
+    """Stairs that rise along +y: their columns [x0, x1), the row of the first step, their count.
+
+    The hole in the floor over them begins at the row ``hole``.
+    """
 
     x0: int
     x1: int
     y0: int
     steps: int
+    hole: int
+
+    @property
+    def end(self) -> int:
+        """The row after the last step, whose top is level with the upper floor."""
+        return self.y0 + self.steps
 
 
 @dataclass(frozen=True)
@@ -81,6 +92,20 @@ class BlockHouse:
     blocks_per_metre: float
 
 
+def person_blocks(blocks_per_metre: float) -> tuple[int, int]:
+    """Return how many blocks, wide and high, a person takes up who walks from block to block.
+
+    Example:
+        >>> person_blocks(4.0)
+        (3, 8)
+    """
+    half = WIDTH * blocks_per_metre / 2
+    wide = 2 * int(np.ceil(half - 0.5 - 1e-6)) + 1  # In the middle of a block.
+    if columns_per_block(blocks_per_metre, 2 * half) > 1:
+        wide = min(wide, 2 * int(np.ceil(half - 1e-6)))  # Between two.
+    return wide, int(np.ceil(HEIGHT * blocks_per_metre - 1e-6))
+
+
 def plan_block_house(
     seed: Sequence[int], rooms: int, storeys: int, blocks_per_metre: float
 ) -> BlockHouse:
@@ -89,7 +114,7 @@ def plan_block_house(
     plan = plan_house(rooms, storeys, rng)
     gaps = house_gaps(plan, rng)
     scale = blocks_per_metre
-    height = max(DOOR_BLOCKS + 1, round(plan.height_m * scale))
+    height = max(person_blocks(scale)[1] + 1, round(plan.height_m * scale))
     placed = tuple(_room(number, cell, height, scale) for number, cell in enumerate(plan.cells))
     size = max(room.high[0] for room in placed), max(room.high[1] for room in placed)
     cut = tuple(_gap(gap, placed, plan.cells, scale) for gap in gaps)
@@ -125,7 +150,8 @@ def _gap(gap: Gap, rooms: tuple[BlockRoom, ...], cells: tuple[Cell, ...], scale:
     at = int(np.floor((gap.wall.at_m - inward * WALL_M / 2) * scale + 1e-9))
     start_m = (cell.x_m, cell.y_m)[along]
     first = room.low[along] + round((gap.first_m - start_m) * scale)
-    width = max(1, round((gap.last_m - gap.first_m) * scale))
+    person = person_blocks(scale) if gap.kind != "window" else (1, 1)
+    width = max(person[0], round((gap.last_m - gap.first_m) * scale))
     least, most = (
         max(rooms[n].low[along] for n in gap.cells),
         min(rooms[n].high[along] for n in gap.cells),
@@ -137,7 +163,7 @@ def _gap(gap: Gap, rooms: tuple[BlockRoom, ...], cells: tuple[Cell, ...], scale:
     low[across], high[across] = at, at + 1
     low[along], high[along] = first, min(first + width, most)
     bottom = 0 if gap.kind != "window" else max(1, round(gap.sill_m * scale))
-    top = min(max(DOOR_BLOCKS, round(gap.head_m * scale)), room.height)
+    top = min(max(person[1], round(gap.head_m * scale)), room.height)
     ground = room.ground
     return BlockGap(
         gap.kind,
@@ -153,12 +179,19 @@ def _gap(gap: Gap, rooms: tuple[BlockRoom, ...], cells: tuple[Cell, ...], scale:
 def _flight(
     plan: HousePlan, rooms: tuple[BlockRoom, ...], pitch: int, scale: float
 ) -> BlockFlight | None:
-    """Return stairs of a block a step that end on the upper floor."""
+    """Return stairs of a block a step that end on the upper floor.
+
+    They begin so far in their bay that the hole over them leaves the corridor of the upper floor
+    alone, where one then still comes to stand at their head.
+    """
     if plan.flight is None:
         return None
-    x0, y0, x1, _ = plan.flight.rect
-    hall = rooms[0]
-    start = max(round(y0 * scale), hall.low[1])
-    wide = max(1, round((x1 - x0) * scale))
-    start = min(start, hall.high[1] - pitch - 1)  # One arrives on the last row.
-    return BlockFlight(hall.low[0], hall.low[0] + wide, start, pitch)
+    x0, _, x1, _ = plan.flight.rect
+    hall, (wide, high) = rooms[0], person_blocks(scale)
+    bay, corridor_end = hall.blocked[0][:2]
+    across = max(wide, min(round((x1 - x0) * scale), bay - hall.low[0] - RAIL - wide))
+    # Rows from the hole's first to the first step; the rail is a row before the hole.
+    ahead = wide - (hall.height - high)
+    start = min(corridor_end + RAIL + ahead, hall.high[1] - pitch - wide + 1)
+    start = max(start, hall.low[1] + wide)
+    return BlockFlight(hall.low[0], hall.low[0] + across, start, pitch, start - ahead)

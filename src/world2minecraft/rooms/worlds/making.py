@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.build.lights import put_lights
-from world2minecraft.build.spawn import Spawn, find_spawn
+from world2minecraft.build.spawn import Spawn
 from world2minecraft.errors import UnknownNameError
 from world2minecraft.rooms.house import check_house
 from world2minecraft.rooms.house_rooms import furnish_cells
@@ -20,8 +20,9 @@ from world2minecraft.rooms.worlds.garden import garden_blocks, put_garden
 from world2minecraft.rooms.worlds.house import BlockHouse, BlockRoom, plan_block_house
 from world2minecraft.rooms.worlds.kinds import furnish_more, with_own_kinds
 from world2minecraft.rooms.worlds.looks import RoomLook, Style, draw_look, styles
+from world2minecraft.rooms.worlds.reach import spawn_on_foot
 from world2minecraft.rooms.worlds.recipes import OWN
-from world2minecraft.rooms.worlds.shell import put_shell, put_stairs
+from world2minecraft.rooms.worlds.shell import put_shell, put_stairs, rails
 from world2minecraft.rooms.worlds.showing import Show
 from world2minecraft.rooms.worlds.task import Task
 from world2minecraft.rooms.worlds.wares import Deck
@@ -91,7 +92,7 @@ def generate_world(
     canvas.settle()
     put_lights(canvas, _footprints(canvas, house))
     volume, design, designs = canvas.finished()
-    spawn = find_spawn(volume)
+    spawn = spawn_on_foot(volume, house)
     things = tuple(furnisher.things)
     return HouseWorld(volume, design, designs, house, things, spawn, chosen.name, light)
 
@@ -119,15 +120,18 @@ def _put_flight(furnisher: Furnisher, house: BlockHouse, look: RoomLook) -> None
     first = furnisher.next_instance()
     furnisher.next_instance()
     put_stairs(furnisher.canvas, house, look, first)
-    box = (flight.x0, flight.y0, flight.x1, flight.y0 + flight.steps)
-    for room in (lower, upper):
-        furnisher.ways.close(room, box)
-    ceiling = upper.ground + upper.height
-    furnisher.kept[furnisher.canvas.box((*box[:2], 0), (*box[2:], ceiling))] = True
-    foot = (flight.x0, flight.y0 - 1, flight.x1, flight.y0)
-    head = (flight.x0, flight.y0 + flight.steps, flight.x1, flight.y0 + flight.steps + 1)
-    furnisher.ways.end(lower, foot)
-    furnisher.ways.end(upper, head)
+    wide, high = furnisher.ways.body, furnisher.ways.head
+    furnisher.ways.close(lower, (flight.x0, flight.y0, flight.x1, flight.end))
+    furnisher.ways.close(upper, (flight.x0, flight.hole, flight.x1, flight.end - 1))
+    for (x0, y0), (x1, y1) in rails(house):
+        furnisher.ways.close(upper, (x0, y0, x1, y1))
+    middle = (flight.x0 + flight.x1 - wide) // 2
+    furnisher.ways.end(lower, (middle, flight.y0 - wide))
+    furnisher.ways.end(upper, (middle, flight.end - 1))
+    kept = furnisher.canvas.box(
+        (flight.x0, flight.y0 - wide, 0), (flight.x1, flight.end + wide - 1, upper.ground + high)
+    )
+    furnisher.kept[kept] = True
 
 
 def _is_night(hour: int) -> bool:

@@ -1,84 +1,64 @@
-"""Where the game's player comes to on foot: from cell to cell, a jump up, three blocks down.
-
-Conservative: what has any collision box higher than a carpet fills its cell, and one stands on its
-top; fences and walls are too high to jump on, and closed doors stay closed.
-"""
+"""Where one comes to on foot in a house, by the same walkable graph that tours go by."""
 
 import numpy as np
 
-from world2minecraft.minecraft.shapes import boxes_of
-from world2minecraft.rooms.worlds.house import BlockHouse
+from world2minecraft.build.spawn import Spawn, find_spawn
+from world2minecraft.coordinates import ROOM_CORNER_BLOCK
+from world2minecraft.rooms.worlds.house import BlockHouse, BlockRoom
 from world2minecraft.types import BlockVolume
+from world2minecraft.walk.graph import WalkGraph, walk_graph
+from world2minecraft.walk.paths import parts, reachable
 
-THIN = 0.2  # Blocks: carpets and snow are walked over.
-JUMP = 1.25
-DEEPEST = 3  # Blocks that one drops without harm.
-SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
-
-
-def standing(volume: BlockVolume) -> tuple[np.ndarray, np.ndarray]:
-    """Return where feet may be, and which cells a body passes, bool [X, Y, Z] in block axes."""
-    tops = np.array(
-        [max((float(box[4]) for box in boxes_of(state)), default=0.0) for state in volume.palette]
-    )
-    solid = (tops > THIN)[volume.states]
-    carries = solid & (tops <= JUMP)[volume.states]
-    free = ~solid
-    feet = free.copy()
-    feet[:, :-1] &= free[:, 1:]
-    feet[:, 1:] &= carries[:, :-1]
-    feet[:, 0] = False
-    return feet, free
-
-
-def reached(volume: BlockVolume, spawn: tuple[float, float, float]) -> np.ndarray:
-    """Return the cells, bool [X, Y, Z] in block axes, that feet come to from a place."""
-    feet, free = standing(volume)
-    at = tuple(int(np.floor(v)) - c for v, c in zip(spawn, volume.corner, strict=True))
-    found = np.zeros_like(feet)
-    if not feet[at]:
-        return found
-    found[at] = True
-    lifted = np.zeros_like(free)  # Over these feet there is room to jump.
-    lifted[:, :-2] = free[:, 2:]
-    frontier = found.copy()
-    while frontier.any():
-        near = np.zeros_like(found)
-        for dx, dz in SIDES:
-            near |= _stepped(frontier, 0, dx, dz)
-            near |= _stepped(frontier & lifted, 1, dx, dz)
-            beside = _stepped(frontier, 0, dx, dz) & free & _stepped(free, -1, 0, 0)
-            for _ in range(DEEPEST):
-                beside = _stepped(beside, -1, 0, 0) & free
-                near |= beside
-        frontier = near & feet & ~found
-        found |= frontier
-    return found
-
-
-def _stepped(cells: np.ndarray, dy: int, dx: int, dz: int) -> np.ndarray:
-    """Return cells moved by some blocks along x, y and z; what leaves the volume is lost."""
-    result = np.zeros_like(cells)
-    shape = cells.shape
-    target, source = [], []
-    for size, step in zip(shape, (dx, dy, dz), strict=True):
-        target.append(slice(max(step, 0), size + min(step, 0)))
-        source.append(slice(max(-step, 0), size + min(-step, 0)))
-    result[tuple(target)] = cells[tuple(source)]
-    return result
+LEVEL = 0.5  # Blocks: carpets lie on a floor, slabs stand on it.
 
 
 def reached_floors(
     volume: BlockVolume, house: BlockHouse, spawn: tuple[float, float, float]
 ) -> list[tuple[int, int]]:
-    """Return for each room how many places on its floor are reached, and how many there are."""
-    feet, _ = standing(volume)
-    found = reached(volume, spawn)
-    east, up, south = (-value for value in volume.corner)
-    counts = []
-    for room in house.rooms:
-        floor = room.floor(house.size)
-        x, y = np.nonzero(floor)
-        at = (x + east, np.full(len(x), room.ground + 64 + up), house.size[1] - 1 - y + south)
-        counts.append((int(found[at].sum()), int(feet[at].sum())))
-    return counts
+    """Return for each room how many places on its floor are reached, and how many there are.
+
+    Args:
+        volume: the blocks of the house.
+        house: its rooms.
+        spawn: the feet of who walks, in world block coordinates; they begin at the nearest place
+            where a person has room.
+    """
+    graph = walk_graph(volume)
+    if not len(graph):
+        return [(0, 0)] * len(house.rooms)
+    found = reachable(graph, graph.nearest(spawn))
+    floors = [on_floor(graph, house, room) for room in house.rooms]
+    return [(int((found & floor).sum()), int(floor.sum())) for floor in floors]
+
+
+def spawn_on_foot(volume: BlockVolume, house: BlockHouse) -> Spawn:
+    """Return where to stand on the lowest storey, with a way to as much of the house as may be.
+
+    It is the place that is nearest to the one with the best sight; that one itself where a person
+    fits nowhere.
+    """
+    best = find_spawn(volume)
+    graph = walk_graph(volume)
+    floors = np.array([on_floor(graph, house, room) for room in house.rooms])
+    lowest = floors[[room.storey == 0 for room in house.rooms]].any(axis=0)
+    if not lowest.any():
+        return best
+    part = parts(graph)
+    largest = np.bincount(part[floors.any(axis=0)], minlength=part.max() + 1)
+    most = largest[part] == largest[part[lowest]].max()
+    places = np.flatnonzero(lowest & most)
+    off = graph.feet[places] - np.array(best.position)
+    x, y, z = graph.feet[places[int((off**2).sum(axis=1).argmin())]].tolist()
+    return Spawn((x, y, z), best.yaw_deg)
+
+
+def on_floor(graph: WalkGraph, house: BlockHouse, room: BlockRoom) -> np.ndarray:
+    """Return which places of a graph of a house are on the floor of a room, bool [N]."""
+    east, up, south = np.array(ROOM_CORNER_BLOCK)
+    x = np.floor(graph.feet[:, 0]).astype(int) - east
+    y = house.size[1] - 1 - (np.floor(graph.feet[:, 2]).astype(int) - south)
+    above = graph.feet[:, 1] - up - room.ground
+    found = (above >= 0) & (above < LEVEL)
+    found &= (x >= 0) & (y >= 0) & (x < house.size[0]) & (y < house.size[1])
+    found[found] = room.floor(house.size)[x[found], y[found]]
+    return found

@@ -5,7 +5,13 @@ from scipy import ndimage
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.rooms.worlds.canvas import WorldCanvas
-from world2minecraft.rooms.worlds.house import BlockGap, BlockHouse, BlockRoom
+from world2minecraft.rooms.worlds.house import (
+    RAIL,
+    BlockGap,
+    BlockHouse,
+    BlockRoom,
+    person_blocks,
+)
 from world2minecraft.rooms.worlds.looks import RoomLook
 
 FLOOR, WALL = int(SemanticClass.FLOOR), int(SemanticClass.WALL)
@@ -122,13 +128,9 @@ def put_stairs(canvas: WorldCanvas, house: BlockHouse, look: RoomLook, instance:
     flight = house.flight
     if flight is None:
         return
-    upper = house.grounds[1]
-    head = max(2, round(2.0 * house.blocks_per_metre))
-    first = flight.y0 + max(0, house.height - head - 1)
-    end = flight.y0 + flight.steps
-    canvas.set(
-        canvas.box((flight.x0, first, upper - 2), (flight.x1, end, upper)), "minecraft:air", 0
-    )
+    upper, first, end = house.grounds[1], flight.hole, flight.end
+    hole = canvas.box((flight.x0, first, upper - 2), (flight.x1, end, upper))
+    canvas.set(hole, "minecraft:air", 0)
     for n in range(flight.steps):
         row = flight.y0 + n
         tread = f"{look.stairs}[facing=north,half=bottom]"
@@ -138,7 +140,23 @@ def put_stairs(canvas: WorldCanvas, house: BlockHouse, look: RoomLook, instance:
         if n:
             below = canvas.box((flight.x0, row, n - 1), (flight.x1, row + 1, n))
             canvas.set(below, under, OBJS, instance)
-    rail = canvas.box((flight.x1, first - 1, upper), (flight.x1 + 1, end - 1, upper + 1))
-    canvas.set(rail, look.fence, OBJS, instance + 1)
-    rail = canvas.box((flight.x0, first - 1, upper), (flight.x1, first, upper + 1))
-    canvas.set(rail, look.fence, OBJS, instance + 1)
+    for low, high in rails(house):
+        rail = canvas.box((*low, upper), (*high, upper + 1))
+        canvas.set(rail, look.fence, OBJS, instance + 1)
+
+
+def rails(house: BlockHouse) -> list[tuple[tuple[int, int], tuple[int, int]]]:
+    """Return the columns, [low, high), of the rails beside and before the hole over the stairs.
+
+    Where the floor beside the hole is too narrow for a rail and a person there is none.
+    """
+    flight = house.flight
+    if flight is None:
+        return []
+    upper = next(room for room in house.rooms if room.storey == 1)
+    passage = upper.blocked[0][0] - flight.x1
+    beside = RAIL if passage > person_blocks(house.blocks_per_metre)[0] else 0
+    before = flight.hole - RAIL
+    ahead = ((flight.x0, before), (flight.x1 + beside, flight.hole))
+    along = ((flight.x1, before), (flight.x1 + beside, flight.end - 1))
+    return [ahead, along] if beside else [ahead]

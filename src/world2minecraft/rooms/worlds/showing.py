@@ -56,7 +56,7 @@ class Show:
         cells, turns = found
         start = int(self.rng.integers(max(len(cells) - most, 0) + 1))
         columns = np.array(cells[start : start + most])
-        if boards[0] < self.furnisher.ways.head // 2:  # A shelf hangs over what one walks on.
+        if boards[0] < self.furnisher.ways.head:
             if not self.furnisher.ways.stay(room, columns):
                 columns = columns[: max(least, len(columns) // 2)]
                 if not self.furnisher.ways.stay(room, columns):
@@ -158,7 +158,7 @@ class Show:
             if self.canvas.semantic[wall] != WALL or (near > 0).sum() > 3:
                 continue
             below = self.canvas.at(at[0], at[1], z - 1)
-            if self.canvas.states[below] == 0:
+            if self.canvas.states[below] == 0 and self._takes(room, at, level):
                 ware = self.deck.deal("wall")
                 hung += self.put_ware(ware, (at[0], at[1], z), FACINGS[turns])
         return hung
@@ -178,7 +178,8 @@ class Show:
                 cells[0][0] - 1 : cells[0][0] + 2, cells[0][1] - 1 : cells[0][1] + 2, cells[0][2]
             ]
             free = not near.any() and not any(self.canvas.states[cell] for cell in cells)
-            if free and room.floor(self.furnisher.house.size)[x, y]:
+            free = free and bool(room.floor(self.furnisher.house.size)[x, y])
+            if free and self._takes(room, [x, y], room.height - len(ware.states)):
                 # Of two blocks the first is the lower.
                 low = (x, y, top - len(ware.states) + 1)
                 hung += self.put_ware(ware, low, "south")
@@ -281,6 +282,16 @@ class Show:
         bare = (self.canvas.semantic[wall] == WALL).all() and not self.canvas.states[here].any()
         bare &= not self.furnisher.kept[here].any()
         return bool(bare and room.floor(self.furnisher.house.size)[column])
+
+    def _takes(self, room: BlockRoom, column: Sequence[int], level: int) -> bool:
+        """Take a column for what hangs at a layer over the floor; say whether ways allow it."""
+        ways, columns = self.furnisher.ways, np.array([column])
+        if level >= ways.head:
+            return True
+        if not ways.stay(room, columns):
+            return False
+        ways.take(room, columns)
+        return True
 
     def _is_top(self, cell: Corner) -> bool:
         """Whether a block has a whole top that things stand on."""

@@ -4,15 +4,13 @@ A room's ways are asked before a thing is put: what would shut a door, or close 
 the floor, is not put.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.rooms.worlds.house import BlockGap, BlockHouse, BlockRoom
+from world2minecraft.rooms.worlds.house import BlockGap, BlockHouse, BlockRoom, person_blocks
 
-BODY_M, HEAD_M = 0.55, 1.7  # Shoulders are 0.45 m wide; what hangs higher hinders nobody.
-KEPT_SHARE = 0.7  # Of the free floor that ways must still reach.
+KEPT_SHARE = 0.6  # Of the free floor that ways must still cover,
+KEPT_PLACES = 0.95  # and of the places where a person fits that one must still come to.
 
 
 class Ways:
@@ -20,25 +18,23 @@ class Ways:
 
     def __init__(self, house: BlockHouse):
         self.house = house
-        self.body = max(1, round(BODY_M * house.blocks_per_metre))
-        self.head = max(2, round(HEAD_M * house.blocks_per_metre))
+        self.body, self.head = person_blocks(house.blocks_per_metre)
         self.taken = [~room.floor(house.size) for room in house.rooms]
-        self.ends: list[list[np.ndarray]] = [[] for _ in house.rooms]
+        # The first corners of places where a person must be able to stand.
+        self.ends: list[list[tuple[int, int]]] = [[] for _ in house.rooms]
         for gap in house.gaps:
             if gap.kind != "window":
                 for number in gap.rooms:
-                    self.ends[number].append(_before(gap, house.rooms[number], house.size))
+                    self.end(house.rooms[number], _before(gap, ~self.taken[number], self.body))
 
     def close(self, room: BlockRoom, box: tuple[int, int, int, int]) -> None:
         """Take columns [x0, y0, x1, y1) of a room for good, as stairs do."""
         x0, y0, x1, y1 = box
         self.taken[room.number][x0:x1, y0:y1] = True
 
-    def end(self, room: BlockRoom, box: tuple[int, int, int, int]) -> None:
-        """Add a place that ways must reach."""
-        strip = np.zeros(self.house.size, bool)
-        strip[box[0] : box[2], box[1] : box[3]] = True
-        self.ends[room.number].append(strip)
+    def end(self, room: BlockRoom, corner: tuple[int, int]) -> None:
+        """Add a place that ways must reach, by its least column; nothing is put there."""
+        self.ends[room.number].append(corner)
 
     def stands(self, room: BlockRoom, cells: np.ndarray) -> np.ndarray:
         """Return those columns, int [N, 2], of cells [N, 3] of the house that hinder a person."""
@@ -49,16 +45,16 @@ class Ways:
         """Whether ways stay free when columns, int [N, 2], are taken too."""
         if not len(columns):
             return True
+        box = (slice(room.low[0], room.high[0]), slice(room.low[1], room.high[1]))
         after = self.taken[room.number].copy()
         after[tuple(columns.T)] = True
-        for body in range(self.body, 0, -1):
-            now = self._reached(room, after, body)
-            if now is not None:
-                return bool(now.sum() >= KEPT_SHARE * (~after).sum())
-            # Where a plan is too narrow for a person, its ways are kept for somebody thinner.
-            if self._reached(room, self.taken[room.number], body) is not None:
-                return False
-        return False
+        free = ~after[box]
+        # Places of the body's first corner, then all columns that it covers from there.
+        places = _eroded(free, self.body)
+        reached = self._reached(room, places)
+        if reached is None or reached.sum() < KEPT_PLACES * places.sum():
+            return False
+        return bool(_grown(reached, self.body).sum() >= KEPT_SHARE * free.sum())
 
     def take(self, room: BlockRoom, columns: np.ndarray) -> None:
         """Take columns, int [N, 2]."""
@@ -68,19 +64,20 @@ class Ways:
         """Return the columns, bool [X, Y] of the house, that nothing stands on."""
         return ~self.taken[room.number]
 
-    def _reached(self, room: BlockRoom, taken: np.ndarray, body: int) -> np.ndarray | None:
-        """Return the floor, bool of the room's box, that a body reaches from all doors, or None."""
-        box = (slice(room.low[0], room.high[0]), slice(room.low[1], room.high[1]))
-        free = ~taken[box]
-        # Places of the body's first corner, then all columns that it covers from there.
-        places = _eroded(free, body)
+    def _reached(self, room: BlockRoom, places: np.ndarray) -> np.ndarray | None:
+        """Return those of the places of a room's box that hang together with all ends, or None."""
         parts, count = connected_parts(places, corners=False)
-        ends = [end[box] for end in self.ends[room.number]]
-        for number in range(1, count + 1):
-            reached = _grown(parts == number, body)
-            if all((reached & end).any() for end in ends) and (ends or reached.any()):
-                return reached
-        return None
+        ends = np.array(self.ends[room.number]).reshape(-1, 2) - room.low
+        if not count:
+            return None
+        numbers = np.unique(parts[tuple(ends.T)]) if len(ends) else np.array([_largest(parts)])
+        if len(numbers) != 1 or numbers[0] == 0:
+            return None
+        return parts == numbers[0]
+
+
+def _largest(parts: np.ndarray) -> int:
+    return int(np.bincount(parts[parts > 0]).argmax())
 
 
 def _eroded(free: np.ndarray, body: int) -> np.ndarray:
@@ -102,15 +99,12 @@ def _grown(places: np.ndarray, body: int) -> np.ndarray:
     return covered
 
 
-def _before(gap: BlockGap, room: BlockRoom, size: Sequence[int]) -> np.ndarray:
-    """Return the columns of a room right before a gap, bool of the house's size."""
-    strip = np.zeros((size[0], size[1]), bool)
-    axis = gap.turn % 2
-    low, high = list(gap.low), list(gap.high)
-    inside = gap.low[axis] < room.low[axis]
-    low[axis] = room.low[axis] if inside else room.high[axis] - 1
-    if room.blocked and not inside and axis == 1:  # A door above the corridor, beside the bay.
-        low[axis] = gap.low[axis] - 1
-    high[axis] = low[axis] + 1
-    strip[low[0] : high[0], low[1] : high[1]] = True
-    return strip
+def _before(gap: BlockGap, floor: np.ndarray, body: int) -> tuple[int, int]:
+    """Return the least column of a person who stands in a room, bool [X, Y], before a gap."""
+    across, along = gap.turn % 2, 1 - gap.turn % 2
+    corner, beyond = [0, 0], [0, 0]
+    corner[along] = (gap.low[along] + gap.high[along] - body) // 2
+    beyond[along], beyond[across] = corner[along], gap.high[across]
+    is_beyond = beyond[across] < floor.shape[across] and floor[tuple(beyond)]
+    corner[across] = gap.high[across] if is_beyond else gap.low[across] - body
+    return corner[0], corner[1]
