@@ -77,6 +77,18 @@ def test_a_sample_is_shown(store, tmp_path, capsys, monkeypatch):
     assert Image.open(tmp_path / f"{KEY}.png").width > 1000
 
 
+def test_a_sheet_shows_pictures_with_their_labels_beside(store, tmp_path, capsys):
+    plain, both = tmp_path / "plain.png", tmp_path / "both.png"
+    assert w2m(["dataset", "sheet", str(store), "--width", "100", "--out", str(plain)]) == 0
+    assert w2m(["dataset", "sheet", str(store), "--width", "100", "--labels", "-o", str(both)]) == 0
+    capsys.readouterr()
+    one, two = np.asarray(Image.open(plain)), np.asarray(Image.open(both))
+    assert (one.shape[1], two.shape[1]) == (112, 218)
+    left, right = two[6:60, 6:106].astype(int), two[6:60, 112:212].astype(int)
+    assert np.abs(left - one[6:60, 6:106]).max() == 0
+    assert np.abs(left - right).mean() > 2
+
+
 def test_wrong_axes_are_seen_in_the_figure(made):
     from dataclasses import replace
 

@@ -1,10 +1,13 @@
 """Labels and masks are those of slow references, pixel by pixel and cell by cell."""
 
+from dataclasses import replace
+
 import label_reference as reference
 import numpy as np
 import pytest
 from label_worlds import CAMERA, poses_in, room_of_things
 
+from world2minecraft.coordinates import invert_rigid
 from world2minecraft.dataset.labels import (
     cast_depth,
     cells_of_pixels,
@@ -14,8 +17,9 @@ from world2minecraft.dataset.labels import (
     resized,
     unknown,
 )
-from world2minecraft.dataset.overlay import overlay_labels, plan_of
 from world2minecraft.dataset.region import RegionRule, region_in
+from world2minecraft.dataset.showing import label_image_of
+from world2minecraft.dataset.values import OccSample
 from world2minecraft.dataset.voxels import scene_voxels
 from world2minecraft.render import prepare_scene, render_volume
 from world2minecraft.types import Camera
@@ -147,14 +151,20 @@ def test_depth_of_another_size_is_refused(world):
         )
 
 
-def test_an_overlay_shows_classes_where_cells_are(world):
+def test_the_image_of_a_samples_labels_is_that_of_the_cells_its_pixels_see(world):
     volume, scene, voxels = world
     (pose,) = poses_in(volume, 1, 7)
     picture = render_volume(scene, CAMERA, pose)
     region = region_in(voxels, pose, RULE)
     occ = label_image(voxels, region, CAMERA, pose, picture.depth_m)
     cells = cells_of_pixels(voxels, region, CAMERA, pose, picture.depth_m)
-    drawn = overlay_labels(picture.colour, occ, cells)
-    assert drawn.shape == picture.colour.shape
-    assert (drawn[cells < 0] <= picture.colour[cells < 0]).all()
-    assert plan_of(occ, 2).shape == (44, 48, 3)
+    told = occ.labels.reshape(-1)[np.maximum(cells, 0)]
+    sample = OccSample("a-b-0", "a", "b", 0, CAMERA, pose, occ, voxels.fine_classes)
+    for depth_m, share in ((picture.depth_m, 0.98), (None, 0.85)):
+        image = label_image_of(replace(sample, depth_m=depth_m))
+        assert (image == told)[cells >= 0].mean() > share
+    x, y, z = (invert_rigid(region.region_to_room) @ pose)[:3, 3] / region.voxel_m
+    labels = np.array(occ.labels)
+    labels[int(x), int(y), int(z)] = 11  # The camera stands in a cell that holds something.
+    inside = replace(sample, occ=replace(occ, labels=labels))
+    assert np.array_equal(label_image_of(inside), label_image_of(sample))

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 w2m dataset sheet DATA                                    48 of its pictures, to sheet.png
 w2m dataset sheet DATA --split test --most 120 --columns 12
+w2m dataset sheet DATA --labels                           each beside itself with its labels
 w2m dataset sheet tour.jsonl --world WORLDS/house_0001    what a tour would show
 w2m dataset sheet tour.jsonl --world WORLD --first        frame after frame from the first on
 """
@@ -30,6 +31,9 @@ First = Annotated[
     bool, typer.Option("--first", help="The first ones in a row, not spread over all.")
 ]
 Split = Annotated[str, typer.Option("--split", help="Of a data set: train or test.")]
+Labels = Annotated[
+    bool, typer.Option("--labels", help="Of a data set: each picture again, its labels over it.")
+]
 Hour = Annotated[float | None, typer.Option("--hour", help="Of a tour: 0 to 24, the light.")]
 
 
@@ -42,6 +46,7 @@ def run(
     width: Width = 240,
     first: First = False,
     split: Split = "",
+    labels: Labels = False,
     hour: Hour = None,
 ) -> None:
     """Draw one page of pictures, to look at what a data set holds or a tour will give.
@@ -57,7 +62,7 @@ def run(
     if min(most, columns) < 1 or not 16 <= width <= 2000:
         raise UsageError("--most and --columns are 1 or more, --width is 16 to 2000")
     if place.is_dir():
-        pictures = _of_data(place, most, first, split)
+        pictures = _of_data(place, most, first, split, labels)
     elif world is None:
         raise UsageError(f"{place} is a tour; name what it is a tour of: --world WORLD")
     else:
@@ -74,8 +79,9 @@ def _chosen(count: int, most: int, first: bool) -> list[int]:
 
 
 def _of_data(
-    folder: Path, most: int, first: bool, split: str
+    folder: Path, most: int, first: bool, split: str, labels: bool
 ) -> "Iterable[tuple[np.ndarray, str]]":
+    from world2minecraft.dataset.showing import labelled_picture
     from world2minecraft.dataset.store import open_store
     from world2minecraft.errors import InputError
 
@@ -83,9 +89,12 @@ def _of_data(
     keys = store.keys(split or None)
     for number in _chosen(len(keys), most, first):
         sample = store[keys[number]]
-        if sample.colour is None:
-            raise InputError(folder, "has labels alone, no pictures; w2m dataset show draws those")
-        yield sample.colour, keys[number]
+        if sample.colour is not None:
+            yield sample.colour, keys[number]
+        elif not labels:
+            raise InputError(folder, "has labels alone, no pictures; add --labels to see those")
+        if labels:
+            yield labelled_picture(sample), f"{keys[number]} labels"
 
 
 def _of_tour(

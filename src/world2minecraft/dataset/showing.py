@@ -51,25 +51,55 @@ def seen_in_cells(sample: OccSample) -> float | None:
     """
     if sample.depth_m is None:
         return None
-    region = sample.occ.region
-    camera_to_region = invert_rigid(region.region_to_room) @ sample.camera_to_room
-    finite = np.isfinite(sample.depth_m) & (sample.depth_m > 0)
-    behind = np.where(finite, sample.depth_m + np.float32(INTO_CELL * region.voxel_m), 0)
-    points, _ = lift_depth(behind.astype(np.float32), sample.camera, camera_to_region)
-    cells = np.floor(points / np.float32(region.voxel_m)).astype(np.int64)
-    cells = cells[np.all((cells >= 0) & (cells < region.shape), axis=1)]
+    _, cells = _cells_behind(sample, sample.depth_m)
     if not len(cells):
         return None
     return float(_widened(sample.occ.occupied)[tuple(cells.T)].mean())
 
 
 def label_image_of(sample: OccSample) -> np.ndarray:
-    """Return the label that each pixel meets first in the region, uint8 [H, W]; 0 for none."""
+    """Return the label of what each pixel sees, uint8 [H, W]; 0 where the region does not hold it.
+
+    It is that of the cell behind the depth; where there is none, of the first cell that the ray
+    meets. The cell that the camera itself is in hides nothing.
+    """
+    region, labels = sample.occ.region, np.array(sample.occ.labels)
+    camera_to_region = _camera_to_region(sample)
+    own = np.floor(camera_to_region[:3, 3] / region.voxel_m).astype(np.int64)
+    if ((own >= 0) & (own < region.shape)).all():
+        labels[tuple(own)] = 0
+    hits = cast_voxels(labels, sample.camera, camera_to_region, voxel_m=region.voxel_m)
+    met = labels.reshape(-1)[np.maximum(hits.voxel_index, 0)]
+    met = np.where(hits.voxel_index >= 0, met, 0).astype(np.uint8)
+    if sample.depth_m is not None:
+        pixels, cells = _cells_behind(sample, sample.depth_m)
+        behind = sample.occ.labels[tuple(cells.T)]
+        met.reshape(-1)[pixels[behind > 0]] = behind[behind > 0]
+    return met
+
+
+def _camera_to_region(sample: OccSample) -> np.ndarray:
+    return invert_rigid(sample.occ.region.region_to_room) @ sample.camera_to_room
+
+
+def _cells_behind(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return pixels [N] of a flat image, and the cells [N, 3] a little behind what they see."""
     region = sample.occ.region
-    camera_to_region = invert_rigid(region.region_to_room) @ sample.camera_to_room
-    hits = cast_voxels(sample.occ.labels, sample.camera, camera_to_region, voxel_m=region.voxel_m)
-    met = sample.occ.labels.reshape(-1)[np.maximum(hits.voxel_index, 0)]
-    return np.where(hits.voxel_index >= 0, met, 0).astype(np.uint8)
+    finite = np.isfinite(depth_m) & (depth_m > 0)
+    behind = np.where(finite, depth_m + np.float32(INTO_CELL * region.voxel_m), 0)
+    points, pixels = lift_depth(behind.astype(np.float32), sample.camera, _camera_to_region(sample))
+    cells = np.floor(points / np.float32(region.voxel_m)).astype(np.int64)
+    within = np.all((cells >= 0) & (cells < region.shape), axis=1)
+    return pixels[within], cells[within]
+
+
+def labelled_picture(sample: OccSample) -> np.ndarray:
+    """Return the picture with its labels over it, uint8 [H, W, 3]; on grey where there is none."""
+    size = (sample.camera.height_px, sample.camera.width_px)
+    colour = np.full((*size, 3), PANEL, np.uint8) if sample.colour is None else sample.colour
+    labels = label_image_of(sample)
+    mixed = LABEL_SHARE * _painted(labels) + (1 - LABEL_SHARE) * colour
+    return np.where((labels > 0)[..., None], mixed, colour).astype(np.uint8)
 
 
 def _panels(sample: OccSample) -> list[tuple[str, np.ndarray, bool]]:
@@ -78,14 +108,11 @@ def _panels(sample: OccSample) -> list[tuple[str, np.ndarray, bool]]:
     if colour is None:
         colour = np.full((*size, 3), PANEL, np.uint8)
     seen, far_m = _depth_colours(sample, size)
-    labels = label_image_of(sample)
-    mixed = LABEL_SHARE * _painted(labels) + (1 - LABEL_SHARE) * colour
-    over = np.where((labels > 0)[..., None], mixed, colour)
     title = "picture" if sample.colour is not None else "picture: none"
     return [
         (f"{title}, {size[1]} x {size[0]}", colour, True),
         (f"depth, 0 to {far_m:.1f} m" if far_m else "depth: none", seen, True),
-        ("labels, as the camera meets them", over.astype(np.uint8), True),
+        ("labels, as the camera meets them", labelled_picture(sample), True),
         ("the region from above, without its ceiling", _from_above(sample), False),
     ]
 
@@ -135,7 +162,7 @@ def _placed(
 def _draw_view(sheet: Sheet, sample: OccSample, corner: tuple[float, float], scale: float) -> None:
     """Draw, over the region from above, what the middle row of the image sees of it."""
     region, camera = sample.occ.region, sample.camera
-    camera_to_region = invert_rigid(region.region_to_room) @ sample.camera_to_room
+    camera_to_region = _camera_to_region(sample)
     edges = np.array([[-camera.cx_px, 0], [camera.width_px - camera.cx_px, 0]]) / camera.fx_px
     steps = np.linspace(0, VIEW_M, 200)
     for x, y in edges:
