@@ -1,0 +1,242 @@
+"""One run of training, wholly said: ``RunConfig``, and the YAML that lies beside its results.
+
+The same file trains the same network again. Settings that are not there keep their defaults; one
+that nobody knows is refused, with the nearest name.
+"""
+
+from contextlib import suppress
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+
+from world2minecraft.errors import DamagedFileError, UnknownNameError, UsageError
+from world2minecraft.files import read_bytes, write_text
+
+MAX_BYTES = 1 << 20
+
+
+class Grid(NamedTuple):
+    """The cells that a network labels: x right, y forward, z up; 4.8 x 4.8 x 2.88 m."""
+
+    shape: tuple[int, int, int]
+    voxel_m: float
+
+
+GRIDS = {"0.16": Grid((30, 30, 18), 0.16), "0.08": Grid((60, 60, 36), 0.08)}
+SCHEDULES = ("cosine", "step", "constant")
+PRECISIONS = ("auto", "bf16", "16", "32")
+CLASS_WEIGHTS = ("frequency", "monoscene", "even")
+
+
+@dataclass(frozen=True)
+class DataSource:
+    """A data set, and how often it is drawn from, beside the others.
+
+    Example:
+        >>> DataSource.parsed("sets/NYU:2.5")
+        DataSource(path='sets/NYU', weight=2.5)
+    """
+
+    path: str
+    weight: float = 1.0
+
+    def __post_init__(self):
+        if not self.path:
+            raise UsageError("a data set needs a path; give --data DIR or --data DIR:WEIGHT")
+        if not self.weight > 0:
+            raise UsageError(f"the weight of {self.path} must be above 0, not {self.weight:g}")
+
+    @classmethod
+    def parsed(cls, text: str) -> "DataSource":
+        """Return what ``DIR`` or ``DIR:WEIGHT`` means; a colon before no number is the path's."""
+        path, colon, tail = text.rpartition(":")
+        try:
+            return cls(path, float(tail)) if colon else cls(text)
+        except ValueError:
+            return cls(text)
+
+
+@dataclass(frozen=True)
+class RunConfig:
+    """A run. Sides are pixels, rates a step, shares from 0 to 1."""
+
+    network: str
+    data: tuple[DataSource, ...]
+    size: str = "small"
+    backbone: str = (
+        ""  # A model of transformers for pictures, hf:ID; the network's own where empty.
+    )
+    grid: str = "0.16"
+    image: tuple[int, int] = (320, 240)  # Width, height: half of NYUv2's, a guess for 0.16 m.
+    steps: int = 2000  # The benchmark's.
+    batch: int = 4  # MonoScene's.
+    learning_rate: float = 5e-4  # A guess for small networks from nothing; MonoScene's is 1e-4.
+    weight_decay: float = 1e-4  # MonoScene's.
+    schedule: str = "cosine"
+    warmup_steps: int = 100  # A guess: 5 % of the steps.
+    clip_norm: float = 1.0  # A guess; 0 clips nothing.
+    precision: str = "auto"
+    flip: float = 0.5  # MonoScene's share of mirrored frames,
+    jitter: float = 0.4  # and how far its colours are changed.
+    class_weights: str = "frequency"
+    val_share: float = 0.1  # Of training scenes; 0 validates on the test split, as MonoScene does.
+    validate_every: int = 200
+    validate_frames: int = 100  # At most, spread evenly.
+    patience: int = 0  # Validations without a better mIoU before it stops; 0 never stops.
+    checkpoint_every: int = 100
+    seed: int = 0
+    threads: int = 0  # Of the CPU; 0 takes all.
+    workers: int = 0  # Processes that make batches.
+
+    def __post_init__(self):
+        put = object.__setattr__
+        put(self, "data", tuple(self.data))
+        put(self, "image", tuple(int(side) for side in self.image))
+        _one_of("grid", self.grid, GRIDS)
+        _one_of("schedule", self.schedule, SCHEDULES)
+        _one_of("precision", self.precision, PRECISIONS)
+        _one_of("class_weights", self.class_weights, CLASS_WEIGHTS)
+        if not self.data:
+            raise UsageError("nothing to train on; give --data DIR, as w2m dataset build makes one")
+        if len(self.image) != 2:
+            raise UsageError(f"image is width and height, not {self.image}")
+        for name, (low, high) in _RANGES.items():
+            values = getattr(self, name)
+            for value in values if isinstance(values, tuple) else (values,):
+                if not low <= value <= high:
+                    raise UsageError(f"{name} must be {low:g} to {high:g}, not {value:g}")
+
+    @property
+    def cells(self) -> Grid:
+        """The grid that ``grid`` names."""
+        return GRIDS[self.grid]
+
+    def with_preset(self, name: str) -> "RunConfig":
+        """Return the run with a preset's settings. Raises UnknownNameError."""
+        _one_of("preset", name, PRESETS)
+        return replace(self, **PRESETS[name])
+
+
+_RANGES: dict[str, tuple[float, float]] = {
+    "image": (16, 4096),
+    "steps": (1, 10**8),
+    "batch": (1, 4096),
+    "learning_rate": (1e-9, 10),
+    "weight_decay": (0, 10),
+    "warmup_steps": (0, 10**8),
+    "clip_norm": (0, 1e6),
+    "flip": (0, 1),
+    "jitter": (0, 1),
+    "val_share": (0, 0.9),
+    "validate_every": (1, 10**8),
+    "validate_frames": (1, 10**7),
+    "patience": (0, 10**6),
+    "checkpoint_every": (1, 10**8),
+    "seed": (0, 2**31 - 1),
+    "threads": (0, 1024),
+    "workers": (0, 256),
+}
+PRESETS: dict[str, dict[str, Any]] = {
+    "smoke": {
+        "size": "tiny", "image": (96, 72), "steps": 20, "batch": 2, "warmup_steps": 2,
+        "validate_every": 10, "validate_frames": 8, "checkpoint_every": 10,
+    },
+    "1k": {"size": "small", "grid": "0.16", "image": (320, 240), "steps": 2000, "batch": 4},
+    "8k": {  # MonoScene's recipe on NYUv2's grid: 30 epochs of the paper's 6,100 frames.
+        "size": "full", "grid": "0.08", "image": (640, 480), "steps": 45_750, "batch": 4,
+        "learning_rate": 1e-4, "schedule": "step", "warmup_steps": 0, "class_weights": "monoscene",
+        "validate_every": 1525, "validate_frames": 500, "checkpoint_every": 500,
+    },
+}  # fmt: skip
+
+
+def config_text(config: RunConfig) -> str:
+    """Return a run as YAML, its settings in their order."""
+    plain = asdict(config)
+    plain["data"] = [asdict(one) for one in config.data]
+    plain["image"] = list(config.image)
+    return yaml.safe_dump(plain, sort_keys=False)
+
+
+def write_config(path: str | Path, config: RunConfig) -> None:
+    """Write a run as YAML. Raises OutputError."""
+    write_text(path, config_text(config))
+
+
+def read_config(path: str | Path) -> RunConfig:
+    """Read a run from YAML.
+
+    Raises:
+        InputError: the file is missing. DamagedFileError: it is no YAML of settings.
+        UnknownNameError: a setting has no such name. UsageError: a value is out of its range.
+    """
+    return parse_config(read_bytes(path, MAX_BYTES).decode("utf-8", "replace"), str(path))
+
+
+def parse_config(text: str, source: str) -> RunConfig:
+    """Return the run that a YAML text says; ``source`` names it in messages."""
+    try:
+        plain = yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise DamagedFileError(source, f"is no YAML ({' '.join(str(error).split())})") from error
+    if not isinstance(plain, dict):
+        raise DamagedFileError(source, "holds no settings; write network: NAME, data: ...")
+    known = {entry.name: entry for entry in fields(RunConfig)}
+    for name in plain:
+        if name not in known:
+            raise UnknownNameError("setting", str(name), known)
+    if missing := [name for name in ("network", "data") if name not in plain]:
+        raise DamagedFileError(source, f"says no {', '.join(missing)}")
+    return RunConfig(**{name: _value(source, name, plain[name]) for name in plain})
+
+
+def _value(source: str, name: str, value: Any) -> Any:
+    """Return a YAML value as the setting's type. Raises DamagedFileError."""
+    if name == "data":
+        return tuple(
+            _source(source, one) for one in (value if isinstance(value, list) else [value])
+        )
+    if name == "image":
+        if isinstance(value, list) and all(type(side) is int for side in value):
+            return tuple(value)
+        raise DamagedFileError(source, f"image must be [width, height], not {value!r}")
+    wanted = _TYPES[name]
+    if wanted is str and type(value) in (int, float):
+        value = str(value)  # YAML takes 0.16 and 32 for numbers.
+    if wanted is float and type(value) is int:
+        value = float(value)
+    if wanted is float and isinstance(value, str):  # and 1e-4 for a text.
+        with suppress(ValueError):
+            value = float(value)
+    if type(value) is not wanted:
+        raise DamagedFileError(source, f"{name} must be {_WORDS[wanted]}, not {value!r}")
+    return value
+
+
+def _source(source: str, value: Any) -> DataSource:
+    if isinstance(value, str):
+        return DataSource.parsed(value)
+    if not isinstance(value, dict) or not isinstance(value.get("path"), str):
+        raise DamagedFileError(source, f"data must be paths, or path and weight, not {value!r}")
+    for name in value:
+        if name not in ("path", "weight"):
+            raise UnknownNameError("setting of data", str(name), ("path", "weight"))
+    weight = value.get("weight", 1.0)
+    if type(weight) not in (int, float):
+        raise DamagedFileError(source, f"a weight must be a number, not {weight!r}")
+    return DataSource(value["path"], float(weight))
+
+
+def _one_of(kind: str, name: str, known: Any) -> None:
+    if name not in known:
+        raise UnknownNameError(kind, str(name), known)
+
+
+_WORDS = {str: "a text", int: "a whole number", float: "a number"}
+_TYPES: dict[str, type] = {
+    entry.name: {"str": str, "int": int, "float": float}.get(str(entry.type), entry.type)
+    for entry in fields(RunConfig)
+    if entry.name not in ("data", "image")
+}  # type: ignore[assignment]

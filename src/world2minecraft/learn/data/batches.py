@@ -1,0 +1,114 @@
+"""Frames as tensors: batches that a run draws, and batches in order for validation."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import torch
+from torch.utils.data import DataLoader, Dataset
+
+from world2minecraft.learn.batch import OccInput, OccTarget
+from world2minecraft.learn.config import Grid, RunConfig
+from world2minecraft.learn.data.augment import augmented
+from world2minecraft.learn.data.cache import Frames
+from world2minecraft.learn.data.frames import Frame
+from world2minecraft.learn.data.mixing import Draws, draw_rng
+
+
+class Batch(NamedTuple):
+    """What a step takes."""
+
+    inputs: OccInput
+    target: OccTarget
+
+
+class TrainingPart(NamedTuple):
+    """The training frames of one set."""
+
+    frames: Frames
+    rows: list[int]
+
+
+class DrawnFrames(Dataset):
+    """The frames of a run's draws from one on, each changed as its draw says."""
+
+    def __init__(
+        self, parts: Sequence[TrainingPart], draws: Draws, config: RunConfig, first: int = 0
+    ):
+        self._parts, self._draws, self._config, self._first = parts, draws, config, first
+
+    def __len__(self) -> int:
+        return len(self._draws.source) - self._first
+
+    def __getitem__(self, index: int) -> Frame:
+        draw, config = self._first + index, self._config
+        part = self._parts[self._draws.source[draw]]
+        frame = part.frames[part.rows[self._draws.row[draw]]]
+        return augmented(
+            frame, config.cells.voxel_m, config.flip, config.jitter, draw_rng(config.seed, draw)
+        )
+
+
+class RowFrames(Dataset):
+    """Some rows of a set, in their order and as they are."""
+
+    def __init__(self, frames: Frames, rows: Sequence[int]):
+        self._frames, self._rows = frames, rows
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __getitem__(self, index: int) -> Frame:
+        return self._frames[self._rows[index]]
+
+
+class Stacked:
+    """Makes a batch of frames; a class, so that worker processes can be sent it."""
+
+    def __init__(self, grid: Grid):
+        self._grid = grid
+
+    def __call__(self, frames: list[Frame]) -> Batch:
+        """Return the frames one upon the other."""
+        shape, voxel_m = self._grid
+        image = torch.from_numpy(np.stack([frame.image for frame in frames]))
+        inputs = OccInput(
+            image=image.permute(0, 3, 1, 2).float().div_(255).contiguous(),
+            intrinsics=_stacked(frames, "intrinsics"),
+            camera_to_grid=_stacked(frames, "camera_to_grid"),
+            grid_shape=shape,
+            voxel_m=voxel_m,
+            depth_m=_stacked(frames, "depth_m"),
+        )
+        target = OccTarget(_stacked(frames, "labels").long(), _stacked(frames, "in_frustum"))
+        return Batch(inputs, target)
+
+
+def drawn_batches(
+    parts: Sequence[TrainingPart], draws: Draws, config: RunConfig, first_step: int = 0
+) -> DataLoader:
+    """Return the batches of a run from a step on."""
+    frames = DrawnFrames(parts, draws, config, first_step * config.batch)
+    return _loader(frames, config, config.workers)
+
+
+def ordered_batches(frames: Frames, rows: Sequence[int], config: RunConfig) -> DataLoader:
+    """Return batches of some rows in their order; the last may be smaller."""
+    return _loader(RowFrames(frames, rows), config, 0)
+
+
+def _loader(frames: Dataset, config: RunConfig, workers: int) -> DataLoader:
+    return DataLoader(
+        frames,
+        batch_size=config.batch,
+        shuffle=False,
+        num_workers=workers,
+        persistent_workers=workers > 0,
+        collate_fn=Stacked(config.cells),
+        # Without a generator of its own a loader draws from torch's at each start.
+        generator=torch.Generator().manual_seed(config.seed),
+    )
+
+
+def _stacked(frames: list[Frame], name: str) -> torch.Tensor:
+    return torch.from_numpy(np.stack([getattr(frame, name) for frame in frames]))

@@ -1,0 +1,43 @@
+"""How often each class is, and what weight the loss gives it for that.
+
+- ``frequency``: ``1 / ln(1.02 + share)`` (Paszke et al. 2016, ENet), scaled so that the 11 classes
+  have mean 1: a rare class counts for more, and the constant bounds by how much.
+- ``monoscene``: 0.05 for empty cells, 1 for all others.
+- ``even``: 1 for all.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.errors import UnknownNameError
+
+BOUND = 1.02  # ENet's: the rarest class weighs 50 times what one of all cells would.
+EMPTY_WEIGHT = 0.05  # MonoScene's.
+
+
+def class_counts(grids: Iterable[np.ndarray]) -> np.ndarray:
+    """Return how many cells have each class, int64 [12]; 255 counts nowhere."""
+    total = np.zeros(256, np.int64)
+    for labels in grids:
+        total += np.bincount(labels.reshape(-1), minlength=256)
+    return total[:CLASS_COUNT]
+
+
+def class_weights(counts: np.ndarray, kind: str) -> np.ndarray:
+    """Return the weight of each class, float32 [12].
+
+    Example:
+        >>> class_weights(np.array([90, 5, 5] + [0] * 9), "monoscene")[:2].tolist()
+        [0.05000000074505806, 1.0]
+    """
+    weights = np.ones(CLASS_COUNT)
+    if kind == "frequency":
+        weights = 1 / np.log(BOUND + counts / max(counts.sum(), 1))
+        weights /= weights[1:].mean()
+    elif kind == "monoscene":
+        weights[0] = EMPTY_WEIGHT
+    elif kind != "even":
+        raise UnknownNameError("kind of class weights", kind, ("frequency", "monoscene", "even"))
+    return weights.astype(np.float32)
