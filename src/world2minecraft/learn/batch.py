@@ -39,6 +39,9 @@ class OccTarget:
 
     labels: Tensor  # int64 [B, X, Y, Z], 0 to 11 or 255
     in_frustum: Tensor  # bool [B, X, Y, Z]: the cell's centre falls into the picture
+    # float32 [B, H, W], 0 where there is none: what a depth branch is to say, where that is not
+    # the depth that the network is given.
+    depth_m: Tensor | None = None
 
     def to(self, device: torch.device | str) -> "OccTarget":
         """Return the same with its tensors on a device."""
