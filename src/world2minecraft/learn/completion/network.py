@@ -1,0 +1,106 @@
+"""The completion network: a 3D U-Net that works at half resolution and speaks at full.
+
+Two cells a side become one at its entry, so that a room costs an eighth. The last layer sees the
+full cells again beside what the body says of them; without it labels came in stripes of two cells.
+"""
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor, nn
+
+from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.label.channels import CHANNELS
+
+MULTIPLE = 8  # Sides of what goes in are whole multiples of this.
+
+
+@dataclass(frozen=True)
+class CompletionSize:
+    """Channels at a half, a quarter and an eighth of the resolution, and at full."""
+
+    half: int = 40
+    quarter: int = 72
+    eighth: int = 112
+    full: int = 16
+
+
+TINY = CompletionSize(8, 12, 16, 8)
+
+
+class Block(nn.Module):
+    """Two 3x3x3 convolutions around which the input goes on."""
+
+    def __init__(self, channels: int, dilation: int = 1):
+        super().__init__()
+        self.body = nn.Sequential(
+            nn.Conv3d(channels, channels, 3, padding=1, bias=False),
+            nn.BatchNorm3d(channels, momentum=0.03),
+            nn.ReLU(inplace=True),
+            nn.Conv3d(channels, channels, 3, padding=dilation, dilation=dilation, bias=False),
+            nn.BatchNorm3d(channels, momentum=0.03),
+        )
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Return a tensor of the same shape."""
+        return torch.relu(x + self.body(x))
+
+
+class Context(nn.Module):
+    """Adds what the whole room is like to each of its cells."""
+
+    def __init__(self, channels: int):
+        super().__init__()
+        self.mix = nn.Sequential(
+            nn.Conv3d(channels, channels, 1),
+            nn.ReLU(inplace=True),
+            nn.Conv3d(channels, channels, 1),
+        )
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Return a tensor of the same shape."""
+        return x + self.mix(x.mean(dim=(2, 3, 4), keepdim=True))
+
+
+class CompletionNet(nn.Module):
+    """``forward`` takes float [B, CHANNELS, X, Y, Z] and gives logits [B, 12, X, Y, Z].
+
+    Sides are whole multiples of ``MULTIPLE``.
+    """
+
+    def __init__(self, size: CompletionSize | None = None):
+        super().__init__()
+        s = size or CompletionSize()
+        self.size = s
+        self.enter = _joined(nn.Conv3d(CHANNELS, s.half, 2, stride=2, bias=False), s.half)
+        self.half_in = Block(s.half)
+        self.to_quarter = _joined(nn.Conv3d(s.half, s.quarter, 2, stride=2, bias=False), s.quarter)
+        self.quarter_in = nn.Sequential(Block(s.quarter), Block(s.quarter, 2))
+        self.to_eighth = _joined(nn.Conv3d(s.quarter, s.eighth, 2, stride=2, bias=False), s.eighth)
+        self.eighth = nn.Sequential(Block(s.eighth), Context(s.eighth), Block(s.eighth, 2))
+        self.from_eighth = nn.ConvTranspose3d(s.eighth, s.quarter, 2, stride=2)
+        self.quarter_out = Block(s.quarter)
+        self.from_quarter = nn.ConvTranspose3d(s.quarter, s.half, 2, stride=2)
+        self.half_out = nn.Sequential(Block(s.half), Block(s.half))
+        self.from_half = nn.ConvTranspose3d(s.half, s.full, 2, stride=2)
+        self.beside = nn.Conv3d(CHANNELS, s.full // 2, 1)
+        wide = s.full + s.full // 2
+        self.last = nn.Sequential(
+            nn.ReLU(inplace=True),
+            nn.Conv3d(wide, s.full, 3, padding=1),
+            nn.ReLU(inplace=True),
+            nn.Conv3d(s.full, CLASS_COUNT, 1),
+        )
+
+    def forward(self, cells: Tensor) -> Tensor:
+        """Return the logits of the 12 classes of each cell."""
+        half = self.half_in(self.enter(cells))
+        quarter = self.quarter_in(self.to_quarter(half))
+        eighth = self.eighth(self.to_eighth(quarter))
+        quarter = self.quarter_out(quarter + self.from_eighth(eighth))
+        half = self.half_out(half + self.from_quarter(quarter))
+        return self.last(torch.cat([self.from_half(half), self.beside(cells)], dim=1))
+
+
+def _joined(layer: nn.Module, channels: int) -> nn.Sequential:
+    return nn.Sequential(layer, nn.BatchNorm3d(channels, momentum=0.03), nn.ReLU(inplace=True))

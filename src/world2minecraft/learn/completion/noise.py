@@ -1,0 +1,89 @@
+"""How a virtual scan errs: drawn once a scan, harsh enough that a quarter of the surface is false.
+
+On real single frames 23 % of fused surface cells are empty in the truth: depth errs, poses err,
+scale is wrong, and who labelled them fitted furniture by hand. Here the same comes about by poses
+that are off, depth that is scaled wrongly from frame to frame, and a truth that lies a little
+beside what was seen. ``python -m benchmarks.check_completion`` prints the share.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_COUNT, SemanticClass
+from world2minecraft.rooms.sensor import SENSORS, Sensor
+
+MISFIT_M = {"walk": 0.012, "few": 0.04, "single": 0.033}  # Of a quarter false, measured.
+PATCH_SHARE = 1 / 80  # Of the width: 8 px at 640, the patches in which label images err.
+
+
+@dataclass(frozen=True)
+class ScanNoise:
+    """What is wrong with one scan.
+
+    ``misfit_m`` is how far the truth lies beside the frame of the scan, ``glass`` the share of
+    window pixels without depth, ``blots`` the mean number of blots without depth in a frame.
+    ``label_error`` is None where the scan has no label images.
+    """
+
+    sensor: Sensor
+    frame_scale: float
+    scan_scale: float
+    misfit_m: np.ndarray  # float64 [3]
+    yaw_error_deg: float
+    glass: float
+    blots: float
+    label_error: float | None
+
+
+def draw_noise(rng: np.random.Generator, kind: str) -> ScanNoise:
+    """Draw the noise of a scan of a kind: a single picture lies farthest beside its truth."""
+    level = float(rng.uniform(0.05, 1.85))
+    sensor = replace(
+        SENSORS["rgbd"],
+        sigma_m=0.0012 * float(rng.uniform(0.5, 3)),
+        sigma_growth=0.0019 * float(rng.uniform(0.5, 2)),
+        hole_share=float(rng.uniform(0, 0.08)),
+        edge_px=int(rng.integers(0, 2)),
+        jitter_m=0.019 * level,
+        jitter_deg=0.5 * level,
+    )
+    return ScanNoise(
+        sensor=sensor,
+        frame_scale=0.008 * level * float(rng.uniform(0, 2)),
+        scan_scale=1 + 0.008 * float(rng.standard_normal()),
+        misfit_m=rng.standard_normal(3) * MISFIT_M[kind] * level,
+        yaw_error_deg=float(rng.standard_normal()) * 0.4,
+        glass=float(rng.choice([0.0, 0.6, 1.0], p=[0.45, 0.2, 0.35])),
+        blots=float(rng.choice([0.0, 3.0], p=[0.6, 0.4])),
+        label_error=float(rng.uniform(0, 0.35)) if rng.random() < 0.45 else None,
+    )
+
+
+def lost_pixels(
+    noise: ScanNoise, labels: np.ndarray, depth_m: np.ndarray, rng: np.random.Generator
+) -> np.ndarray:
+    """Return which pixels lose their depth to glass and to blots, bool [H, W]."""
+    lost = (labels == SemanticClass.WINDOW) & (rng.random(labels.shape) < noise.glass)
+    height, width = labels.shape
+    rows, columns = np.mgrid[:height, :width]
+    for _ in range(rng.poisson(noise.blots)):
+        middle = rng.uniform(0, 1, 2) * labels.shape
+        radii = rng.uniform(0.02, 0.12, 2) * width
+        lost |= ((rows - middle[0]) / radii[0]) ** 2 + ((columns - middle[1]) / radii[1]) ** 2 < 1
+    return lost
+
+
+def wrong_labels(labels: np.ndarray, error: float, rng: np.random.Generator) -> np.ndarray:
+    """Return a label image of which a share, in patches, says another class."""
+    height, width = labels.shape
+    side = max(round(width * PATCH_SHARE), 1)
+    shape = (height // side + 1, width // side + 1)
+    wrong, shift = rng.random(shape) < error, rng.integers(1, CLASS_COUNT - 1, shape)
+    wrong, shift = (
+        values.repeat(side, axis=0).repeat(side, axis=1)[:height, :width]
+        for values in (wrong, shift)
+    )
+    other = (labels.astype(np.int64) - 1 + shift) % (CLASS_COUNT - 1) + 1
+    told = (labels > 0) & (labels < CLASS_COUNT)
+    return np.where(wrong & told, other, labels).astype(np.uint8)
