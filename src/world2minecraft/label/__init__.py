@@ -28,6 +28,7 @@ LABELLERS = Registry(
     {
         "geometric": "world2minecraft.label.geometric:GeometricLabeller",
         "votes": "world2minecraft.label.votes:VotesLabeller",
+        "completion": "world2minecraft.label.completion:CompletionLabeller",
     },
 )
 

@@ -16,6 +16,7 @@ from world2minecraft.errors import CaptureError
 from world2minecraft.files import write_npz
 from world2minecraft.fuse import CleanParameters, read_out, remove_floaters
 from world2minecraft.label.channels import Sight, sight_of
+from world2minecraft.label.completion import hint_of
 from world2minecraft.label.geometric import GeometricLabeller
 from world2minecraft.learn.completion.looks import (
     TOUR_VIEWS,
@@ -30,7 +31,7 @@ from world2minecraft.metrics.truth import carry_truth
 from world2minecraft.rooms.photo import prepare_photos
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.tour import plan_tour
-from world2minecraft.types import Camera, FusedEvidence, OccupancyGrid
+from world2minecraft.types import Camera, FusedEvidence
 
 LOOKS: tuple[LookKind, ...] = ("walk", "few", "single", "single", "single")
 SHELL_CELLS = 2  # Cells of wall, slab and ceiling around a room that count as its own.
@@ -81,7 +82,7 @@ def sample_of(
 ) -> Sample:
     """Return the sample of a fused look."""
     grid = remove_floaters(read_out(evidence), CleanParameters())
-    hint = hint_of(grid, evidence) if look.in_room_axes else None
+    hint = hint_of(*GeometricLabeller().traced(grid, evidence)) if look.in_room_axes else None
     truth_to_grid = look.room_to_grid.copy()
     truth_to_grid[:3, :3] = truth_to_grid[:3, :3] @ rotation_about_z(noise.yaw_error_deg)[:3, :3]
     truth_to_grid[:3, 3] += noise.misfit_m
@@ -96,15 +97,6 @@ def sample_of(
     there = truth.reshape(-1)[sight.at]
     false = float((there == 0).sum() / max((there != UNKNOWN).sum(), 1))
     return Sample(sight, truth, look.kind, hint is not None, false)
-
-
-def hint_of(grid: OccupancyGrid, evidence: FusedEvidence) -> np.ndarray:
-    """Return uint8 [X, Y, Z]: what the geometric labeller calls each cell that it keeps."""
-    base, origin = GeometricLabeller().traced(grid, evidence)
-    hint = np.zeros(grid.shape, np.uint8)
-    kept = base.occupied
-    hint.reshape(-1)[origin[kept]] = base.labels[kept]
-    return hint
 
 
 def cut(sight: Sight, start: np.ndarray, shape: tuple[int, int, int]) -> Sight:

@@ -69,6 +69,7 @@ class Trainer:
         for group in self.optimiser.param_groups:
             group["lr"] = self.rate_at(self.step)
         rng = np.random.default_rng([self.run.seed, self.step])
+        torch.manual_seed(int(rng.integers(1 << 62)))  # Of the cells that the loss asks for.
         cells, truth, surface = self.pool.batch(rng, self.run.batch, self.run.crop)
         self.network.train()
         with torch.autocast("cpu", torch.bfloat16):

@@ -1,0 +1,114 @@
+"""The completion labeller: evidence wins whatever the network says."""
+
+from dataclasses import replace
+
+import label_rooms as rooms
+import numpy as np
+import pytest
+
+from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.label import labeller
+from world2minecraft.label.channels import Sight
+from world2minecraft.label.completion import (
+    CompletionLabeller,
+    CompletionParameters,
+    piece_votes,
+)
+from world2minecraft.label.completion_net import CompletionModel
+from world2minecraft.label.geometric import GeometricLabeller
+from world2minecraft.types import COMPLETED, OBSERVED, UNSEEN
+
+
+class Saying:
+    """Stands for a network: says what a function of the sight's shape gives."""
+
+    def __init__(self, chance):
+        self.chance = chance
+
+    def chances(self, sight: Sight):
+        return self.chance(sight.log_odds.shape)
+
+
+def labelled(scanned, chance, **parameters):
+    grid, evidence, _ = scanned
+    own = CompletionLabeller(CompletionParameters(**parameters))
+    own.model = Saying(chance)  # type: ignore[assignment]
+    return own.label(grid, evidence)
+
+
+def always(kind, share=0.97):
+    def chance(shape):
+        result = np.full((12, *shape), (1 - share) / 11, np.float32)
+        result[kind] = share
+        return result
+
+    return chance
+
+
+@pytest.fixture(scope="module")
+def scanned():
+    room = rooms.SmallRoom()
+    rooms.table(room, 1.6, 2.0)
+    return room.scanned()
+
+
+def test_what_was_seen_stays_though_the_network_calls_all_empty(scanned):
+    grid, evidence, _ = scanned
+    base = GeometricLabeller().label(grid, evidence)
+    result = labelled(scanned, always(0))
+    assert np.array_equal(result.occupied, base.occupied)
+    assert np.array_equal(result.source, base.source)
+
+
+def test_free_stays_free_and_far_stays_unseen_though_it_calls_all_solid(scanned):
+    grid, evidence, _ = scanned
+    base = GeometricLabeller().label(grid, evidence)
+    result = labelled(scanned, always(10), reach_cells=2)
+    assert not result.occupied[base.labels == 0].any()
+    filled = result.source == COMPLETED
+    assert filled.any()
+    assert (result.labels[filled & (base.source == UNSEEN)] == 10).all()
+    assert (result.source[result.labels == 255] == UNSEEN).all()
+
+
+def test_a_class_that_was_not_seen_is_not_completed(scanned):
+    grid = scanned[0]
+    named = replace(grid, labels=np.where(grid.occupied, np.uint8(3), grid.labels))
+    result = CompletionLabeller()._completed(named, always(6)(grid.shape))
+    assert not (result.source == COMPLETED).any()
+
+
+def test_an_unsure_network_completes_nothing(scanned):
+    grid, evidence, _ = scanned
+    base = GeometricLabeller().label(grid, evidence)
+    result = labelled(scanned, always(0, 0.5), sure=0.6)
+    assert np.array_equal(result.source == COMPLETED, base.source == COMPLETED)
+    assert (result.source[result.occupied & (grid.source == OBSERVED)] == OBSERVED).mean() > 0.9
+
+
+def test_a_piece_speaks_with_one_voice_where_it_mostly_agrees():
+    hint = np.zeros((6, 4, 4), np.uint8)
+    hint[1:5] = 10
+    chance = np.full((12, 6, 4, 4), 0.01, np.float32)
+    chance[8], chance[8, 1], chance[5, 1] = 0.9, 0.01, 0.9
+    voted = piece_votes(hint, chance, 0.6)
+    assert (voted[1:, 1:5].argmax(axis=0) + 1 == 8).all()
+    assert np.array_equal(voted[:, 0], chance[:, 0])
+    split = piece_votes(hint, chance, 0.95)
+    assert (split[1:, 1].argmax(axis=0) + 1 == 5).all()
+
+
+def test_weights_that_are_not_there_or_are_none_are_said(scanned, tmp_path):
+    grid, evidence, _ = scanned
+    missing = CompletionLabeller(weights=tmp_path / "none.onnx")
+    with pytest.raises(InputError, match=r"none\.onnx"):
+        missing.label(grid, evidence)
+    (tmp_path / "bad.onnx").write_bytes(b"no network")
+    with pytest.raises(DamagedFileError, match="is no network"):
+        CompletionModel(tmp_path / "bad.onnx").chances(
+            Sight(np.zeros((4, 4, 4), np.int8), np.zeros(0, np.int32), np.zeros(0, np.uint8), 0.08)
+        )
+
+
+def test_it_is_found_by_name():
+    assert isinstance(labeller("completion"), CompletionLabeller)
