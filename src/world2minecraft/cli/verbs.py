@@ -28,6 +28,7 @@ VERBS: dict[str, str] = {
     "rooms generate": "Generate a furnished room or a house, with exact truth.",
     "rooms scan": "Scan a generated room or house with a virtual depth camera.",
     "evaluate reconstruction": "Score a reconstruction against a scanned room's truth.",
+    "occupy": "Name and complete the cells that one depth picture shows.",
     "dataset stats": "Tell what a data set holds, beside the paper's.",
     "dataset quality": "Measure how natural and how sharp pictures are.",
     "furniture list": "List the furniture that rooms are built of.",

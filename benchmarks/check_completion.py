@@ -1,0 +1,212 @@
+"""The completion network against the truth of virtual scans it has never seen.
+
+``python -m benchmarks.check_completion [--seeds 3 --rooms 6] [--weights FILE] [--keep FOLDER]``
+
+Each seed is a set of rooms of its own (from 8,000 on, which training never takes), scanned with
+the noise that the samples have: the share of fused surface cells that are empty in the truth is
+printed. In the same table: ``surface`` (what was fused, of no class), ``geometric`` (its labels
+on that surface; single views beside the room's axes have none and are left out of its row), and
+``ceiling`` (observed surface kept, all else as the truth says). Figures are IoU / mIoU of 11
+classes in percent, micro over the rooms of a seed, mean and spread over seeds. ``near`` forgives
+one cell.
+"""
+
+import argparse
+import resource
+import time
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from scipy import ndimage
+
+from world2minecraft.classes import CLASS_NAMES, UNKNOWN
+from world2minecraft.label.completion_net import CompletionModel
+from world2minecraft.learn.completion.samples import (
+    Sample,
+    make_samples,
+    read_samples,
+    write_samples,
+)
+from world2minecraft.metrics.occupancy import (
+    OccupancyCounts,
+    count_occupancy,
+    iou_of_precision_recall,
+)
+
+FIRST_SEED, SEEDS_APART = 8_000, 100
+BANDS = ((0.0, 0.25), (0.25, 0.55), (0.55, 1.0))
+WHO = ("surface", "geometric", "completion", "ceiling")
+ROOT = Path(__file__).resolve().parents[1]
+
+
+class Near:
+    """Counts with one cell of tolerance: found cells near their like, and true ones near theirs."""
+
+    def __init__(self):
+        self.counts = np.zeros((12, 4), np.int64)  # Row 0: any class.
+
+    def add(self, labels: np.ndarray, truth: np.ndarray, mask: np.ndarray) -> None:
+        """Add one scene; ``mask`` bool says which cells count, their neighbours help."""
+        known = truth != UNKNOWN
+        for kind in range(12):
+            said = ((labels == kind) if kind else (labels > 0)) & known
+            true = ((truth == kind) if kind else (truth > 0)) & known
+            if not (said.any() or true.any()):
+                continue
+            box = np.ones((3, 3, 3), bool)
+            near_true = ndimage.binary_dilation(true, box)
+            near_said = ndimage.binary_dilation(said, box)
+            row = (said & mask, said & mask & near_true, true & mask, true & mask & near_said)
+            self.counts[kind] += [int(cells.sum()) for cells in row]
+
+    def figures(self) -> tuple[float, float]:
+        """Return IoU and mIoU of the 11 classes."""
+        said, said_near, true, true_near = (self.counts[:, n] for n in range(4))
+        values = [
+            iou_of_precision_recall(sn / max(s, 1), tn / max(t, 1))
+            for s, sn, t, tn in zip(said, said_near, true, true_near, strict=True)
+        ]
+        return values[0], float(np.mean(values[1:]))
+
+
+class Scores:
+    """Counts by who answered, which scans and which cells."""
+
+    def __init__(self):
+        self.exact: dict[tuple[str, str, str], OccupancyCounts] = {}
+        self.near: dict[tuple[str, str], Near] = {}
+
+    def add(self, who: str, group: str, labels: np.ndarray, sample: Sample) -> None:
+        """Add one answer."""
+        observed = sample.sight.log_odds != 0
+        for cells, mask in (("all", None), ("observed", observed), ("unseen", ~observed)):
+            key = (who, group, cells)
+            one = count_occupancy(labels, sample.truth, mask)
+            self.exact[key] = self.exact.get(key, OccupancyCounts()) + one
+        near = self.near.setdefault((who, group), Near())
+        near.add(labels, sample.truth, observed & (sample.truth != UNKNOWN))
+
+
+def samples_of(seed: int, keep: Path | None) -> list[Sample]:
+    """Return the samples of a seed, kept in a folder where one is given."""
+    path = None if keep is None else keep / f"{seed}.npz"
+    if path is not None and path.exists():
+        return read_samples(path)
+    samples = make_samples(seed)
+    if path is not None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_samples(path, samples)
+    return samples
+
+
+def answers(sample: Sample, model: CompletionModel) -> dict[str, np.ndarray]:
+    """Return what each says of a sample: uint8 [X, Y, Z]."""
+    sight, truth = sample.sight, sample.truth
+    surface = sight.log_odds > 0
+    chance = model.chances(sight)
+    labels = chance.argmax(axis=0).astype(np.uint8)
+    labels[surface] = chance[1:].argmax(axis=0)[surface].astype(np.uint8) + 1
+    flat = np.where(surface, np.uint8(11), np.uint8(0))
+    result = {"surface": flat, "completion": labels}
+    true = np.where(truth == UNKNOWN, np.uint8(0), truth)
+    result["ceiling"] = np.where(surface & (true == 0), np.uint8(11), true)
+    if sight.hint is not None:
+        named = flat.copy()
+        named.reshape(-1)[sight.at] = np.where(sight.hint, sight.hint, 11)
+        result["geometric"] = named
+    return result
+
+
+def groups(sample: Sample) -> list[str]:
+    """Return the rows that a sample belongs to."""
+    known = sample.truth != UNKNOWN
+    share = (sample.sight.log_odds[known] != 0).mean()
+    views = "single" if sample.kind == "single" else "multi"
+    band = next(n for n, (low, high) in enumerate(BANDS) if low <= share <= high)
+    low, high = BANDS[band]
+    result = [views, f"{views}, {low:.0%} to {high:.0%} seen"]
+    return [*result, f"{views}, along the axes"] if sample.sight.hint is not None else result
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--rooms", type=int, default=6)
+    parser.add_argument("--weights", type=Path)
+    parser.add_argument("--keep", type=Path, help="a folder for the scans, to run again sooner")
+    chosen = parser.parse_args()
+    model, console = CompletionModel(chosen.weights), Console(width=150)
+    per_seed, false, spent = [], [], []
+    for number in range(chosen.seeds):
+        scores = Scores()
+        first = FIRST_SEED + SEEDS_APART * number
+        for seed in range(first, first + chosen.rooms):
+            for sample in samples_of(seed, chosen.keep):
+                false.append((sample.false_share, len(sample.sight.at)))
+                start = time.perf_counter()
+                said = answers(sample, model)
+                spent.append(time.perf_counter() - start)
+                for group in groups(sample):
+                    for who, labels in said.items():
+                        scores.add(who, group, labels, sample)
+        per_seed.append(scores)
+    shares = np.array(false)
+    print(f"false surface: {np.average(shares[:, 0], weights=shares[:, 1]):.3f} of its cells")
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"a room took {np.median(spent):.2f} s, {np.max(spent):.2f} at most; peak {peak:.0f} MB")
+    console.print(score_table(per_seed))
+    console.print(class_table(per_seed))
+
+
+def score_table(per_seed: list[Scores]) -> Table:
+    """Return IoU / mIoU by scans, cells and who answered."""
+    columns = ("all", "observed", "unseen", "observed, near")
+    table = Table("scans", "who", *columns, box=None)
+    names = sorted({group for scores in per_seed for _, group, _ in scores.exact})
+    for group in names:
+        for who in WHO:
+            if not any((who, group, "all") in scores.exact for scores in per_seed):
+                continue
+            cells = []
+            for column in columns:
+                values = [
+                    figures(scores, who, group, column)
+                    for scores in per_seed
+                    if (who, group, "all") in scores.exact
+                ]
+                cells.append(_spread(values))
+            table.add_row(group, who, *cells)
+    return table
+
+
+def figures(scores: Scores, who: str, group: str, column: str) -> tuple[float, float]:
+    """Return IoU and mIoU of one cell of the table."""
+    if column == "observed, near":
+        return scores.near[who, group].figures()
+    counts = scores.exact[who, group, column]
+    return counts.iou, counts.miou
+
+
+def _spread(values: list[tuple[float, float]]) -> str:
+    rows = 100 * np.array(values)
+    mean, spread = rows.mean(axis=0), rows.std(axis=0)
+    return f"{mean[0]:.1f}/{mean[1]:.1f} +-{spread[0]:.1f}/{spread[1]:.1f}"
+
+
+def class_table(per_seed: list[Scores]) -> Table:
+    """Return the IoU of each class on observed cells of aligned multi-view scans."""
+    table = Table("observed, multi", *CLASS_NAMES[1:], box=None)
+    for who in ("geometric", "completion"):
+        total = sum(
+            (s.exact.get((who, "multi", "observed"), OccupancyCounts()) for s in per_seed),
+            OccupancyCounts(),
+        )
+        table.add_row(who, *(f"{100 * value:.0f}" for value in total.class_iou[1:]))
+    return table
+
+
+if __name__ == "__main__":
+    main()
