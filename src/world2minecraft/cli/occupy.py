@@ -1,9 +1,12 @@
 """``w2m occupy``: one depth picture in the grid of its frame, named and completed."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from world2minecraft.dataset.frame_completion import CompletedFrame, GridPlace
 
 EXAMPLES = """\
 w2m occupy NYU0001_0000.png --grid NYU0001_0000.bin --out pred.npz       SSCNet's NYUv2
@@ -35,17 +38,11 @@ def run(
     where its grid and its camera are is read, never a label. ``labels`` of the npz is uint8
     [60, 36, 60] of 8 cm in the file's own axes: x right, z up, y forward; ids 0 to 11.
     """
-    import numpy as np
-
-    from world2minecraft.classes import CLASS_NAMES
     from world2minecraft.dataset.frame_completion import (
-        FILE_AXES,
-        VOXEL_M,
         complete_frame,
         depth_of_png,
         read_grid_place,
     )
-    from world2minecraft.files import write_npz
     from world2minecraft.scan.depth import check_depth_kind
     from world2minecraft.scan.images import read_colour, read_header, read_raw
     from world2minecraft.types import Camera
@@ -61,6 +58,18 @@ def run(
             f"{colour} is {photo.shape[1]} x {photo.shape[0]}, not the depth's"
         )
     frame = complete_frame(depth_m, place, colour=photo, camera=camera)
+    write_frame(out, frame, place)
+    for line in told(out, frame, grid):
+        print(line)
+
+
+def write_frame(out: Path, frame: "CompletedFrame", place: "GridPlace") -> None:
+    """Write a frame in its file's own axes."""
+    import numpy as np
+
+    from world2minecraft.dataset.frame_completion import FILE_AXES, VOXEL_M
+    from world2minecraft.files import write_npz
+
     write_npz(
         out,
         {
@@ -71,8 +80,18 @@ def run(
             "origin_m": place.origin_m,
         },
     )
+
+
+def told(out: Path, frame: "CompletedFrame", grid: Path) -> list[str]:
+    """Return what is printed of a frame."""
+    import numpy as np
+
+    from world2minecraft.classes import CLASS_NAMES
+
     counts = np.bincount(frame.labels.reshape(-1), minlength=len(CLASS_NAMES))
     found = ", ".join(f"{CLASS_NAMES[n]} {counts[n]:,}" for n in range(1, len(counts)) if counts[n])
-    print(f"{out}: {found}")
-    print(f"{frame.observed.mean():.0%} of the grid was seen; the rest is the network's guess")
-    print(f"next: w2m evaluate occupancy {out} {grid} --protocol monoscene")
+    return [
+        f"{out}: {found}",
+        f"{frame.observed.mean():.0%} of the grid was seen; the rest is the network's guess",
+        f"next: w2m evaluate occupancy {out} {grid} --protocol monoscene",
+    ]

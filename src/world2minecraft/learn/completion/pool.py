@@ -13,7 +13,7 @@ from world2minecraft.learn.completion.samples import Sample, read_samples
 
 # A walk is what the program is mostly given, a single view the hardest.
 KIND_WEIGHTS = {"walk": 0.42, "few": 0.18, "single": 0.4}
-LOOK_AGAIN = 200  # Steps after which new files are looked for.
+LOOK_AGAIN = 100  # Steps after which new files are looked for.
 
 
 class SamplePool:
