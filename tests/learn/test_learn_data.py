@@ -16,7 +16,16 @@ from world2minecraft.learn.data.opening import CachePlace, open_run_data
 from world2minecraft.learn.data.splits import evenly, split_rows
 
 RULE = FrameRule(GRIDS["0.16"], 40, 30)
-ARRAYS = ("image", "intrinsics", "camera_to_grid", "labels", "in_frustum", "seen", "free")
+ARRAYS = (
+    "image",
+    "intrinsics",
+    "camera_to_grid",
+    "grid_to_room",
+    "labels",
+    "in_frustum",
+    "seen",
+    "free",
+)
 
 
 def placed(folder):
@@ -124,7 +133,12 @@ def test_a_batch_holds_what_networks_take(tmp_path):
     assert inputs.image.shape == (2, 3, 30, 40) and inputs.image.dtype == torch.float32
     assert inputs.image.min() >= 0 and inputs.image.max() <= 1
     assert inputs.grid_shape == (30, 30, 18) and inputs.voxel_m == 0.16
-    assert inputs.depth_m is not None and inputs.depth_m.shape == (2, 30, 40)
+    assert inputs.depth_m is None  # A monocular network is taught depth, and sees none.
+    assert target.depth_m is not None and target.depth_m.shape == (2, 30, 40)
+    given = next(iter(ordered_batches(frames, [2], toy_config(tmp_path, depth="given"))))
+    assert torch.equal(given.inputs.depth_m[0], target.depth_m[0])
+    without = next(iter(ordered_batches(frames, [2], toy_config(tmp_path, depth="none"))))
+    assert without.inputs.depth_m is None and without.target.depth_m is None
     assert target.labels.shape == (2, 30, 30, 18) and target.labels.dtype == torch.int64
     assert target.in_frustum.dtype == torch.bool
     assert len(batches[1].inputs.image) == 1
@@ -152,7 +166,7 @@ def test_the_first_set_is_the_target_and_test_frames_train_nowhere(store, tmp_pa
     first, second = data.parts
     assert (len(first.rows), len(data.split.val), len(data.split.test)) == (4, 2, 2)
     assert {second.frames.scenes[row] for row in second.rows} == {"room_0", "room_1"}
-    assert "8" not in data.described[1] and "4 train" in data.described[1]
+    assert data.described[1].endswith("store, 4 train")
     assert data.counts[0] > data.counts[3] > 0
     assert open_run_data(config, CachePlace.named("off")).counts.shape == (12,)
 

@@ -26,7 +26,8 @@ class Grid(NamedTuple):
 
 GRIDS = {"0.16": Grid((30, 30, 18), 0.16), "0.08": Grid((60, 60, 36), 0.08)}
 SCHEDULES = ("cosine", "step", "constant")
-PRECISIONS = ("auto", "bf16", "16", "32")
+PRECISIONS = ("auto", "bf16", "32")
+DEPTHS = ("taught", "given", "none")
 CLASS_WEIGHTS = ("frequency", "monoscene", "even")
 
 
@@ -70,6 +71,7 @@ class RunConfig:
     )
     grid: str = "0.16"
     image: tuple[int, int] = (320, 240)  # Width, height: half of NYUv2's, a guess for 0.16 m.
+    depth: str = "taught"  # To a depth branch; "given" shows it to the network too.
     steps: int = 2000  # The benchmark's.
     batch: int = 4  # MonoScene's.
     learning_rate: float = 5e-4  # A guess for small networks from nothing; MonoScene's is 1e-4.
@@ -95,6 +97,7 @@ class RunConfig:
         put(self, "data", tuple(self.data))
         put(self, "image", tuple(int(side) for side in self.image))
         _one_of("grid", self.grid, GRIDS)
+        _one_of("depth", self.depth, DEPTHS)
         _one_of("schedule", self.schedule, SCHEDULES)
         _one_of("precision", self.precision, PRECISIONS)
         _one_of("class_weights", self.class_weights, CLASS_WEIGHTS)

@@ -2,7 +2,8 @@
 
 A mirrored frame is a frame of the mirrored room: picture, depth, principal point, pose and cells
 turn over together, so that a cell still falls on the pixels that show it. The pose stays a
-rotation: camera and grid are mirrored both.
+rotation: camera and grid are mirrored both. Where the grid lies in the room is left as it was: no
+network is told, and a mirrored frame is of no room.
 """
 
 from dataclasses import replace

@@ -65,8 +65,8 @@ class RowFrames(Dataset):
 class Stacked:
     """Makes a batch of frames; a class, so that worker processes can be sent it."""
 
-    def __init__(self, grid: Grid):
-        self._grid = grid
+    def __init__(self, grid: Grid, depth: str):
+        self._grid, self._depth = grid, depth
 
     def __call__(self, frames: list[Frame]) -> Batch:
         """Return the frames one upon the other."""
@@ -78,9 +78,13 @@ class Stacked:
             camera_to_grid=_stacked(frames, "camera_to_grid"),
             grid_shape=shape,
             voxel_m=voxel_m,
-            depth_m=_stacked(frames, "depth_m"),
+            depth_m=_stacked(frames, "depth_m") if self._depth == "given" else None,
         )
-        target = OccTarget(_stacked(frames, "labels").long(), _stacked(frames, "in_frustum"))
+        target = OccTarget(
+            labels=_stacked(frames, "labels").long(),
+            in_frustum=_stacked(frames, "in_frustum"),
+            depth_m=_stacked(frames, "depth_m") if self._depth != "none" else None,
+        )
         return Batch(inputs, target)
 
 
@@ -104,7 +108,7 @@ def _loader(frames: Dataset, config: RunConfig, workers: int) -> DataLoader:
         shuffle=False,
         num_workers=workers,
         persistent_workers=workers > 0,
-        collate_fn=Stacked(config.cells),
+        collate_fn=Stacked(config.cells, config.depth),
         # Without a generator of its own a loader draws from torch's at each start.
         generator=torch.Generator().manual_seed(config.seed),
     )

@@ -23,7 +23,7 @@ from world2minecraft.lock import Lock
 from world2minecraft.progress import Progress, silent
 
 VERSION = 1  # Of what lies in the folder.
-ARRAYS = ("image", "depth", "intrinsics", "camera_to_grid", "labels", "masks")
+ARRAYS = ("image", "depth", "intrinsics", "camera_to_grid", "grid_to_room", "labels", "masks")
 READY = "frames.json"  # Written last.
 MASKS = {"in_frustum": 1, "seen": 2, "free": 4}  # Bits of ``masks``.
 DEPTH_UNIT_M = 0.001
@@ -90,6 +90,7 @@ class CachedFrames:
             depth_m=held["depth"].astype(np.float32) * np.float32(DEPTH_UNIT_M),
             intrinsics=np.array(held["intrinsics"]),
             camera_to_grid=np.array(held["camera_to_grid"]),
+            grid_to_room=np.array(held["grid_to_room"]),
             labels=np.array(held["labels"]),
             has_depth=self._has_depth[row],
             **{name: (held["masks"] & bit) > 0 for name, bit in MASKS.items()},
@@ -146,6 +147,7 @@ def _layout(count: int, rule: FrameRule) -> dict[str, tuple[tuple[int, ...], typ
         "depth": ((count, *size), np.uint16),
         "intrinsics": ((count, 3, 3), np.float32),
         "camera_to_grid": ((count, 4, 4), np.float32),
+        "grid_to_room": ((count, 4, 4), np.float64),
         "labels": ((count, *cells), np.uint8),
         "masks": ((count, *cells), np.uint8),
     }
@@ -186,6 +188,7 @@ def _stored(frame: Frame) -> dict[str, np.ndarray]:
         "depth": np.clip(np.rint(frame.depth_m / DEPTH_UNIT_M), 0, MOST_DEPTH).astype(np.uint16),
         "intrinsics": frame.intrinsics,
         "camera_to_grid": frame.camera_to_grid,
+        "grid_to_room": frame.grid_to_room,
         "labels": frame.labels,
         "masks": masks,
     }

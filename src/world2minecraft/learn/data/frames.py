@@ -42,6 +42,7 @@ class Frame:
     depth_m: np.ndarray  # float32 [H, W], 0 where there is none
     intrinsics: np.ndarray  # float32 [3, 3], pixel centres at +0.5
     camera_to_grid: np.ndarray  # float32 [4, 4], metres from the corner of cell (0, 0, 0)
+    grid_to_room: np.ndarray  # float64 [4, 4], the same corner in the room
     labels: np.ndarray  # uint8, 0 to 11 or 255
     in_frustum: np.ndarray  # bool, the centre falls into the picture
     seen: np.ndarray  # bool, some pixel sees the cell first
@@ -66,15 +67,17 @@ def frame_of(sample: OccSample, rule: FrameRule) -> Frame:
     if any(sample.camera.distortion):
         raise InputError(sample.key, "its lens distorts; undistort the pictures first")
     crop = _Crop(sample.camera, rule)
-    region, occ = sample.occ.region, sample.occ
-    factor = _factor(sample, rule)
-    camera_to_grid = invert_rigid(region.region_to_room) @ sample.camera_to_room
-    labels = occ.labels if factor == 1 else downsampled(occ.labels, factor)
-    inside, _, _ = cells_in_image(
-        rule.grid.shape, rule.grid.voxel_m, invert_rigid(camera_to_grid), crop.camera
+    known = known_cells(sample, rule.grid)
+    grid_to_room = sample.occ.region.region_to_room
+    camera_to_grid = invert_rigid(grid_to_room) @ sample.camera_to_room
+    nothing = np.zeros(known.labels.shape, bool)
+    inside, seen, free = (
+        nothing if mask is None else mask for mask in (known.in_frustum, known.seen, known.free)
     )
-    seen, free = (_any_of(mask, factor) for mask in (occ.visible, occ.free))
     if crop.cuts:
+        inside, _, _ = cells_in_image(
+            rule.grid.shape, rule.grid.voxel_m, invert_rigid(camera_to_grid), crop.camera
+        )
         seen, free = seen & inside, free & inside
     return Frame(
         key=sample.key,
@@ -83,17 +86,37 @@ def frame_of(sample: OccSample, rule: FrameRule) -> Frame:
         depth_m=crop.depth(sample.depth_m),
         intrinsics=crop.camera.matrix.astype(np.float32),
         camera_to_grid=camera_to_grid.astype(np.float32),
-        labels=labels,
+        grid_to_room=grid_to_room,
+        labels=known.labels,
         in_frustum=inside,
         seen=seen,
-        free=free & (labels == 0) & ~seen,
-        has_depth=bool(occ.hits.any() or occ.free.any()),
+        free=free,
+        has_depth=known.seen is not None,
     )
 
 
-def _factor(sample: OccSample, rule: FrameRule) -> int:
+def known_cells(sample: OccSample, grid: Grid) -> KnownCells:
+    """Return the truth of a sample in the cells of a grid, pictures or not.
+
+    Raises:
+        InputError: its cells do not make the grid's.
+    """
+    factor, occ = _factor(sample, grid), sample.occ
+    if factor == 1:
+        labels, inside = occ.labels, occ.in_frustum
+    else:
+        labels = downsampled(occ.labels, factor)
+        grid_to_camera = invert_rigid(sample.camera_to_room) @ occ.region.region_to_room
+        inside = cells_in_image(grid.shape, grid.voxel_m, grid_to_camera, sample.camera)[0]
+    seen, free = (_any_of(mask, factor) for mask in (occ.visible, occ.free))
+    if not (seen.any() or free.any()):
+        return KnownCells(labels, inside)
+    return KnownCells(labels, inside, seen, free & (labels == 0) & ~seen)
+
+
+def _factor(sample: OccSample, grid: Grid) -> int:
     """Return how many of the region's cells make one of the grid's, along a side."""
-    region, (shape, voxel_m) = sample.occ.region, rule.grid
+    region, (shape, voxel_m) = sample.occ.region, grid
     factor = max(round(voxel_m / region.voxel_m), 1)
     fits = abs(factor * region.voxel_m - voxel_m) < 1e-6
     if not fits or tuple(side * factor for side in shape) != region.shape:

@@ -1,0 +1,65 @@
+"""What a run writes down as it goes: ``metrics.csv``, and the same for TensorBoard.
+
+The CSV has a row a figure: step, name, value. It holds no times, so that a run that was stopped and
+went on leaves the same bytes as one that was not.
+"""
+
+import csv
+import io
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.files import write_text
+
+HEADER = ("step", "name", "value")
+
+
+class Journal:
+    """The figures of a run, from a step on."""
+
+    def __init__(self, folder: Path, first_step: int = 0):
+        """Go on after ``first_step``: what an earlier try wrote of later steps is dropped."""
+        self._path, self._folder = folder / "metrics.csv", folder / "tensorboard"
+        self._rows = [row for row in read_rows(self._path) if row[0] <= first_step]
+        self._first = first_step
+        self._board: Any = None
+
+    def note(self, step: int, figures: Mapping[str, float]) -> None:
+        """Note figures of a step; TensorBoard has them at once, the CSV with ``save``."""
+        if self._board is None:
+            from torch.utils.tensorboard import SummaryWriter  # noqa: PLC0415
+
+            self._board = SummaryWriter(str(self._folder), purge_step=self._first + 1)
+        for name in sorted(figures):
+            self._rows.append((step, name, float(figures[name])))
+            self._board.add_scalar(name, figures[name], step)
+
+    def save(self) -> None:
+        """Write the CSV whole."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(HEADER)
+        writer.writerows((step, name, repr(value)) for step, name, value in self._rows)
+        write_text(self._path, text.getvalue())
+        if self._board is not None:
+            self._board.flush()
+
+    def close(self) -> None:
+        """Write the CSV and let TensorBoard's file go."""
+        self.save()
+        if self._board is not None:
+            self._board.close()
+
+
+def read_rows(path: Path) -> list[tuple[int, str, float]]:
+    """Return the rows of a ``metrics.csv``; none where there is no file.
+
+    Example:
+        >>> read_rows(Path("nowhere.csv"))
+        []
+    """
+    if not path.is_file():
+        return []
+    with path.open(newline="", encoding="utf-8") as file:
+        return [(int(step), name, float(value)) for step, name, value in list(csv.reader(file))[1:]]

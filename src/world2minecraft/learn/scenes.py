@@ -1,0 +1,103 @@
+"""Whole scenes from what is said of their frames: each frame votes where it looks.
+
+EmbodiedOcc keeps a memory of a scene and scores it at the end. A network that knows single frames
+has none: here each frame votes for the class that it says of the cells that it has in view, and the
+most frequent counts, the lower id where two are even. The boxes must lie on one lattice of cells.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.coordinates import apply, turn_grid
+from world2minecraft.metrics.intervals import FrameScore
+from world2minecraft.metrics.protocols import KnownCells, count_scene
+
+SLACK_CELLS = 0.02  # So far a box's corner may be off the lattice.
+SLACK_DEG = 0.01
+MOST_CELLS = 40_000_000  # Of a scene; its votes take 12 bytes each.
+
+
+class SceneFrame(NamedTuple):
+    """What a frame says and what is true of it, where it looks."""
+
+    scene_id: str
+    said: np.ndarray  # uint8 [X, Y, Z]
+    truth: np.ndarray  # uint8 [X, Y, Z]
+    in_view: np.ndarray  # bool, packed eight cells a byte
+    grid_to_room: np.ndarray
+
+    @classmethod
+    def packed(
+        cls, scene_id: str, said: np.ndarray, known: KnownCells, grid_to_room: np.ndarray
+    ) -> "SceneFrame":
+        """Keep what scenes are made of."""
+        inside = np.ones(said.shape, bool) if known.in_frustum is None else known.in_frustum
+        return cls(scene_id, said, known.labels, np.packbits(inside), grid_to_room)
+
+    @property
+    def mask(self) -> np.ndarray:
+        """Bool [X, Y, Z]: what it has in view."""
+        return np.unpackbits(self.in_view, count=self.said.size).reshape(self.said.shape) > 0
+
+
+def scene_scores(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[list[FrameScore], str]:
+    """Return the counts of each scene, or none and the reason why there are none."""
+    by_scene: dict[str, list[SceneFrame]] = {}
+    for frame in frames:
+        by_scene.setdefault(frame.scene_id, []).append(frame)
+    found = []
+    for scene_id in sorted(by_scene):
+        places = [_placed(frame, voxel_m) for frame in by_scene[scene_id]]
+        if any(place is None for place in places):
+            return [], f"a box of {scene_id} is not along the room's axes"
+        corners = np.array([place[1] for place in places if place is not None])
+        steps = (corners - corners[0]) / voxel_m
+        if np.abs(steps - np.round(steps)).max() > SLACK_CELLS:
+            return [], (
+                f"the boxes of {scene_id} share no lattice of {voxel_m:g} m cells; score at 0.08 m"
+            )
+        cells = np.round(steps - steps.min(axis=0)).astype(int)
+        grids = [place[0] for place in places if place is not None]
+        shape = tuple((cells + [grid[0].shape for grid in grids]).max(axis=0).tolist())
+        if np.prod(shape, dtype=float) > MOST_CELLS:
+            return [], f"{scene_id} spans {'x'.join(map(str, shape))} cells, which is no home"
+        found.append(FrameScore(scene_id, _voted(grids, cells, shape)))
+    return found, ""
+
+
+def _placed(
+    frame: SceneFrame, voxel_m: float
+) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], np.ndarray] | None:
+    """Return said, truth and mask along the room's axes, and their corner in the room."""
+    turn_deg = np.degrees(np.arctan2(frame.grid_to_room[1, 0], frame.grid_to_room[0, 0]))
+    quarters = round(turn_deg / 90)
+    if abs(turn_deg - 90 * quarters) > SLACK_DEG:
+        return None
+    ends = np.array([[0.0, 0, 0], frame.said.shape]) * voxel_m
+    corner_m = apply(frame.grid_to_room, ends).min(axis=0)
+    said, truth, mask = (
+        turn_grid(values, quarters) for values in (frame.said, frame.truth, frame.mask)
+    )
+    return (said, truth, mask), corner_m
+
+
+def _voted(
+    grids: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]],
+    cells: np.ndarray,
+    shape: tuple[int, ...],
+):
+    votes = np.zeros((*shape, CLASS_COUNT), np.uint8)
+    truth = np.full(shape, UNKNOWN, np.uint8)
+    seen = np.zeros(shape, bool)
+    for (said, true, mask), first in zip(grids, cells, strict=True):
+        box = tuple(slice(at, at + side) for at, side in zip(first, said.shape, strict=True))
+        truth[box] = np.where(true == UNKNOWN, truth[box], true)
+        seen[box] |= mask
+        at = np.nonzero(mask & (said < CLASS_COUNT))
+        held = votes[box]
+        held[(*at, said[at])] = np.minimum(held[(*at, said[at])], 254) + 1
+    labels = np.where(votes.any(axis=-1), votes.argmax(axis=-1), UNKNOWN).astype(np.uint8)
+    return count_scene(labels, truth, [seen])

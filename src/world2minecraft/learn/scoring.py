@@ -1,0 +1,159 @@
+"""Scores of a network, of an ONNX file or of saved predictions, by any of the protocols.
+
+In: what is said of frames and what is true of them. Out: ``Scores``, a dictionary for JSON. What a
+set cannot answer, as ``ssc`` without depth, is left out and told.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from world2minecraft.dataset.importers.source import ImportedSet
+from world2minecraft.errors import InputError, UsageError
+from world2minecraft.learn.config import Grid
+from world2minecraft.learn.data.cache import Frames
+from world2minecraft.learn.data.frames import known_cells
+from world2minecraft.learn.predictions import SavedPredictions, grid_like
+from world2minecraft.learn.scenes import SceneFrame, scene_scores
+from world2minecraft.metrics.intervals import FrameScore, summarise
+from world2minecraft.metrics.protocols import PROTOCOLS, KnownCells, count_frame, protocol_named
+from world2minecraft.progress import Progress, silent
+
+SCENES = "embodied scenes"  # The scene level of ``embodied``, beside its frames.
+
+
+class SaidOfFrame(NamedTuple):
+    """One frame: what is said of its cells, and what is true."""
+
+    scene_id: str
+    said: np.ndarray  # uint8 [X, Y, Z]
+    known: KnownCells
+    grid_to_room: np.ndarray  # float64 [4, 4]
+
+
+def protocol_scores(
+    frames: Iterable[SaidOfFrame],
+    voxel_m: float,
+    protocols: Sequence[str] = (),
+    *,
+    seed: int = 0,
+) -> dict[str, Any]:
+    """Score frames by some protocols, or by all that their masks allow.
+
+    Args:
+        frames: one at a time; those of a scene need not follow each other.
+        voxel_m: the side of their cells.
+        protocols: names; all where empty.
+        seed: of the intervals.
+
+    Returns:
+        ``protocols``: name to what ``summarise`` returns, with ``counts`` and ``reads`` in words;
+        ``left_out``: name to reason.
+
+    Raises:
+        UsageError: there is no frame, or a protocol that was asked for by name cannot be.
+        UnknownNameError: there is no such protocol.
+    """
+    chosen = [protocol_named(name) for name in protocols or PROTOCOLS]
+    counts: dict[str, list[FrameScore]] = {one.name: [] for one in chosen}
+    left_out: dict[str, str] = {}
+    scenes: list[SceneFrame] = []
+    for frame in frames:
+        for protocol in chosen:
+            try:
+                found = count_frame(protocol, frame.said, frame.known)
+            except UsageError as error:
+                if protocols:
+                    raise
+                left_out[protocol.name] = str(error)
+                continue
+            counts[protocol.name].append(FrameScore(frame.scene_id, found))
+        if "embodied" in counts and frame.known.in_frustum is not None:
+            scenes.append(SceneFrame.packed(*frame))
+    if not any(counts.values()):
+        raise UsageError("there is no frame to score")
+    result: dict[str, Any] = {}
+    for protocol in chosen:
+        if counts[protocol.name] and protocol.name not in left_out:
+            words = {"counts": protocol.cells, "reads": protocol.unknown}
+            result[protocol.name] = summarise(counts[protocol.name], seed=seed) | words
+    if scenes:
+        by_scene, reason = scene_scores(scenes, voxel_m)
+        if reason:
+            left_out[SCENES] = reason
+        else:
+            words = {
+                "counts": "of each scene those that any of its frames has in view; frames vote",
+                "reads": PROTOCOLS["embodied"].unknown,
+            }
+            result[SCENES] = summarise(by_scene, seed=seed) | words
+    return {"protocols": result, "left_out": left_out}
+
+
+def said_by_network(
+    frames: Frames, rows: Sequence[int], said: Iterator[np.ndarray]
+) -> Iterator[SaidOfFrame]:
+    """Pair what a network says of rows with what is true of them."""
+    for row, labels in zip(rows, said, strict=True):
+        frame = frames[row]
+        yield SaidOfFrame(frame.scene_id, labels, frame.known, frame.grid_to_room)
+
+
+def said_by_onnx(
+    path: Path, frames: Frames, rows: Sequence[int], progress: Progress = silent
+) -> Iterator[SaidOfFrame]:
+    """Run an ONNX file over rows. Raises what ``OccupancyNetwork`` raises."""
+    from world2minecraft.occupy.network_file import OccupancyNetwork  # noqa: PLC0415
+
+    network = OccupancyNetwork(path)
+    for done, row in enumerate(rows, 1):
+        frame = frames[row]
+        image = np.moveaxis(frame.image, -1, 0).astype(np.float32) / 255
+        depth_m = frame.depth_m if network.facts.wants_depth else None
+        found = network.probabilities(image, frame.intrinsics, frame.camera_to_grid, depth_m)
+        labels = found.argmax(axis=-1).astype(np.uint8)
+        yield SaidOfFrame(frame.scene_id, labels, frame.known, frame.grid_to_room)
+        progress("score", done, len(rows))
+
+
+def said_by_files(
+    saved: SavedPredictions, truth: ImportedSet, keys: Sequence[str], progress: Progress = silent
+) -> Iterator[SaidOfFrame]:
+    """Pair saved predictions with the samples of the same keys.
+
+    Raises:
+        InputError: a prediction is missing, or a sample has other cells.
+    """
+    grid: Grid | None = None
+    for done, key in enumerate(keys, 1):
+        labels, sample = saved.labels(key), truth[key]
+        grid = grid or grid_like(labels, saved.path)
+        if labels.shape != grid.shape:
+            raise InputError(saved.path, f"{key} has {labels.shape} cells, others {grid.shape}")
+        known = known_cells(sample, grid)
+        yield SaidOfFrame(sample.scene_id, labels, known, sample.occ.region.region_to_room)
+        progress("score", done, len(keys))
+
+
+def keys_to_score(saved: SavedPredictions, truth: ImportedSet, split: str | None) -> list[str]:
+    """Return the keys of a split that there are predictions of.
+
+    Raises:
+        InputError: there are none, or the predictions are of one frame and the truth of many.
+    """
+    keys = truth.keys(split)
+    if saved.is_single:
+        if len(keys) != 1:
+            raise InputError(
+                saved.path,
+                f"is one frame's, and the truth has {len(keys)}; give a folder of KEY.npz",
+            )
+        return keys
+    known = set(saved.keys())
+    found = [key for key in keys if key in known]
+    if not found:
+        example = f", such as {keys[0]}.npz" if keys else ""
+        raise InputError(saved.path, f"holds no prediction of {truth.path}{example}")
+    return found

@@ -1,0 +1,237 @@
+"""A run of training, from its sets to its scores. The same call goes on with one that was stopped.
+
+A run's folder::
+
+    run.yaml                 every setting; w2m train --config trains the same again
+    weights.safetensors      the best by mIoU on held-out frames
+    last.safetensors         those of the last step
+    checkpoint.safetensors   what a stopped run goes on from
+    metrics.csv              step, name, value; tensorboard/ has the same
+    scores.json              of the best weights, by every protocol, on the test split
+    run.json                 what differs by nature: times, machine, versions
+"""
+
+import logging
+import platform
+import time
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import lightning
+import torch
+from torch import nn
+
+from world2minecraft import __version__
+from world2minecraft.errors import ConflictError
+from world2minecraft.files import write_json
+from world2minecraft.learn.checkpoints import load_checkpoint, load_weights, read_facts
+from world2minecraft.learn.config import RunConfig, read_config, write_config
+from world2minecraft.learn.data.batches import drawn_batches
+from world2minecraft.learn.data.classes import class_weights
+from world2minecraft.learn.data.mixing import plan_draws
+from world2minecraft.learn.data.opening import CachePlace, RunData, open_run_data
+from world2minecraft.learn.data.splits import evenly
+from world2minecraft.learn.keeping import CHECKPOINT, WEIGHTS, Keeper, RunState
+from world2minecraft.learn.networks import make_network
+from world2minecraft.learn.stepping import Steps
+from world2minecraft.learn.validation import device_named, precision_here, validated
+from world2minecraft.lock import Lock
+from world2minecraft.progress import Progress, silent
+
+RUN, FACTS, SCORES = "run.yaml", "run.json", "scores.json"
+LIGHTNING = {"bf16": "bf16-mixed", "32": "32-true"}
+# Settings that may change between tries: they move no result.
+FREE = ("threads", "workers", "checkpoint_every")
+
+
+class Trained(NamedTuple):
+    """What a run came to."""
+
+    folder: Path
+    state: RunState
+    data: RunData
+
+
+def network_of(config: RunConfig) -> nn.Module:
+    """Return the network of a run with its first weights. Raises what ``make_network`` does."""
+    return make_network(
+        config.network,
+        config.size,
+        grid_shape=config.cells.shape,
+        voxel_m=config.cells.voxel_m,
+        backbone=config.backbone or None,
+        seed=config.seed,
+    )
+
+
+def train_run(
+    config: RunConfig,
+    folder: Path,
+    *,
+    device: str = "auto",
+    cache: CachePlace | None = None,
+    progress: Progress = silent,
+) -> Trained:
+    """Train, or go on with a run of the same settings in the same folder.
+
+    Args:
+        config: the run.
+        folder: of its files.
+        device: auto, cpu or cuda.
+        cache: where decoded frames are kept.
+        progress: told the stages ``frames`` and ``train``.
+
+    Raises:
+        ConflictError: the folder holds a run of other settings, or another process trains in it.
+        InputError, UsageError: the sets or the settings cannot be used.
+    """
+    check_folder(config, folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    lock = Lock(folder / ".lock", "trained")
+    lock.take()
+    try:
+        write_config(folder / RUN, config)
+        if config.threads:
+            torch.set_num_threads(config.threads)
+        data = open_run_data(config, cache, progress)
+        state = _fit(config, folder, data, device_named(device), progress)
+        return Trained(folder, state, data)
+    finally:
+        lock.remove()
+
+
+def check_folder(config: RunConfig, folder: Path) -> None:
+    """Refuse a folder that holds a run of other settings. Raises ConflictError."""
+    if not (folder / RUN).is_file():
+        return
+    held = read_config(folder / RUN)
+    same = replace(held, **{name: getattr(config, name) for name in FREE})
+    if same == config:
+        return
+    names = [name for name in vars(config) if getattr(same, name) != getattr(config, name)]
+    told = ", ".join(
+        f"{name} is {_said(getattr(held, name))}, not {_said(getattr(config, name))}"
+        for name in names
+    )
+    raise ConflictError(folder, f"holds a run of other settings ({told}); choose another --out")
+
+
+def _said(value: Any) -> str:
+    if isinstance(value, tuple):
+        return " ".join(str(getattr(one, "path", one)) for one in value)
+    return str(value)
+
+
+def _fit(
+    config: RunConfig, folder: Path, data: RunData, device: torch.device, progress: Progress
+) -> RunState:
+    state = RunState()
+    if (folder / CHECKPOINT).is_file():
+        state = RunState(**read_facts(folder / CHECKPOINT))
+    if state.step >= config.steps or state.stopped:
+        return state
+    network = network_of(config)
+    weights = torch.from_numpy(class_weights(data.counts, config.class_weights))
+    steps = Steps(network, config, weights)
+    steps.first_step = state.step
+    rows = evenly(data.split.val, config.validate_frames)
+    keeper = Keeper(
+        folder, config, state, lambda: validated(network, data.target, rows, config), progress
+    )
+    sizes = [len(part.rows) for part in data.parts]
+    draws = plan_draws(sizes, data.weights, config.steps * config.batch, config.seed)
+    batches = drawn_batches(data.parts, draws, config, state.step)
+    began = time.monotonic()
+    with _quiet():
+        trainer = lightning.Trainer(
+            accelerator=device.type if device.type == "cpu" else "gpu",
+            devices=1,
+            precision=LIGHTNING[precision_here(config.precision, device)],  # type: ignore[arg-type]
+            max_epochs=1,
+            gradient_clip_val=config.clip_norm or None,
+            callbacks=[keeper, _Loader(folder)],
+            logger=False,
+            enable_checkpointing=False,
+            enable_progress_bar=False,
+            enable_model_summary=False,
+            num_sanity_val_steps=0,
+            default_root_dir=folder,
+        )
+        trainer.fit(steps, batches)
+    if trainer.interrupted:  # Lightning takes Ctrl-C for the end of a run.
+        raise KeyboardInterrupt
+    keeper.finish(steps)
+    _write_facts(folder, config, network, device, keeper.state, time.monotonic() - began)
+    return keeper.state
+
+
+class _Loader(lightning.Callback):
+    """Puts a checkpoint into network and optimiser, once both are on their device."""
+
+    def __init__(self, folder: Path):
+        self._path = folder / CHECKPOINT
+
+    def on_train_start(self, trainer: Any, pl_module: Any) -> None:
+        if self._path.is_file():
+            load_checkpoint(self._path, pl_module.network, trainer.optimizers[0])
+
+
+def trained_network(folder: Path, config: RunConfig, device: str = "auto") -> nn.Module:
+    """Return the network of a run with its best weights. Raises InputError."""
+    network = network_of(config)
+    load_weights(folder / WEIGHTS, network)
+    return network.to(device_named(device)).eval()
+
+
+def _write_facts(
+    folder: Path,
+    config: RunConfig,
+    network: nn.Module,
+    device: torch.device,
+    state: RunState,
+    seconds: float,
+) -> None:
+    named = torch.cuda.get_device_name() if device.type == "cuda" else platform.processor()
+    facts = {
+        "seconds": state.seconds,
+        "seconds_of_last_try": seconds,
+        "steps": state.step,
+        "best_step": state.best_step,
+        "best_val_miou": state.best_miou,
+        "stopped_early": state.stopped,
+        "parameters": sum(one.numel() for one in network.parameters()),
+        "device": device.type,
+        "hardware": named or platform.machine(),
+        "threads": torch.get_num_threads(),
+        "precision": precision_here(config.precision, device),
+        "versions": {
+            "world2minecraft": __version__,
+            "torch": torch.__version__,
+            "lightning": lightning.__version__,
+            "python": platform.python_version(),
+        },
+    }
+    if device.type == "cuda":
+        facts["peak_gpu_bytes"] = torch.cuda.max_memory_allocated()
+    write_json(folder / FACTS, facts)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep Lightning's advice on worker processes and devices off the screen."""
+    loud = [logging.getLogger(name) for name in ("lightning.pytorch", "lightning.fabric")]
+    levels = [one.level for one in loud]
+    for one in loud:
+        one.setLevel(logging.ERROR)
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", module="lightning")
+            warnings.filterwarnings("ignore", message=".*does not have many workers.*")
+            yield
+    finally:
+        for one, level in zip(loud, levels, strict=True):
+            one.setLevel(level)
