@@ -29,6 +29,8 @@ VERBS: dict[str, str] = {
     "rooms scan": "Scan a generated room or house with a virtual depth camera.",
     "evaluate reconstruction": "Score a reconstruction against a scanned room's truth.",
     "occupy": "Name and complete the cells that one depth picture shows.",
+    "train": "Train an occupancy network on any data sets.",
+    "evaluate occupancy": "Score a network or saved predictions by the published protocols.",
     "dataset stats": "Tell what a data set holds, beside the paper's.",
     "dataset quality": "Measure how natural and how sharp pictures are.",
     "furniture list": "List the furniture that rooms are built of.",

@@ -37,8 +37,14 @@ from world2minecraft.learn.data.opening import CachePlace, RunData, open_run_dat
 from world2minecraft.learn.data.splits import evenly
 from world2minecraft.learn.keeping import CHECKPOINT, WEIGHTS, Keeper, RunState
 from world2minecraft.learn.networks import make_network
+from world2minecraft.learn.scoring import protocol_scores, said_by_network
 from world2minecraft.learn.stepping import Steps
-from world2minecraft.learn.validation import device_named, precision_here, validated
+from world2minecraft.learn.validation import (
+    device_named,
+    precision_here,
+    said_labels,
+    validated,
+)
 from world2minecraft.lock import Lock
 from world2minecraft.progress import Progress, silent
 
@@ -178,6 +184,30 @@ class _Loader(lightning.Callback):
     def on_train_start(self, trainer: Any, pl_module: Any) -> None:
         if self._path.is_file():
             load_checkpoint(self._path, pl_module.network, trainer.optimizers[0])
+
+
+def score_run(
+    trained: Trained, config: RunConfig, device: str = "auto", progress: Progress = silent
+) -> dict[str, Any]:
+    """Score the best weights of a run on its test split, by all protocols; write scores.json.
+
+    A set without a test split is scored on the frames that it was validated on, which flatters:
+    ``split`` says so.
+    """
+    data, folder = trained.data, trained.folder
+    network = trained_network(folder, config, device)
+    rows = data.split.scored
+    said = said_labels(network, data.target, rows, config, progress=progress)
+    frames = said_by_network(data.target, rows, said)
+    scores = protocol_scores(frames, config.cells.voxel_m)
+    scores |= {
+        "data": config.data[0].path,
+        "split": "test" if data.split.test else "validation",
+        "grid": config.grid,
+        "step": trained.state.best_step,
+    }
+    write_json(folder / SCORES, scores)
+    return scores
 
 
 def trained_network(folder: Path, config: RunConfig, device: str = "auto") -> nn.Module:

@@ -1,0 +1,253 @@
+"""``w2m evaluate occupancy``: a network, an ONNX file or saved predictions against any data set."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from world2minecraft.cli.train_options import Cache, Device
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from world2minecraft.progress import Progress
+
+EXAMPLES = """\
+w2m evaluate occupancy RUN DATA                                 what w2m train made
+w2m evaluate occupancy net.onnx NYU --protocol monoscene        an exported network, on real NYUv2
+w2m evaluate occupancy PREDICTED NYU --protocol ssc --protocol monoscene
+w2m evaluate occupancy PRED.npz NYU0003_0000.bin                one frame
+w2m evaluate occupancy saved OCC --protocol embodied            EmbodiedOcc's or GPOcc's own files
+w2m evaluate occupancy RUN DATA --json scores.json --latex rows.tex
+"""
+
+
+Said = Annotated[
+    Path,
+    typer.Argument(metavar="PRED_OR_NET",
+                   help="A run's folder, weights, an .onnx, or saved predictions."),
+]  # fmt: skip
+Truth = Annotated[Path, typer.Argument(metavar="GT_OR_DATA", help="Any occupancy data set.")]
+Protocols = Annotated[
+    list[str] | None,
+    typer.Option("--protocol", help="monoscene, iso, embodied, ssc or visible; all by default."),
+]
+Split = Annotated[str, typer.Option("--split", help="train, test or all; test where there is one.")]
+Limit = Annotated[
+    int | None, typer.Option("--limit", min=1, help="At most so many frames, spread evenly.")
+]
+Order = Annotated[
+    str, typer.Option("--order", help="Of saved axes: xyz, xzy (NYUv2) or yxz; by the shape.")
+]
+Classes = Annotated[
+    str, typer.Option("--classes", help="Of saved labels: ours, or embodied (12 is empty).")
+]
+Labels = Annotated[
+    Path | None, typer.Option("--labels", help="NYUv2: where base/ lies, if elsewhere.")
+]
+Json = Annotated[
+    Path | None, typer.Option("--json", metavar="FILE", help="Write every figure here, too.")
+]
+Latex = Annotated[
+    Path | None, typer.Option("--latex", metavar="FILE", help="Write rows of a table here.")
+]
+Seed = Annotated[int, typer.Option("--seed", help="Of the intervals.")]
+
+
+def run(
+    said: Said,
+    truth: Truth,
+    protocol: Protocols = None,
+    split: Split = "",
+    limit: Limit = None,
+    order: Order = "",
+    classes: Classes = "",
+    labels: Labels = None,
+    json_path: Json = None,
+    latex: Latex = None,
+    seed: Seed = 0,
+    device: Device = "auto",
+    cache: Cache = "",
+) -> None:
+    """Score occupancy by the published protocols, with intervals over scenes.
+
+    What each protocol counts, and what it makes of 255, is in docs/occupancy-scores.md.
+    """
+    from rich.console import Console
+
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.dataset.importers import open_occupancy
+    from world2minecraft.files import write_json, write_text
+    from world2minecraft.learn.tables import latex_rows
+
+    if not said.exists():
+        from world2minecraft.errors import InputError
+
+        raise InputError(said, "is not there; give a run's folder, weights, .onnx or predictions")
+    found = open_occupancy(truth, labels=labels)
+    part = _split_of(split, found.splits.values())
+    what = _Asked(
+        said, found, part, limit, tuple(protocol or ()), order, classes, device, cache, seed
+    )
+    with shown() as progress:
+        scores = what.scores(progress)
+    scores |= {"said": str(said), "data": str(truth), "split": part or "all"}
+    console = Console(highlight=False)
+    console.print(score_table(scores))
+    console.print(class_table(scores))
+    for name, reason in scores["left_out"].items():
+        print(f"{name} left out: {reason}")
+    if json_path is not None:
+        write_json(json_path, scores)
+        print(f"figures  {json_path}")
+    if latex is not None:
+        write_text(latex, latex_rows(scores, said.stem))
+        print(f"rows     {latex}")
+    if json_path is None:
+        print("next: the same with --json scores.json, for every figure and interval")
+
+
+class _Asked:
+    """What is to be scored, and how."""
+
+    def __init__(
+        self, said: Path, found: Any, split: str | None, limit: int | None,
+        protocols: tuple[str, ...], order: str, classes: str, device: str, cache: str, seed: int,
+    ):  # fmt: skip
+        self.said, self.found, self.split, self.limit = said, found, split, limit
+        self.protocols, self.order, self.classes = protocols, order, classes
+        self.device, self.cache, self.seed = device, cache, seed
+
+    def scores(self, progress: "Progress") -> dict[str, Any]:
+        """Return the scores by the kind of what is scored."""
+        if self.said.suffix == ".onnx":
+            return self._of_onnx(progress)
+        if self.said.suffix == ".safetensors" or (self.said / "run.yaml").is_file():
+            return self._of_weights(progress)
+        return self._of_files(progress)
+
+    def _scored(self, frames: Any, voxel_m: float) -> dict[str, Any]:
+        from world2minecraft.learn.scoring import protocol_scores
+
+        return protocol_scores(frames, voxel_m, self.protocols, seed=self.seed)
+
+    def _rows(self, frames: Any) -> list[int]:
+        from world2minecraft.learn.data.splits import evenly
+
+        of = self.found.splits
+        rows = [n for n, key in enumerate(frames.keys) if self.split in (None, of[key])]
+        return evenly(rows, self.limit or len(rows))
+
+    def _frames(self, grid: Any, size: tuple[int, int], progress: "Progress") -> Any:
+        from world2minecraft.learn.data.frames import FrameRule
+        from world2minecraft.learn.data.opening import CachePlace, open_frames
+
+        place = CachePlace.named(self.cache)
+        return open_frames(self.found, FrameRule(grid, *size), place, progress)
+
+    def _of_onnx(self, progress: "Progress") -> dict[str, Any]:
+        from world2minecraft.learn.config import Grid
+        from world2minecraft.learn.scoring import said_by_onnx
+        from world2minecraft.occupy.network_file import OccupancyNetwork
+
+        facts = OccupancyNetwork(self.said).facts
+        grid = Grid(facts.grid_shape, facts.voxel_m)
+        frames = self._frames(grid, facts.image_size_px, progress)
+        said = said_by_onnx(self.said, frames, self._rows(frames), progress)
+        return self._scored(said, grid.voxel_m)
+
+    def _of_weights(self, progress: "Progress") -> dict[str, Any]:
+        from world2minecraft.cli.train_options import check_extra
+
+        check_extra()
+        from world2minecraft.learn.checkpoints import load_weights, weights_config
+        from world2minecraft.learn.keeping import WEIGHTS
+        from world2minecraft.learn.scoring import said_by_network
+        from world2minecraft.learn.training import network_of
+        from world2minecraft.learn.validation import device_named, said_labels
+
+        path = self.said / WEIGHTS if self.said.is_dir() else self.said
+        config = weights_config(path)
+        network = network_of(config)
+        load_weights(path, network)
+        network.to(device_named(self.device))
+        frames = self._frames(config.cells, config.image, progress)
+        rows = self._rows(frames)
+        said = said_labels(network, frames, rows, config, progress=progress)
+        return self._scored(said_by_network(frames, rows, said), config.cells.voxel_m)
+
+    def _of_files(self, progress: "Progress") -> dict[str, Any]:
+        from world2minecraft.learn.data.splits import evenly
+        from world2minecraft.learn.predictions import SavedPredictions, grid_like
+        from world2minecraft.learn.scoring import keys_to_score, said_by_files
+
+        saved = SavedPredictions(self.said, self.order, self.classes)
+        keys = keys_to_score(saved, self.found, self.split)
+        keys = [keys[n] for n in evenly(list(range(len(keys))), self.limit or len(keys))]
+        grid = grid_like(saved.labels(keys[0]), self.said)
+        return self._scored(said_by_files(saved, self.found, keys, progress), grid.voxel_m)
+
+
+def _split_of(asked: str, held: Any) -> str | None:
+    """Return the split to score, None for all. Raises UsageError for one that is empty."""
+    from world2minecraft.errors import UsageError
+
+    there = set(held)
+    if not asked:
+        return "test" if "test" in there else None
+    if asked == "all":
+        return None
+    if asked not in there:
+        known = ", ".join(sorted(one for one in there if one)) or "none"
+        raise UsageError(f"there is no frame in {asked!r}; this set has {known}; or say all")
+    return asked
+
+
+def score_table(scores: dict[str, Any]) -> "Table":
+    """Return the figures by protocol, with their intervals."""
+    from rich.table import Table
+
+    table = Table("protocol", "frames", "IoU", "precision", "recall", "mIoU", "macro IoU / mIoU",
+                  box=None, header_style="bold", pad_edge=False)  # fmt: skip
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for name, found in scores["protocols"].items():
+        spread = found["interval"] or {}
+        cells = [_with_interval(found["micro"][key], spread.get(key)) for key in _FIGURES]
+        macro = found["macro"]
+        table.add_row(
+            name, f"{found['frames']:,}", *cells, f"{_per_cent(macro['iou'])} / "
+            f"{_per_cent(macro['miou'])}",
+        )  # fmt: skip
+    scenes = max((found["scenes"] for found in scores["protocols"].values()), default=0)
+    table.title = f"per cent, 95 % intervals over {scenes} scenes" if scenes > 1 else "per cent"
+    table.title_justify = "left"
+    return table
+
+
+_FIGURES = ("iou", "precision", "recall", "miou")
+
+
+def class_table(scores: dict[str, Any]) -> "Table":
+    """Return the IoU of each class by protocol."""
+    from rich.table import Table
+
+    names = list(scores["protocols"])
+    table = Table("class", *names, box=None, header_style="bold", pad_edge=False)
+    for column in table.columns[1:]:
+        column.justify = "right"
+    first = scores["protocols"][names[0]]["micro"]["class_iou"]
+    for label in first:
+        values = (scores["protocols"][name]["micro"]["class_iou"][label] for name in names)
+        table.add_row(label, *(_per_cent(value) for value in values))
+    return table
+
+
+def _with_interval(value: float, interval: list[float] | None) -> str:
+    if interval is None:
+        return _per_cent(value)
+    return f"{_per_cent(value)} ({_per_cent(interval[0])}-{_per_cent(interval[1])})"
+
+
+def _per_cent(value: float) -> str:
+    return f"{100 * value:.2f}"
