@@ -159,7 +159,7 @@ def test_styles_are_of_blocks_and_of_materials_of_the_library():
         for wood in style.woods:
             is_block(f"{wood}_stairs")
             is_block(f"{wood}_trapdoor")
-            is_block(f"{wood}_fence")
+            is_block(f"{wood}_slab")
         assert all(0 <= hour < 24 for hour in style.hours)
         look = draw_look(style, "living", np.random.default_rng(0))
         assert look.wall in look.accents

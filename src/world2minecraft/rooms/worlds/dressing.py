@@ -5,7 +5,6 @@ import numpy as np
 from world2minecraft.classes import SemanticClass
 from world2minecraft.rooms.worlds.furnishing import Furnisher
 from world2minecraft.rooms.worlds.house import BlockGap, BlockRoom
-from world2minecraft.rooms.worlds.shell import FACINGS
 
 OBJS = int(SemanticClass.OBJS)
 LEAF_SHARE = 0.6  # Of doors between rooms that have a leaf; the others are open frames.
@@ -13,40 +12,53 @@ CURTAINS = ("curtain", "curtain_sheer", "curtain_single")
 BLINDS = ("roller_blind", "venetian_blind")
 CEILING_LAMPS = ("ceiling_lamp", "pendant_lamp", "globe_lamp", "lantern_lamp", "chandelier")
 RUGS = ("rug", "rug_checked", "rug_round", "rug_striped")
+RUNNER_M = 3.4  # Of a hall for each of its rugs.
 LAMP_AREA_M2 = (14.0, 6.0)  # Of floor that a ceiling lamp is for, by day and by night.
 
 
 def hang_leaves(furnisher: Furnisher, gaps: tuple[BlockGap, ...], rng: np.random.Generator) -> None:
-    """Hang open leaves of trapdoors beside doors, within the room that each door is of."""
+    """Hang open leaves at doors, within the room that each door is of.
+
+    A leaf lies at the wall beside its door where there is room, else it stands off the wall.
+    """
     for gap in gaps:
         if gap.kind == "door" and len(gap.rooms) == 2 and rng.random() < LEAF_SHARE:
-            _hang_leaf(furnisher, gap, furnisher.house.rooms[gap.rooms[0]])
+            room = furnisher.house.rooms[gap.rooms[0]]
+            sides = [bool(side) for side in rng.permutation(2)]
+            for side, flat in [(side, flat) for flat in (True, False) for side in sides]:
+                if _hang_leaf(furnisher, gap, room, side, flat):
+                    break
 
 
-def _hang_leaf(furnisher: Furnisher, gap: BlockGap, room: BlockRoom) -> None:
+def _hang_leaf(
+    furnisher: Furnisher, gap: BlockGap, room: BlockRoom, at_low: bool, flat: bool
+) -> bool:
+    """Hang a leaf before or after its door, along the wall or across; say whether it fits."""
     canvas, look = furnisher.canvas, furnisher.looks[room.number]
     across, along = gap.turn % 2, 1 - gap.turn % 2
     width = gap.high[along] - gap.low[along]
-    near = gap.low[along] - room.low[along] <= room.high[along] - gap.high[along]
-    beside = gap.low[along] - 1 if near else gap.high[along]
-    if not room.low[along] <= beside < room.high[along]:
-        beside = gap.low[along] if near else gap.high[along] - 1
-    inward = gap.high[across] if gap.turn < 2 else gap.low[across] - width
-    low, high = [0, 0], [0, 0]
-    low[along], high[along] = beside, beside + 1
-    low[across], high[across] = inward, inward + width
-    box = canvas.box((low[0], low[1], gap.bottom), (high[0], high[1], gap.top))
-    if canvas.states[box].any():
-        return
-    # The panel of an open trapdoor stands on the side that it looks away from.
-    turn = (along + 2 if near else along) % 4 if along == 0 else (1 if not near else 3)
-    facing = FACINGS[turn] if along == 0 else FACINGS[(turn + 2) % 4]
-    state = f"minecraft:{look.wood}_trapdoor[facing={facing},half=bottom,open=true]"
-    columns = np.argwhere(np.ones((high[0] - low[0], high[1] - low[1]), bool)) + low
+    long, deep = (width, 1) if flat else (1, width)
+    low = [0, 0]
+    low[along] = gap.low[along] - long if at_low else gap.high[along]
+    low[across] = gap.high[across] if gap.turn < 2 else gap.low[across] - deep
+    size = (long, deep) if along == 0 else (deep, long)
+    high = (low[0] + size[0], low[1] + size[1])
+    columns = np.argwhere(np.ones(size, bool)) + low
+    inside = room.floor(furnisher.house.size)
+    box = canvas.box((low[0], low[1], gap.bottom), (*high, gap.top))
+    if not all(x < inside.shape[0] and y < inside.shape[1] for x, y in columns.tolist()):
+        return False
+    if min(low) < 0 or not inside[tuple(columns.T)].all() or canvas.states[box].any():
+        return False
     if not furnisher.ways.stay(room, columns):
-        return
-    canvas.set(box, state, OBJS, furnisher.next_instance())
+        return False
+    instance = furnisher.next_instance()
+    canvas.set(box, f"minecraft:{look.wood}_planks", OBJS, instance)
+    for level in (gap.bottom, (gap.bottom + gap.top) // 2, gap.top - 1):
+        rail = canvas.box((low[0], low[1], level), (*high, level + 1))
+        canvas.set(rail, f"minecraft:{look.second_wood}_planks", OBJS, instance)
     furnisher.ways.take(room, columns)
+    return True
 
 
 def dress_windows(furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator) -> None:
@@ -55,9 +67,9 @@ def dress_windows(furnisher: Furnisher, room: BlockRoom, rng: np.random.Generato
     for gap in furnisher.house.gaps:
         if gap.kind != "window" or gap.rooms[0] != room.number:
             continue
-        if draw < 0.55 and _hang(furnisher, gap, room, CURTAINS[int(draw * 6) % 3], rng, True):
-            continue
-        if draw < 0.8:
+        if draw < 0.6:
+            _hang(furnisher, gap, room, CURTAINS[int(draw * 6) % 3], rng, True)
+        elif draw < 0.72:
             _hang(furnisher, gap, room, BLINDS[int(draw * 20) % 2], rng, False)
 
 
@@ -133,9 +145,22 @@ def hang_one(
 
 
 def lay_rugs(furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator) -> None:
-    """Lay a rug in the middle of most rooms that are lived in."""
+    """Lay a rug in the middle of most rooms that are lived in, and runners along a hall."""
     if room.kind in ("bathroom", "kitchen", "storage", "workshop", "greenhouse", "laundry"):
         return
-    if rng.random() < 0.75:
+    if room.kind == "hall":
+        _lay_runners(furnisher, room, rng)
+    elif rng.random() < 0.75:
         middle = [(a + b) / 2 for a, b in zip(room.low, room.high, strict=True)]
         furnisher.put_flat(RUGS[int(rng.integers(len(RUGS)))], room, rng, middle)
+
+
+def _lay_runners(furnisher: Furnisher, room: BlockRoom, rng: np.random.Generator) -> None:
+    scale, name = furnisher.house.blocks_per_metre, RUGS[int(rng.integers(len(RUGS)))]
+    end = room.blocked[0][1] if room.blocked else room.high[1]
+    wide, long = end - room.low[1], room.size[0]
+    count = max(1, round(long / scale / RUNNER_M))
+    size_m = (max(1, wide - 2) / scale, (long / count - 2) / scale, 0.05)
+    for n in range(count):
+        middle = (room.low[0] + (n + 0.5) * long / count, (room.low[1] + end) / 2)
+        furnisher.put_flat(name, room, rng, middle, turns=1, size_m=size_m)

@@ -187,11 +187,18 @@ class Furnisher:
         return 0
 
     def put_flat(
-        self, name: str, room: BlockRoom, rng: np.random.Generator, middle: Sequence[float]
+        self,
+        name: str,
+        room: BlockRoom,
+        rng: np.random.Generator,
+        middle: Sequence[float],
+        *,
+        turns: int | None = None,
+        size_m: Sequence[float] | None = None,
     ) -> int:
-        """Lay a rug around a place, under what stands there already."""
-        turns = int(rng.integers(4))
-        found = self.design(name, room, turns, rng)
+        """Lay a rug around a place, under what stands there already; drawn where not said."""
+        turns = int(rng.integers(4)) if turns is None else turns
+        found = self.design(name, room, turns, rng, size_m)
         if found is None:
             return 0
         low = [round(middle[0] - found.size[0] / 2), round(middle[1] - found.size[2] / 2)]

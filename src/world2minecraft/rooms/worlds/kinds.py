@@ -56,7 +56,10 @@ MORE: dict[str, tuple[str, ...]] = {  # Further furniture of the metric kinds.
         "locker", "filing_cabinet", "projector_screen", "desk_white", "office_chair", "cactus",
         "fir", "desk_drawers", "monitor_wide",
     ),
-    "hall": ("coat_stand", "shoe_rack", "table_console", "bicycle", "standing_mirror", "radiator"),
+    "hall": (
+        "coat_stand", "shoe_rack", "table_console", "bicycle", "standing_mirror", "wall_mirror",
+        "radiator",
+    ),
 }  # fmt: skip
 CARRIERS = (int(SemanticClass.TABLE), int(SemanticClass.FURN))
 LOW_M = 1.3  # One sees what stands on a cupboard as high as this.
@@ -116,7 +119,7 @@ def furnish_more(task: Task, wall_lamps: int = 0) -> None:
     _lay_about(task)
     for _ in range(3 if room.kind == "children" else 0):
         task.show.put_bed(room)
-    for _ in range(int(rng.integers(3))):
+    for _ in range(int(rng.integers(3)) + (room.kind == "hall")):
         task.wall(*PICTURES, above_m=1.0)
     if room.kind in ("living", "study", "hall", "children") and rng.random() < 0.5:
         task.show.hang_on_walls(room, 2, 6)

@@ -59,9 +59,9 @@ class RoomLook:
         return f"minecraft:{self.wood}_stairs"
 
     @property
-    def fence(self) -> str:
-        """The block of rails."""
-        return f"minecraft:{self.wood}_fence"
+    def handrail(self) -> str:
+        """The slab on top of rails."""
+        return f"minecraft:{self.wood}_slab"
 
 
 @cache

@@ -19,7 +19,7 @@ RIMS = (
     "stripped_oak_log[axis=x]", "prismarine_bricks", "smooth_quartz", "packed_mud", "calcite",
 )  # fmt: skip
 # Which kind a room of a metric house may become, and how often.
-PICTURES = ("picture", "portrait", "wall_mirror")
+PICTURES = ("picture", "portrait")
 
 
 def _shop(task: Task) -> None:

@@ -18,6 +18,7 @@ FLOOR, WALL = int(SemanticClass.FLOOR), int(SemanticClass.WALL)
 CEILING, WINDOW = int(SemanticClass.CEILING), int(SemanticClass.WINDOW)
 OBJS = int(SemanticClass.OBJS)
 DOOR = "minecraft:iron_door"
+BARS, RAIL_M = "minecraft:iron_bars", 0.9  # Codes ask for 0.9 m.
 EIGHT = np.ones((3, 3), bool)
 # Which way a block looks that looks by 0 to 3 quarter turns from +x, in the game's words.
 FACINGS = ("east", "north", "west", "south")
@@ -140,9 +141,11 @@ def put_stairs(canvas: WorldCanvas, house: BlockHouse, look: RoomLook, instance:
         if n:
             below = canvas.box((flight.x0, row, n - 1), (flight.x1, row + 1, n))
             canvas.set(below, under, OBJS, instance)
+    top = upper + max(1, round(RAIL_M * house.blocks_per_metre) - 1)
     for low, high in rails(house):
-        rail = canvas.box((*low, upper), (*high, upper + 1))
-        canvas.set(rail, look.fence, OBJS, instance + 1)
+        canvas.set(canvas.box((*low, upper), (*high, top)), BARS, OBJS, instance + 1)
+        hand = canvas.box((*low, top), (*high, top + 1))
+        canvas.set(hand, f"{look.handrail}[type=bottom]", OBJS, instance + 1)
 
 
 def rails(house: BlockHouse) -> list[tuple[tuple[int, int], tuple[int, int]]]:
