@@ -121,7 +121,7 @@ def test_stairs_leave_room_for_a_person(seed, scale):
     assert flight.hole > corridor_end  # The rail before it is not in the corridor.
     assert upper.high[1] - (flight.end - 1) >= wide
     assert {low for low, _ in rails(house)} == {
-        (flight.x0, flight.hole - 1), (flight.x1, flight.hole - 1),
+        (flight.x0, flight.hole - 1), (flight.x1, flight.hole),
     }  # fmt: skip
 
 

@@ -151,15 +151,18 @@ def put_stairs(canvas: WorldCanvas, house: BlockHouse, look: RoomLook, instance:
 def rails(house: BlockHouse) -> list[tuple[tuple[int, int], tuple[int, int]]]:
     """Return the columns, [low, high), of the rails beside and before the hole over the stairs.
 
-    Where the floor beside the hole is too narrow for a rail and a person there is none.
+    Where the floor beside or before it is too narrow for a rail and a person there is none.
     """
     flight = house.flight
     if flight is None:
         return []
     upper = next(room for room in house.rooms if room.storey == 1)
-    passage = upper.blocked[0][0] - flight.x1
-    beside = RAIL if passage > person_blocks(house.blocks_per_metre)[0] else 0
-    before = flight.hole - RAIL
-    ahead = ((flight.x0, before), (flight.x1 + beside, flight.hole))
-    along = ((flight.x1, before), (flight.x1 + beside, flight.end - 1))
-    return [ahead, along] if beside else [ahead]
+    wide, before = person_blocks(house.blocks_per_metre)[0], flight.hole - RAIL
+    has_beside = upper.blocked[0][0] - flight.x1 >= wide + RAIL
+    end = flight.x1 + RAIL * has_beside
+    found = []
+    if before - upper.low[1] >= wide:
+        found.append(((flight.x0, before), (end, flight.hole)))
+    if has_beside:
+        found.append(((flight.x1, flight.hole), (end, flight.end - 1)))
+    return found
