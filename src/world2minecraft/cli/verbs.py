@@ -48,6 +48,7 @@ VERBS: dict[str, str] = {
     "install": "Copy a built world to where the game finds it.",
     "undo": "Take back what was last built into a world.",
     "dataset build": "Make a labelled data set of generated houses, or of worlds of yours.",
+    "dataset rooms": "Make a labelled data set of photo-like pictures of generated rooms.",
     "dataset verify": "Check every byte of a data set.",
     "dataset tour": "Plan which pictures of a world are taken, or take those of screenshots.",
     "dataset sheet": "Draw many pictures of a data set or a tour on one page.",
