@@ -51,7 +51,7 @@ def seen_in_cells(sample: OccSample) -> float | None:
     """
     if sample.depth_m is None:
         return None
-    _, cells = _cells_behind(sample, sample.depth_m)
+    _, cells = cells_behind(sample, sample.depth_m)
     if not len(cells):
         return None
     return float(_widened(sample.occ.occupied)[tuple(cells.T)].mean())
@@ -72,7 +72,7 @@ def label_image_of(sample: OccSample) -> np.ndarray:
     met = labels.reshape(-1)[np.maximum(hits.voxel_index, 0)]
     met = np.where(hits.voxel_index >= 0, met, 0).astype(np.uint8)
     if sample.depth_m is not None:
-        pixels, cells = _cells_behind(sample, sample.depth_m)
+        pixels, cells = cells_behind(sample, sample.depth_m)
         behind = sample.occ.labels[tuple(cells.T)]
         met.reshape(-1)[pixels[behind > 0]] = behind[behind > 0]
     return met
@@ -82,8 +82,13 @@ def _camera_to_region(sample: OccSample) -> np.ndarray:
     return invert_rigid(sample.occ.region.region_to_room) @ sample.camera_to_room
 
 
-def _cells_behind(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return pixels [N] of a flat image, and the cells [N, 3] a little behind what they see."""
+def cells_behind(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return where pixels lead by their depth: to the cell a little behind the surface they see.
+
+    Returns:
+        Pixels int32 [N] of the flat image, rising, and cells int64 [N, 3] of the region; pixels
+        that see beyond it are left out.
+    """
     region = sample.occ.region
     finite = np.isfinite(depth_m) & (depth_m > 0)
     behind = np.where(finite, depth_m + np.float32(INTO_CELL * region.voxel_m), 0)

@@ -1,0 +1,95 @@
+"""Do trainers' own loaders find our labels?  ``python -m benchmarks.check_exports [DATA]``.
+
+A data set (40 views of four generated houses where none is named) is exported as NYUv2 and as
+OccScanNet, and read again by a loader that is written from the description of those formats alone
+(``tests/dataset/exchange/page_loader.py``): their orders of axes, their ``vox2pix``, their
+intrinsics. Told are the cells whose label or place in the picture differs from the store's (NYUv2's
+box is the region; OccScanNet's lies along the room's axes), and the share of the region's pixels
+whose depth leads, by the loader's arithmetic, to the label that the store's own geometry gives. The
+command leaves with 1 where one label differs.
+"""
+
+import argparse
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from tests.dataset.exchange import page_loader
+
+from world2minecraft.dataset.building import build_dataset
+from world2minecraft.dataset.engine import opened_engine
+from world2minecraft.dataset.exporters import export_samples
+from world2minecraft.dataset.plan import house_scenes, plan_dataset
+from world2minecraft.dataset.showing import cells_behind
+from world2minecraft.dataset.store import open_store
+from world2minecraft.dataset.values import OccSample
+from world2minecraft.files import read_json
+
+HOUSES, IMAGES = 4, 40
+NUDGE_M = 0.02  # Behind a surface, as far as ``cells_behind`` looks.
+Load = Callable[[OccSample], page_loader.Loaded]
+
+
+def count(sample: OccSample, loaded: page_loader.Loaded, matrix: np.ndarray, sums: Counter) -> None:
+    """Add up what a loader finds of one sample."""
+    occ, same_box = sample.occ, matrix is page_loader.NYU_K
+    sums["pictures"] += 1
+    if same_box:
+        sums["cells"] += occ.labels.size
+        sums["labels that differ"] += int((loaded.target != occ.labels).sum())
+        sums["cells in view or not, otherwise"] += int((loaded.in_view != occ.in_frustum).sum())
+    found = page_loader.first_seen_labels(loaded, matrix, nudge_m=NUDGE_M)
+    assert sample.depth_m is not None
+    pixels, cells = cells_behind(sample, sample.depth_m)
+    sums["pixels"] += len(pixels)
+    own = occ.labels[tuple(cells.T)]
+    sums["pixels with the same label"] += int((found.reshape(-1)[pixels] == own).sum())
+
+
+def check(name: str, samples: list[OccSample], load: Load, console: Console) -> int:
+    """Count all samples of one format, print the table; return how many labels differ."""
+    sums: Counter = Counter()
+    for sample in samples:
+        loaded = load(sample)
+        count(sample, loaded, loaded.stored.get("K", page_loader.NYU_K), sums)
+    table = Table(name, "", box=None)
+    for what, number in sums.items():
+        table.add_row(what, f"{number:,}")
+    console.print(table, "")
+    return sums["labels that differ"]
+
+
+def main() -> int:
+    """Print the tables; return the exit code."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("data", nargs="?", type=Path, help="a data set with pictures")
+    data, wrong = parser.parse_args().data, 0
+    with tempfile.TemporaryDirectory() as place:
+        if data is None:
+            data = Path(place) / "DATA"
+            with opened_engine("pool", 2) as engine:
+                build_dataset(data, plan_dataset(house_scenes(HOUSES), IMAGES), engine)
+        samples = list(open_store(data).samples())
+        nyu, scans = Path(place) / "nyu", Path(place) / "occscannet"
+        export_samples(samples, "nyu", nyu)
+        export_samples(samples, "occscannet", scans)
+        rows = read_json(scans / "names.json")  # scene, frame, ...
+        loads: dict[str, Load] = {
+            "nyu": lambda sample: page_loader.load_nyu(nyu, sample.split, sample.key),
+            "occscannet": lambda sample: page_loader.load_occscannet(
+                scans, "gathered_data/{}/{}.pkl".format(*rows[sample.key])
+            ),
+        }
+        console = Console(width=110)
+        for name, load in loads.items():
+            wrong += check(name, samples, load, console)
+    return int(wrong > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

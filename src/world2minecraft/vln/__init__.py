@@ -1,0 +1,1 @@
+"""MinecraftVLN: worlds to walk, instructions to follow, agents to score."""
