@@ -65,6 +65,7 @@ class EvidenceMap:
         """
         values, blocks = self.parameters, self.blocks
         log_odds, record, low = self._dense()
+        log_odds = np.clip(log_odds, -values.limit_log_odds, values.limit_log_odds)
         sums = [
             array[: int(blocks.used[1]) + 1].copy()
             for array in (blocks.votes, blocks.colour_sum, blocks.offset_sum, blocks.hits)
@@ -158,18 +159,24 @@ class EvidenceMap:
             add_votes(evidence.votes.astype(np.float32), *at, blocks.votes)
 
     def _add_grid(self, evidence: GridEvidence) -> None:
-        cells, gains, votes = grid_gains(evidence, self.scan_to_room, self.parameters)
-        if not len(cells):
+        found = grid_gains(evidence, self.scan_to_room, self.parameters)
+        if not len(found.cells):
             return
-        blocks, limit = self.blocks, self.parameters.limit_log_odds
-        blocks.reserve_box(cells.min(axis=0), cells.max(axis=0) + 1, self.parameters.voxel_m)
-        blocks.reserve_records(len(cells))
-        at = places_of(cells, blocks.low, blocks.table, blocks.used)
-        blocks.log_odds[at] = np.clip(blocks.log_odds[at] + gains, -limit, limit)
+        blocks = self.blocks
+        low, high = found.cells.min(axis=0), found.cells.max(axis=0) + 1
+        blocks.reserve_box(low, high, self.parameters.voxel_m)
+        at = places_of(found.cells, blocks.low, blocks.table, blocks.used)
+        blocks.log_odds[at] += found.gains
+        said = found.votes.any(axis=1)
+        at = at[said]
+        blocks.reserve_records(len(at))
         fresh = at[blocks.record[at] == 0]
         blocks.record[fresh] = blocks.used[1] + 1 + np.arange(len(fresh), dtype=np.int32)
         blocks.used[1] += len(fresh)
-        blocks.votes[blocks.record[at]] += votes
+        record = blocks.record[at]
+        blocks.votes[record] += found.votes[said]
+        blocks.colour_sum[record] += found.colour[said]
+        blocks.hits[record] += found.coloured[said]
 
     @property
     def _rules(self) -> np.ndarray:

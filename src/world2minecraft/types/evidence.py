@@ -51,13 +51,17 @@ class PointEvidence:
 
 @dataclass(frozen=True, eq=False)
 class GridEvidence:
-    """What a network says of one view, the paper's O_mono: class probabilities of its own grid."""
+    """What a network says of one view, the paper's O_mono: class probabilities of its own grid.
+
+    ``colour`` is what the view shows of each cell, of no meaning where it is free.
+    """
 
     view: str
     probabilities: np.ndarray  # float16 [X, Y, Z, 12]
     seen: np.ndarray  # bool [X, Y, Z]
     voxel_m: float
     grid_to_scan: np.ndarray  # 4x4: metres from the grid's minimum corner to the scan frame
+    colour: np.ndarray | None = None  # uint8 [X, Y, Z, 3]
 
     def __post_init__(self):
         put = object.__setattr__
@@ -67,6 +71,9 @@ class GridEvidence:
         put(self, "seen", checks.array("seen", self.seen, np.bool_, probabilities.shape[:3]))
         put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
         put(self, "grid_to_scan", checks.transform("grid_to_scan", self.grid_to_scan))
+        if self.colour is not None:
+            shape = (*probabilities.shape[:3], 3)
+            put(self, "colour", checks.array("colour", self.colour, np.uint8, shape))
 
 
 @dataclass(frozen=True, eq=False)
