@@ -65,7 +65,8 @@ ROWS: tuple[tuple[str, ...], ...] = (
 RANK = {name: rank for rank, row in enumerate(ROWS) for name in row}
 TORCH = ("torch", "lightning", "torchvision")
 TORCH_FOLDERS = ("learn",)
-TORCH_FILES = ("stereo/hf.py",)  # Networks of others, asked for by name.
+# Networks of others, asked for by name.
+TORCH_FILES = ("models/hub.py", "models/single_thread.py", "occupy/hf_semantics.py")
 HEAVY_FOR_HELP = ("numpy", "numba", "scipy", "sklearn", "PIL", "rich", "jinja2", "pydantic")
 
 FILES = sorted(SOURCE.rglob("*.py"))

@@ -52,7 +52,7 @@ class LiveMap:
         self.scan: Scan | None = None
         self.frames = 0
         self._next = FIRST_PLACING
-        self._predictor = predictor(parameters.predictor)
+        self._predictor = predictor(parameters.predictor, parameters.occupy)
         self._map = EvidenceMap(np.eye(4), parameters.fuse)
 
     @property
@@ -63,7 +63,8 @@ class LiveMap:
     def add(self, view: View) -> None:
         """Fuse one view as it stands."""
         self.frames += 1
-        for item in self._predictor.predict(_scan_of(view)):
+        placed = np.eye(4) if self.scan is None else self.scan.scan_to_room
+        for item in self._predictor.predict(_scan_of(view, placed)):
             self._map.add(item)
 
     def place(self, capture: Path, labels: Path | None = None) -> bool:
@@ -309,9 +310,9 @@ def follow(
         return frames
 
 
-def _scan_of(view: View) -> Scan:
+def _scan_of(view: View, scan_to_room: np.ndarray) -> Scan:
     """Return a scan of one view, for predictors, which take scans."""
-    return Scan([view], np.eye(4), np.ones(3), (view.name,))
+    return Scan([view], scan_to_room, np.ones(3), (view.name,))
 
 
 def _innermost(scan: Scan | None) -> Any:

@@ -15,7 +15,7 @@ from world2minecraft.furnish import FurnishParameters
 from world2minecraft.fuse import CleanParameters, FuseParameters
 from world2minecraft.label import LABELLERS
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.occupy import PREDICTORS
+from world2minecraft.occupy import PREDICTORS, OccupyParameters
 from world2minecraft.posing import PosingParameters
 from world2minecraft.register import RegisterParameters
 from world2minecraft.stereo import StereoParameters
@@ -26,9 +26,10 @@ class Parameters:
     """What decides a result, beside the capture.
 
     voxel_m: the paper's cell. blocks_per_metre: at 4 a room is recognised at once, at 2 it is
-    not. labeller: ``auto`` takes ``votes`` where the capture has 2D labels, else
-    ``geometric``. mend: clean up what is built as a person would; ``w2m clean OUT --list`` tells
-    what that was. formats: further forms of the build, such as ``litematic,nbt,glb``.
+    not. predictor: ``depth``, or ``mono:FILE.onnx``. labeller: ``auto`` takes ``votes`` where
+    anything voted, else ``geometric``. mend: clean up what is built as a person would; ``w2m clean
+    OUT --list`` tells what that was. formats: further forms of the build, such as
+    ``litematic,nbt,glb``.
     depth_model: a network whose depth fills what stereo leaves open, such as ``hf:ORG/NAME``.
     plan: the path of a RoomPlan of the same room, as more evidence.
     known: a length by its name, such as ``("table height", 0.72)``; known_points: two places in
@@ -51,6 +52,7 @@ class Parameters:
     posing: PosingParameters = field(default_factory=PosingParameters)
     stereo: StereoParameters = field(default_factory=StereoParameters)
     register: RegisterParameters = field(default_factory=RegisterParameters)
+    occupy: OccupyParameters = field(default_factory=OccupyParameters)
     fuse: FuseParameters = field(default_factory=FuseParameters)
     clean: CleanParameters = field(default_factory=CleanParameters)
     find: FindParameters = field(default_factory=FindParameters)
@@ -65,7 +67,7 @@ class Parameters:
                 f"blocks_per_metre must be 0.25 to 100, not {self.blocks_per_metre}; "
                 "try 1, 2, 4 or 12.5"
             )
-        check_name("predictor", self.predictor, PREDICTORS.names())
+        check_name("predictor", self.predictor.partition(":")[0], PREDICTORS.names())
         check_name("labeller", self.labeller, ("auto", *LABELLERS.names()))
         game_version(self.mc_version)
         for name in self.format_names:

@@ -22,7 +22,7 @@ from world2minecraft.exchange.evidence import write_evidence
 from world2minecraft.exchange.poses import read_poses, write_poses
 from world2minecraft.exchange.scan import placed_as_written, read_registration, write_scan
 from world2minecraft.fuse import fuse_views
-from world2minecraft.occupy import predictor
+from world2minecraft.occupy import notes_of, predictor
 from world2minecraft.parameters import Parameters
 from world2minecraft.plans import add_plan_openings, voted_by_plan
 from world2minecraft.prepare import open_prepared
@@ -60,6 +60,8 @@ def reconstruct(
     """
     chosen = parameters or Parameters()
     run = RunFolder(out, STAGES, start)
+    early = start is None or STAGES.index(start) <= STAGES.index("fuse")
+    used = predictor(chosen.predictor, chosen.occupy) if early else None
     with run.timed("scan"):
         scan = open_prepared(capture, out, chosen, labels, progress)
     run.begin(manifest(capture, labels, chosen))
@@ -75,11 +77,11 @@ def reconstruct(
             write_scan(run.path("scan.json"), scan, found.corrections.facts)
     else:
         scan = registered_before(scan, out)
-    if run.needs("fuse"):
+    if used is not None and run.needs("fuse"):
         with run.stage("fuse"):
-            views = predictor(chosen.predictor).predict(scan)
             rules = chosen.fuse.suited(scan.depth_kind)
-            evidence, scan = fuse_views(views, scan, rules, progress), settled(scan)
+            evidence, scan = fuse_views(used.predict(scan), scan, rules, progress), settled(scan)
+            scan = replace(scan, notes=(*scan.notes, *notes_of(used)))
             if chosen.plan:
                 evidence, told_of_plan = voted_by_plan(evidence, Path(chosen.plan))
                 scan = replace(scan, notes=(*scan.notes, *told_of_plan))
@@ -106,6 +108,12 @@ def registered_before(scan: Scan, out: Path) -> Scan:
     return corrected(placed, read_poses(out / "poses.npz"))
 
 
+def network_files(chosen: Parameters) -> list[Path]:
+    """Return the files beside the capture that networks are read from or told by."""
+    named = (chosen.predictor.partition(":")[2], chosen.occupy.network, chosen.occupy.label_names)
+    return [Path(name) for name in named if name]
+
+
 def manifest(capture: Path, labels: Path | None, chosen: Parameters) -> dict:
     """Return what decides a result: the input's hash, the parameters and the versions."""
     return {
@@ -113,6 +121,7 @@ def manifest(capture: Path, labels: Path | None, chosen: Parameters) -> dict:
         "capture": hash_capture(capture),
         "labels": None if labels is None else hash_capture(labels),
         "plan": hash_capture(Path(chosen.plan)) if chosen.plan else None,
+        "networks": [hash_capture(path) for path in network_files(chosen)],
         "parameters": chosen.as_json(),
         "versions": {name: version(name) for name in ("numpy", "scipy", "scikit-learn", "numba")},
     }

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from world2minecraft.errors import DamagedFileError, InputError, MissingExtraError
+from world2minecraft.models.pictures import prepared, wanted_size
 from world2minecraft.stereo.guide import depth_model
-from world2minecraft.stereo.hf import prepared, wanted_size
 from world2minecraft.types import Camera
 
 CAMERA = Camera(60, 40, 50.0, 50.0, 30.0, 20.0)
@@ -125,6 +125,8 @@ def test_without_the_libraries_the_extra_is_named(monkeypatch):
         ((640, 480), {"size": {"width": 518, "height": 518}, "keep_aspect_ratio": 0}, (518,) * 2),
         ((480, 640), {"size": {"width": 512, "height": 384}, "ensure_multiple_of": 32}, (512, 672)),
         ((640, 480), {"size": {"shortest_edge": 240}, "ensure_multiple_of": 1}, (320, 240)),
+        ((800, 400), {"size": {"shortest_edge": 512, "longest_edge": 700}}, (700, 350)),
+        ((640, 480), {"size": 240, "max_size": 2000, "ensure_multiple_of": 1}, (320, 240)),
         ((9, 9), {"size": 1}, (14, 14)),
         ((10, 10), {"size": 10**9}, (4088, 4088)),
     ],

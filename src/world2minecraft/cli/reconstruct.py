@@ -28,6 +28,7 @@ w2m reconstruct my_photos --out OUT --known "table height" 0.72
 w2m reconstruct room.glb --out OUT                        a mesh or a point cloud
 w2m reconstruct my_scan --out OUT --blocks-per-metre 2    smaller, coarser
 w2m reconstruct my_scan --out OUT --labels my_labels      with 2D label images
+w2m reconstruct my_scan --out OUT --semantics hf:shi-labs/oneformer_ade20k_swin_tiny
 w2m reconstruct my_scan --out OUT --from build            build again, all before kept
 w2m reconstruct my_scan --out OUT --method paper          the paper's steps alone
 w2m reconstruct my_scan --out OUT --set find.cluster_radius=3
@@ -65,7 +66,17 @@ KnownPoints = Annotated[
     ),
 ]
 DepthModel = Annotated[
-    str, typer.Option("--depth-model", metavar="hf:ID", help="A network that fills stereo's gaps.")
+    str,
+    typer.Option(
+        "--depth", "--depth-model", metavar="hf:ID", help="A network for the depth of pictures."
+    ),
+]
+Semantics = Annotated[
+    str,
+    typer.Option("--semantics", metavar="hf:ID", help="A network that says what pixels show."),
+]
+PredictorName = Annotated[
+    str, typer.Option("--predictor", help="depth, or mono:FILE.onnx, the paper's network.")
 ]
 Plan = Annotated[
     Path | None, typer.Option("--plan", help="A RoomPlan of the same room, as more evidence.")
@@ -89,6 +100,8 @@ def run(
     known: Known = None,
     known_points: KnownPoints = None,
     depth_model: DepthModel = "",
+    semantics: Semantics = "",
+    predictor: PredictorName = "depth",
     plan: Plan = None,
     mc_version: Version = "1.20.1",
     settings: Settings = None,
@@ -105,16 +118,19 @@ def run(
     from world2minecraft.cli.progress import shown
     from world2minecraft.errors import UsageError
     from world2minecraft.making import make_run, plan_in
+    from world2minecraft.occupy import OccupyParameters
     from world2minecraft.parameters import Parameters, with_method, with_settings
 
     chosen = Parameters(
         voxel,
         blocks_per_metre,
+        predictor,
         labeller=labeller,
         mc_version=mc_version,
         known=known,
         known_points=known_points,
         depth_model=depth_model,
+        occupy=OccupyParameters(semantics=semantics),
         plan="" if plan is None else str(plan),
     )
     chosen = with_build_options(with_method(chosen, method), style, palette, formats)

@@ -141,7 +141,7 @@ def _true_size(truth: Truth, otherwise: np.ndarray) -> np.ndarray:
 
 
 def _after_alignment(case: Case, work: Path) -> None:
-    views = predictor(case.parameters.predictor).predict(case.scan)
+    views = predictor(case.parameters.predictor, case.parameters.occupy).predict(case.scan)
     write_scan(work / "scan.json", case.scan)
     write_evidence(work / "evidence.npz", fuse_views(views, case.scan, case.parameters.fuse))
     _go_on(case, work, "label")

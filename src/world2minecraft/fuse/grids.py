@@ -57,7 +57,7 @@ def grid_gains(
         colour = np.zeros((len(cells), 3))
     else:
         colour = _means(evidence.colour[evidence.seen].astype(np.float64)[owner], at, len(cells))
-    coloured = votes.any(axis=1) & (evidence.colour is not None)
+    coloured = np.logical_and(votes.any(axis=1), evidence.colour is not None)
     return GridGains(cells, gains.astype(np.float32), votes, colour.astype(np.float32), coloured)
 
 

@@ -1,16 +1,27 @@
 """Stage 2: a scan becomes evidence, one item a view.
 
 A predictor is any callable object with ``predict(scan)``; the built-in ones are in
-``PREDICTORS``, others join through the entry point group ``world2minecraft.predictor``.
+``PREDICTORS``, others join through the entry point group ``world2minecraft.predictor``. ``depth``
+may be helped by networks that vote for classes (``OccupyParameters``).
 """
 
 from collections.abc import Iterator
 from typing import Protocol
 
+from world2minecraft.errors import UsageError
+from world2minecraft.occupy.parameters import OccupyParameters
 from world2minecraft.registry import Registry
 from world2minecraft.types import GridEvidence, PointEvidence, Scan
 
-PREDICTORS = Registry("predictor", {"depth": "world2minecraft.occupy.depth:DepthPredictor"})
+__all__ = ["PREDICTORS", "OccupyParameters", "Predictor", "notes_of", "predictor"]
+
+PREDICTORS = Registry(
+    "predictor",
+    {
+        "depth": "world2minecraft.occupy.depth:DepthPredictor",
+        "mono": "world2minecraft.occupy.mono:MonoPredictor",
+    },
+)
 
 
 class Predictor(Protocol):
@@ -21,10 +32,35 @@ class Predictor(Protocol):
         ...
 
 
-def predictor(name: str) -> Predictor:
+def predictor(name: str, parameters: OccupyParameters | None = None) -> Predictor:
     """Return a new predictor by name.
+
+    Args:
+        name: such as ``depth``, or with a file of its own, ``mono:FILE.onnx``.
+        parameters: networks that vote on what ``depth`` sees.
 
     Raises:
         UnknownNameError: none has this name; the message suggests the nearest.
+        UsageError: networks are to vote on what another predictor than ``depth`` gives.
+        InputError: a network's file cannot be used.
     """
-    return PREDICTORS.load(name)()
+    family, _, file = name.partition(":")
+    make = PREDICTORS.load(family)
+    chosen = parameters or OccupyParameters()
+    if chosen.network and not chosen.mono_votes:
+        raise UsageError("occupy.network votes by occupy.mono_votes=true; set that too")
+    if not (chosen.semantics or chosen.mono_votes):
+        return make(file) if file else make()
+    if family != "depth":
+        raise UsageError(
+            f"--semantics and occupy.mono_votes vote on what depth sees, not on {family!r}; "
+            "leave out --predictor"
+        )
+    from world2minecraft.occupy.voters import voters_of  # noqa: PLC0415  # Few runs have any.
+
+    return make(voters=voters_of(chosen))
+
+
+def notes_of(used: Predictor) -> tuple[str, ...]:
+    """Return what a predictor has to tell once its evidence was read: sentences for the report."""
+    return tuple(getattr(used, "notes", ()))

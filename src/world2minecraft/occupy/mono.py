@@ -15,7 +15,7 @@ from scipy import ndimage
 
 from world2minecraft.coordinates import apply, invert_rigid
 from world2minecraft.errors import CaptureError, UsageError
-from world2minecraft.geometry.lifting import project
+from world2minecraft.geometry.lifting import lift_depth, project
 from world2minecraft.geometry.region import (
     USUAL_VOXEL_M,
     LabelRegion,
@@ -130,13 +130,8 @@ def depth_of(view: View, camera: Camera) -> np.ndarray | None:
     """
     if view.depth_m is None or view.depth_camera is None:
         return None
-    from_px = np.argwhere(view.depth_m > 0)
-    depth_m = view.depth_m[tuple(from_px.T)].astype(np.float64)
-    lens = view.depth_camera
-    across = (from_px[:, 1] + 0.5 - lens.cx_px) / lens.fx_px * depth_m
-    down = (from_px[:, 0] + 0.5 - lens.cy_px) / lens.fy_px * depth_m
-    points = apply(view.depth_to_colour, np.stack([across, down, depth_m], axis=1))
-    points = points[points[:, 2] > NEAREST_M]
+    points, _ = lift_depth(view.depth_m, view.depth_camera, view.depth_to_colour)
+    points = points[points[:, 2] > NEAREST_M].astype(np.float64)
     found = np.full((camera.height_px, camera.width_px), np.inf)
     u, v = np.floor(project(points, camera)).astype(np.int64).T
     here = (u >= 0) & (v >= 0) & (u < camera.width_px) & (v < camera.height_px)

@@ -1,0 +1,123 @@
+"""Any universal or semantic segmenter of the transformers library, by its name or from a folder.
+
+A universal one (Mask2Former, OneFormer, MaskFormer, EoMT) gives masks and what each shows; their
+product summed over masks is the score of a label at a pixel. A semantic one (SegFormer, UPerNet,
+BEiT, DPT) scores labels at pixels. Scores of the labels of one class are summed and divided by
+those of all labels.
+"""
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.models import hub
+from world2minecraft.models.pictures import prepared
+from world2minecraft.models.single_thread import single_thread
+
+TASK = "the task is semantic"  # OneFormer is told in words.
+TOKENIZER_FILES = ("tokenizer.json", "vocab.json")
+
+
+class HuggingFaceSemantics:
+    """A segmenter of a model hub or a folder, on one thread of the processor.
+
+    Only its config is read before the first picture, so that what was kept costs nothing.
+
+    Raises:
+        MissingExtraError: torch or transformers is not installed.
+        InputError: the model cannot be had, or is no segmenter.
+    """
+
+    def __init__(self, model: str):
+        self._model = model
+        self._transformers = hub.library("a segmenter")
+        self.name = hub.checked_name(model)
+        config = hub.config(model, self._transformers)
+        self._kind = _kind(model, config, self._transformers)
+        names = getattr(config, "id2label", None) or {}
+        self.labels = tuple(str(names[number]) for number in sorted(names))
+        self.identity = hub.identity(model, self._transformers)
+        self._config = config
+
+    def predict(self, colour: np.ndarray, classes: np.ndarray) -> np.ndarray:
+        """Return float32 [h, w, 12]; see ``Segmenter``.
+
+        Raises:
+            InputError: the network cannot be loaded, or cannot work on this picture.
+        """
+        network, ready = self._network, self._ready
+        with single_thread() as torch:
+            try:
+                pixels = torch.from_numpy(prepared(colour, ready))
+                found = network(pixel_values=pixels, **self._told)
+                scores = _label_scores(torch, found)  # [C, h, w]
+            except (RuntimeError, ValueError) as error:
+                reason = f"the network fails: {hub.first_line(error)}"
+                raise InputError(self.name, reason) from None
+            if scores.shape[0] != len(classes):
+                raise DamagedFileError(
+                    self._model, f"scores {scores.shape[0]} labels and names {len(classes)}"
+                )
+            summed = torch.einsum("chw,ck->hwk", scores, torch.from_numpy(classes))
+            total = scores.sum(dim=0).clamp_min(1e-6)[..., None]
+            return (summed / total).to(torch.float32).numpy()
+
+    @cached_property
+    def _network(self) -> Any:
+        return hub.network(self._model, self._kind)
+
+    @cached_property
+    def _ready(self) -> dict[str, Any]:
+        ready = hub.preparation(self._model, self._transformers)
+        if str(self._config.model_type).startswith("eomt"):  # Its places are those of a square.
+            side = self._config.image_size
+            ready = {**ready, "size": {"width": side, "height": side}}
+        return ready
+
+    @cached_property
+    def _told(self) -> dict[str, Any]:
+        """What the network wants to be told beside the picture."""
+        if self._config.model_type != "oneformer":
+            return {}
+        import torch  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
+
+        if not hub.has_file(self._model, TOKENIZER_FILES, self._transformers):
+            raise InputError(self._model, f"has no tokenizer: none of {', '.join(TOKENIZER_FILES)}")
+        try:
+            words = self._transformers.AutoTokenizer.from_pretrained(self._model)
+            length = getattr(self._config, "task_seq_len", None) or 77
+            told = words([TASK], padding="max_length", max_length=length, truncation=True)
+        except Exception as error:  # Whatever another library raises on what it cannot read.
+            raise InputError(
+                self._model, f"its tokenizer cannot be loaded: {hub.first_line(error)}"
+            ) from None
+        tokens = np.array(told["input_ids"]) * np.array(told["attention_mask"])
+        return {"task_inputs": torch.from_numpy(tokens)}
+
+
+def _kind(model: str, config: Any, transformers: Any) -> Any:
+    """Return the class of the library that loads a segmenter."""
+    told = (getattr(config, "architectures", None) or [""])[0]
+    families = transformers.models.auto.modeling_auto
+    universal = families.MODEL_FOR_UNIVERSAL_SEGMENTATION_MAPPING_NAMES
+    semantic = families.MODEL_FOR_SEMANTIC_SEGMENTATION_MAPPING_NAMES
+    if config.model_type in universal and told in ("", universal[config.model_type]):
+        return transformers.AutoModelForUniversalSegmentation
+    if config.model_type in semantic and told in ("", semantic[config.model_type]):
+        return transformers.AutoModelForSemanticSegmentation
+    raise InputError(
+        model,
+        f"is a {told or config.model_type}, no segmenter; take one of "
+        f"{', '.join(sorted({**universal, **semantic}))}",
+    )
+
+
+def _label_scores(torch: Any, found: Any) -> Any:
+    """Return the scores [C, h, w] of labels at pixels, none below 0."""
+    masks = getattr(found, "masks_queries_logits", None)
+    if masks is None:
+        return torch.softmax(found.logits[0].float(), dim=0)
+    kinds = torch.softmax(found.class_queries_logits[0].float(), dim=-1)[:, :-1]
+    return torch.einsum("qc,qhw->chw", kinds, torch.sigmoid(masks[0].float()))
