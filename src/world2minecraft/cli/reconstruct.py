@@ -25,6 +25,8 @@ EXAMPLES = """\
 w2m reconstruct my_scan --out OUT                         the whole way
 w2m reconstruct IMG_2041.MOV --out OUT                    a phone's video; a folder of photos too
 w2m reconstruct my_photos --out OUT --known "table height" 0.72
+w2m reconstruct photo.jpg --out OUT --depth hf:ORG/NAME   one photo, its depth by a network
+w2m reconstruct photo.jpg --out OUT --predictor mono:FILE.onnx --fov 55
 w2m reconstruct room.glb --out OUT                        a mesh or a point cloud
 w2m reconstruct my_scan --out OUT --blocks-per-metre 2    smaller, coarser
 w2m reconstruct my_scan --out OUT --labels my_labels      with 2D label images
@@ -75,6 +77,10 @@ Semantics = Annotated[
     str,
     typer.Option("--semantics", metavar="hf:ID", help="A network that says what pixels show."),
 ]
+FieldOfView = Annotated[
+    float | None,
+    typer.Option("--fov", metavar="DEGREES", help="Of one photo: lower to upper edge; else EXIF."),
+]
 PredictorName = Annotated[
     str, typer.Option("--predictor", help="depth, or mono:FILE.onnx, the paper's network.")
 ]
@@ -102,6 +108,7 @@ def run(
     depth_model: DepthModel = "",
     semantics: Semantics = "",
     predictor: PredictorName = "depth",
+    fov: FieldOfView = None,
     plan: Plan = None,
     mc_version: Version = "1.20.1",
     settings: Settings = None,
@@ -133,6 +140,8 @@ def run(
         occupy=OccupyParameters(semantics=semantics),
         plan="" if plan is None else str(plan),
     )
+    if fov is not None:
+        settings = [f"capture.fov_deg={fov}", *(settings or [])]
     chosen = with_build_options(with_method(chosen, method), style, palette, formats)
     chosen = with_settings(chosen, settings or [])
     if follow and start is not None:

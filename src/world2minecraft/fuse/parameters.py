@@ -52,7 +52,8 @@ class FuseParameters:
     def suited(self, depth_kind: str) -> "FuseParameters":
         """Return the parameters for another kind of depth; what was chosen by hand stays.
 
-        Depth from stereo errs more with distance than a sensor's, and by whole patches.
+        Depth from stereo errs more with distance than a sensor's, and by whole patches; so does
+        that of a network.
         """
         default = FuseParameters(self.voxel_m)
         changes = BY_DEPTH_KIND.get(depth_kind, {})
@@ -60,13 +61,12 @@ class FuseParameters:
         return replace(self, **untouched)
 
 
-BY_DEPTH_KIND: dict[str, dict[str, Any]] = {
-    "stereo": {
-        "free_log_odds": -0.25,
-        "min_share": 0.08,
-        "clear_m": 0.12,
-        "clear_growth": 0.03,
-        "sigma_m": 0.004,
-        "sigma_growth": 0.004,
-    },
+_COMPUTED: dict[str, Any] = {
+    "free_log_odds": -0.25,
+    "min_share": 0.08,
+    "clear_m": 0.12,
+    "clear_growth": 0.03,
+    "sigma_m": 0.004,
+    "sigma_growth": 0.004,
 }
+BY_DEPTH_KIND: dict[str, dict[str, Any]] = {"stereo": _COMPUTED, "network": _COMPUTED}

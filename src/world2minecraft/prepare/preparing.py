@@ -15,6 +15,7 @@ from world2minecraft.errors import (
 from world2minecraft.files import read_json, write_json
 from world2minecraft.parameters import Parameters
 from world2minecraft.posing import check_poses, find_poses
+from world2minecraft.prepare.one_photo import is_one_photo, prepare_photo
 from world2minecraft.prepare.pictures import depth_views, stereo_views
 from world2minecraft.prepare.scaling import normalised, scaled_by_depth, scaled_capture
 from world2minecraft.progress import Progress, silent
@@ -26,7 +27,7 @@ from world2minecraft.scan.options import parse_options
 from world2minecraft.scan.photos import CapturePhotos, judged_photos
 from world2minecraft.scan.plain import write_plain
 from world2minecraft.scan.sources import find_capture
-from world2minecraft.stereo import depth_maps, depth_model
+from world2minecraft.stereo import depth_maps, depth_model, network_maps
 from world2minecraft.types import SparseScene, View
 
 FOLDER = "capture"
@@ -60,6 +61,8 @@ def prepared(capture: Path, out: Path, chosen: Parameters, progress: Progress = 
     fresh = not out.exists()
     check_writable(out)
     folder, stamp = out / FOLDER, stamp_of(capture, chosen)
+    if is_one_photo(found.source):
+        stamp["predictor"] = chosen.predictor.partition(":")[0]
     if not _made_before(folder, stamp):
         (folder / STAMP).unlink(missing_ok=True)
         try:
@@ -115,6 +118,8 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
         None,
         lambda done, total: progress("photos", done, total),
     )
+    if is_one_photo(found.source):
+        return prepare_photo(judged, folder, chosen, UNIT)
     photos = judged_photos(judged)
     if len(photos) < LEAST_PHOTOS:
         raise CaptureError(
@@ -132,7 +137,7 @@ def _prepare(found: Capture, folder: Path, chosen: Parameters, progress: Progres
         kind = found.depth_kind
     else:
         views, told = _with_stereo(photos, scene, chosen, progress), {}
-        kind = "stereo"
+        kind = "network" if chosen.stereo.network_alone else "stereo"
     up = found.world_up
     stated = {
         "made_from": found.source,
@@ -169,5 +174,10 @@ def _with_stereo(
     photos: CapturePhotos, scene: SparseScene, chosen: Parameters, progress: Progress
 ) -> Iterator[View]:
     guide = depth_model(chosen.depth_model) if chosen.depth_model else None
-    maps = depth_maps(photos, scene, chosen.stereo, progress, guide)
+    if not chosen.stereo.network_alone:
+        maps = depth_maps(photos, scene, chosen.stereo, progress, guide)
+    elif guide is None:
+        raise UsageError("stereo.network_alone=true needs the network: add --depth hf:ORG/NAME")
+    else:
+        maps = network_maps(photos, scene, guide, chosen.stereo, progress)
     return stereo_views(photos, scene, maps)

@@ -1,6 +1,7 @@
 """How frames are registered: every number that decides it, and where it comes from."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,17 @@ class RegisterParameters:
         """Return the parameters for another kind of depth.
 
         Poses that stereo was computed from meet to fractions of a pixel already, and what looks at
-        a mesh stands where it says: only a sensor's frames are moved.
+        a mesh stands where it says: only a sensor's frames are moved. A network's depth is off by
+        some per cent, each frame its own way, and is evened out where poses stand.
         """
+        if depth_kind == "network":
+            default = RegisterParameters()
+            untouched = {
+                k: v for k, v in OF_NETWORKS.items() if getattr(self, k) == getattr(default, k)
+            }
+            return replace(self, **untouched)
         return self if depth_kind == "sensor" else replace(self, passes=0)
+
+
+# Poses are those of photos; scales differ by what monocular networks are known for.
+OF_NETWORKS: dict[str, Any] = {"jitter_m": 0.002, "jitter_deg": 0.05, "scale_sigma": 0.05}

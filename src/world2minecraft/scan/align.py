@@ -84,8 +84,10 @@ def align_surface(surface: Surface, up_hint: np.ndarray | None = None) -> Alignm
 def realigned(scan: Scan, surface: Surface) -> Scan:
     """Return a scan whose room is found anew in a better surface of its frame.
 
-    Where that is no plausible room, the scan stays as it is.
+    Where that is no plausible room, or nothing was seen by depth, the scan stays as it is.
     """
+    if not len(surface.points_m):
+        return scan
     try:
         found = align_surface(surface, scan.world_up)
     except ImplausibleRoomError:

@@ -46,12 +46,13 @@ class Capture:
     ``folder`` is the folder or file that the user named. ``one_matrix`` says that depth and colour
     share one stated matrix, so that the colour camera may truly be another. ``depth_unit`` is None
     where the capture does not state it. ``depth_kind`` says what made the depth: a ``sensor``,
-    ``stereo``, or nothing that errs (``exact``, a mesh that is looked at). ``lens`` says whether
-    the colour cameras are ``stated`` or a first ``guess`` (EXIF, or none). ``full_trust`` is the
-    value of ``trust_path`` that means full trust; 0 always means none. ``world_up`` is a unit
-    vector of the world frame where the capture is known to stand upright. ``scale`` and
-    ``scale_sigma`` are as in ``Scan``: ``unknown`` where poses have no unit. ``skipped`` are
-    frames that were left out before, with reasons.
+    ``stereo``, a ``network``, or nothing that errs (``exact``, a mesh that is looked at). ``lens``
+    says whether the colour cameras are ``stated`` or a first ``guess`` (EXIF, or none).
+    ``full_trust`` is the value of ``trust_path`` that means full trust; 0 always means none.
+    ``world_up`` is a unit vector of the world frame where the capture is known to stand upright.
+    ``scale`` and ``scale_sigma`` are as in ``Scan``: ``unknown`` where poses have no unit.
+    ``skipped`` are frames that were left out before, with reasons. ``room`` is ``scan_to_room``
+    and the room's size in metres where depth cannot tell them: of one photo that has none.
     """
 
     folder: AnyPath
@@ -60,13 +61,14 @@ class Capture:
     depth_unit: str | None = None
     one_matrix: bool = False
     notes: tuple[str, ...] = ()
-    depth_kind: Literal["sensor", "stereo", "exact"] = "sensor"
+    depth_kind: Literal["sensor", "stereo", "network", "exact"] = "sensor"
     lens: Literal["stated", "guess"] = "stated"
     full_trust: float = 255.0
     world_up: np.ndarray | None = None
     scale: Literal["metric", "estimated", "unknown"] = "metric"
     scale_sigma: float = 0.0
     skipped: tuple[tuple[str, str], ...] = ()
+    room: tuple[np.ndarray, np.ndarray] | None = None
 
 
 class Source(Protocol):

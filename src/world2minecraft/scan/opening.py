@@ -48,7 +48,7 @@ def open_scan(
     judged = judge_capture(
         path, chosen, labels, lambda done, total: progress(STAGE, 40 * done // total, STEPS)
     )
-    if not judged.complete:
+    if not judged.complete and judged.capture.room is None:
         lacks = "depth images" if judged.posed else "poses"
         raise CaptureError(
             judged.capture.folder,
@@ -103,6 +103,8 @@ def _with_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
 
 
 def _aligned(judged: JudgedCapture, stream: CaptureViews) -> Alignment:
+    if judged.capture.room is not None:
+        return Alignment(*judged.capture.room, ())
     with_depth = without_colour(stream.frames)
     try:
         views = stream.read(spread_over(with_depth, ALIGNED_FRAMES))

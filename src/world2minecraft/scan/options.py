@@ -7,7 +7,10 @@ from dataclasses import dataclass
 from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.scan.depth import DepthEncoding
 
-OPTION_NAMES = ("depth_unit", "every", "colour_camera", "unit", "up", "inside", "frames")
+OPTION_NAMES = (
+    "depth_unit", "every", "colour_camera", "unit", "up", "inside", "frames", "fov_deg",
+    "eye_height_m", "pitch_deg",
+)  # fmt: skip
 SOLID_UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048}
 LEAST_FRAMES = 3  # Two photos cannot check each other.
 UP_AXES = ("x", "y", "z", "-x", "-y", "-z")
@@ -31,6 +34,12 @@ class ScanOptions:
     """Of a mesh or a cloud: a point inside the room, in the file's own units and axes."""
     frames: int | None = None
     """How many pictures to take of a video (else 100 at most) or a folder of photos (else all)."""
+    fov_deg: float | None = None
+    """Of one photo: the angle from its lower to its upper edge; else by EXIF, else a usual lens."""
+    eye_height_m: float = 1.5
+    """Of one photo without depth: how high over the floor the camera was held."""
+    pitch_deg: float = 0.0
+    """Of one photo without depth: how far the camera looked up; below 0 down."""
 
 
 def parse_options(options: Mapping[str, str]) -> ScanOptions:
@@ -59,7 +68,22 @@ def parse_options(options: Mapping[str, str]) -> ScanOptions:
         _one_of("up", options.get("up"), UP_AXES),
         _point("inside", options.get("inside")),
         _frames(options.get("frames")),
+        _number("fov_deg", options.get("fov_deg"), 5, 170),
+        _number("eye_height_m", options.get("eye_height_m"), 0.1, 10) or 1.5,
+        _number("pitch_deg", options.get("pitch_deg"), -89, 89) or 0.0,
     )
+
+
+def _number(name: str, value: str | None, least: float, most: float) -> float | None:
+    if value is None:
+        return None
+    try:
+        number = float(value)
+    except ValueError:
+        number = math.nan
+    if not least <= number <= most:
+        raise UsageError(f"{name} must be {least:g} to {most:g}, not {value!r}")
+    return number
 
 
 def _frames(value: str | None) -> int | None:

@@ -23,7 +23,7 @@ from world2minecraft.types import Camera, View
 FORMAT = "world2minecraft-capture"
 VERSION = 1
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}")
-DEPTH_KINDS = ("sensor", "stereo", "exact")
+DEPTH_KINDS = ("sensor", "stereo", "network", "exact")
 SCALES = ("metric", "estimated", "unknown")
 MOST_NOTES, MOST_NOTE = 30, 400  # Sentences, and letters of each.
 JPEG_QUALITY = 95
@@ -70,6 +70,7 @@ class PlainSource:
             scale_sigma=_sigma(path, stated),
             skipped=_skipped(path, stated),
             world_up=_world_up(path, stated),
+            room=_room(path, stated),
         )
 
 
@@ -139,6 +140,24 @@ def _made_from(path: AnyPath, stated: dict[str, Any]) -> str:
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise CaptureError(path, f'"made_from" must be the name of a kind, not {name!r}')
     return name
+
+
+def _room(path: AnyPath, stated: dict[str, Any]) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return where the room lies, of a capture that cannot tell it by depth."""
+    room = stated.get("room")
+    if room is None:
+        return None
+    matrix = _matrix(path, room, "scan_to_room") if isinstance(room, dict) else None
+    size = room.get("size_m") if isinstance(room, dict) else None
+    if matrix is None or not isinstance(size, list) or len(size) != 3:
+        raise CaptureError(path, '"room" must hold "scan_to_room" and three numbers "size_m"')
+    try:
+        size_m = np.array(size, np.float64)
+    except (TypeError, ValueError):
+        size_m = np.zeros(3)
+    if not ((size_m > 0) & (size_m < 1000)).all():
+        raise CaptureError(path, f'"size_m" must be metres above 0, not {size}')
+    return matrix, size_m
 
 
 def _world_up(path: AnyPath, stated: dict[str, Any]) -> np.ndarray | None:

@@ -39,6 +39,7 @@ SOURCES = Registry(
         "solid": "world2minecraft.scan.solids.source:SolidSource",
         "video": "world2minecraft.scan.video:VideoSource",
         "photos": "world2minecraft.scan.photo_folder:PhotoFolderSource",
+        "photo": "world2minecraft.scan.one_photo:OnePhotoSource",
     },
 )
 MAX_WRAPPINGS = 3  # Folders that hold nothing but a folder, as zips often do.

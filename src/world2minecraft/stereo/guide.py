@@ -108,6 +108,32 @@ def filled(
     )
 
 
+def laid_on_points(
+    predicted: np.ndarray, kind: Kind, guide_px: np.ndarray, guide_m: np.ndarray
+) -> tuple[np.ndarray, float] | None:
+    """Lay a network's depth on the sparse points of its picture, as a whole and then around each.
+
+    Args:
+        predicted: float32 [H, W].
+        kind: "metric" or "inverse", see ``DepthModel``.
+        guide_px: float64 [G, 2], where points are seen; pixel centres at +0.5.
+        guide_m: float64 [G], their z-depth.
+
+    Returns:
+        Depth float64 [H, W], NaN where there is none, and the middle factor that it took; None
+        where points are few or the network fits them worse than 15 %.
+    """
+    nothing = np.zeros(predicted.shape, np.float32)
+    known_m, weight = _measured(nothing, nothing.astype(np.uint8), guide_px, guide_m)
+    guess_m = _laid_on(predicted.astype(np.float64), kind, known_m, weight)
+    if guess_m is None:
+        return None
+    nearby_m, _ = _nearby(guess_m, known_m, weight)
+    usable = np.isfinite(nearby_m) & (predicted > 0)
+    factor = float(np.median(nearby_m[usable] / predicted[usable])) if usable.any() else 1.0
+    return nearby_m, factor
+
+
 def _measured(depth_m, trust, guide_px, guide_m):
     """Return float64 [H, W] depths that count as known, and how much each counts, often 0."""
     weight = np.where((trust == SURE_TRUST) & (depth_m > 0), 1.0, 0.0)

@@ -23,6 +23,7 @@ class StereoParameters:
         Four or more confirm it wholly, fewer leave it with less trust.
     island_share: the part of a picture that depth must fill in one piece, of neighbours that
         differ by less than island_step: nearly half of what was wrong hung on nothing.
+    network_alone: photos are not compared at all; the network of ``--depth`` says their depth.
     """
 
     width_px: int = 320
@@ -39,6 +40,7 @@ class StereoParameters:
     agreement: float = 0.03
     island_share: float = 0.003
     island_step: float = 0.01
+    network_alone: bool = False
 
     def __post_init__(self):
         limits = {

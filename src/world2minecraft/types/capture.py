@@ -149,7 +149,7 @@ class Scan:
     source: str = ""
     notes: tuple[str, ...] = ()
     name: str = ""
-    depth_kind: Literal["sensor", "stereo", "exact"] = "sensor"
+    depth_kind: Literal["sensor", "stereo", "network", "exact"] = "sensor"
     world_up: np.ndarray | None = None
 
     def __post_init__(self):
