@@ -76,6 +76,9 @@ def prepare_photo(judged: JudgedCapture, folder: Path, chosen: Parameters, unit:
         )
         room = {"scan_to_room": np.eye(4).tolist(), "size_m": size_m.tolist()}
         stated |= {"scale_sigma": SIGMA_NONE, "notes": [*judged.notes, told], "room": room}
+    for name in ("depth", "trust"):  # Of the same photo with other networks.
+        for path in (folder / name).glob("*"):
+            path.unlink()
     write_plain(folder, views, depth_unit=unit, stated=stated, jpeg=True)
 
 
