@@ -38,6 +38,9 @@ w2m reconstruct my_scan --out OUT --follow                while the scan still g
 """
 
 
+CapturePlace = Annotated[
+    Path, typer.Argument(help="Photos, a video, a scan, a mesh ...; w2m scan tells.")
+]
 Start = Annotated[
     str | None,
     typer.Option("--from", metavar="STAGE", help="scan, register, fuse, ... or report."),
@@ -90,9 +93,7 @@ Plan = Annotated[
 
 
 def run(
-    capture: Annotated[
-        Path, typer.Argument(help="Photos, a video, a scan, a mesh ...; w2m scan tells.")
-    ],
+    capture: CapturePlace,
     out: Annotated[Path, typer.Option("--out", help="The folder of the results.")],
     voxel: Annotated[float, typer.Option("--voxel", help="Size of a cell, in metres.")] = 0.08,
     blocks_per_metre: Scale = 4.0,
@@ -125,7 +126,6 @@ def run(
     from world2minecraft.cli.progress import shown
     from world2minecraft.errors import UsageError
     from world2minecraft.making import make_run, plan_in
-    from world2minecraft.occupy import OccupyParameters
     from world2minecraft.parameters import Parameters, with_method, with_settings
 
     chosen = Parameters(
@@ -137,25 +137,27 @@ def run(
         known=known,
         known_points=known_points,
         depth_model=depth_model,
-        occupy=OccupyParameters(semantics=semantics),
         plan="" if plan is None else str(plan),
     )
-    if fov is not None:
-        settings = [f"capture.fov_deg={fov}", *(settings or [])]
     chosen = with_build_options(with_method(chosen, method), style, palette, formats)
-    chosen = with_settings(chosen, settings or [])
+    chosen = with_settings(chosen, as_settings(semantics, fov) + (settings or []))
     if follow and start is not None:
         raise UsageError("--follow reads a whole capture; leave out --from")
     style_note(chosen)
     compiling_note()
-    drawn = plan_in(capture)
-    if drawn is not None:
+    if (drawn := plan_in(capture)) is not None:
         return from_plan(drawn, capture, out, chosen)
     with shown() as progress:
         if follow:
             watch(capture, out, chosen, labels, follow_idle_s, progress)
         facts = make_run(capture, out, chosen, start, labels, progress)
     say_where(out, facts)
+
+
+def as_settings(semantics: str, fov: float | None) -> list[str]:
+    """Return options that stand for settings as such."""
+    told = {"occupy.semantics": semantics, "capture.fov_deg": "" if fov is None else str(fov)}
+    return [f"{key}={value}" for key, value in told.items() if value]
 
 
 def from_plan(drawn: "AnyPath", capture: Path, out: Path, chosen: "Parameters") -> None:
