@@ -33,6 +33,7 @@ class RunState:
     worse: int = 0  # Validations since the best one.
     stopped: bool = False  # Early, because it got no better.
     seconds: float = 0.0  # Of training and validation, all tries together.
+    cpu_seconds: float = 0.0  # The same of this process's processors.
     sums: dict[str, float] = field(default_factory=dict)  # Of losses not yet noted,
     summed: int = 0  # and of how many steps.
 
@@ -52,7 +53,8 @@ class Keeper(lightning.Callback):
         self._progress, self.state = progress, state
         self._journal = Journal(folder, state.step)
         self._began, self._first = time.monotonic(), state.step
-        self._before_s = state.seconds
+        self._cpu_began = time.process_time()
+        self._before_s, self._cpu_before_s = state.seconds, state.cpu_seconds
         self._said = ""
 
     def on_train_batch_end(
@@ -95,6 +97,7 @@ class Keeper(lightning.Callback):
 
     def _keep(self, steps: Steps, optimiser: Any) -> None:
         self.state.seconds = self._before_s + time.monotonic() - self._began
+        self.state.cpu_seconds = self._cpu_before_s + time.process_time() - self._cpu_began
         self._journal.save()
         write_checkpoint(self._folder / CHECKPOINT, steps.network, optimiser, asdict(self.state))
 

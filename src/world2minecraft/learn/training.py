@@ -12,6 +12,7 @@ A run's folder::
 """
 
 import logging
+import os
 import platform
 import time
 import warnings
@@ -225,9 +226,9 @@ def _write_facts(
     state: RunState,
     seconds: float,
 ) -> None:
-    named = torch.cuda.get_device_name() if device.type == "cuda" else platform.processor()
     facts = {
         "seconds": state.seconds,
+        "cpu_seconds": state.cpu_seconds,
         "seconds_of_last_try": seconds,
         "steps": state.step,
         "best_step": state.best_step,
@@ -235,7 +236,7 @@ def _write_facts(
         "stopped_early": state.stopped,
         "parameters": sum(one.numel() for one in network.parameters()),
         "device": device.type,
-        "hardware": named or platform.machine(),
+        "hardware": hardware_of(device),
         "threads": torch.get_num_threads(),
         "precision": precision_here(config.precision, device),
         "versions": {
@@ -248,6 +249,18 @@ def _write_facts(
     if device.type == "cuda":
         facts["peak_gpu_bytes"] = torch.cuda.max_memory_allocated()
     write_json(folder / FACTS, facts)
+
+
+def hardware_of(device: torch.device) -> str:
+    """Return what a device is, in words."""
+    if device.type == "cuda":
+        return torch.cuda.get_device_name()
+    named = platform.processor() or platform.machine()
+    listed = Path("/proc/cpuinfo")
+    if listed.is_file():
+        lines = [one for one in listed.read_text().splitlines() if one.startswith("model name")]
+        named = lines[0].partition(":")[2].strip() if lines else named
+    return f"{os.cpu_count()} cores of {named}"
 
 
 @contextmanager

@@ -1,0 +1,151 @@
+"""All occupancy networks on one set: ``python -m benchmarks.train_table --set DATA --out RUNS``.
+
+DATA is any set with a test split, as ``w2m dataset build DATA --houses 40 --images 1000`` makes
+one: no test scene is trained on. Each network is trained for the same steps by ``w2m train`` and
+scored by ``monoscene`` on all test frames. A table that was stopped goes on with the same command;
+each run stays in RUNS/NET. ``--markdown FILE`` writes the table for the docs, the paper's rows
+beside it. ``--preset 8k`` is the papers' grid and size, for a GPU.
+"""
+
+import argparse
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+from tests.metrics.paper_occupancy import MINECRAFTOCC, row
+
+from benchmarks.train_runs import done_run
+from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.cli.progress import shown
+from world2minecraft.files import write_text
+from world2minecraft.learn.config import PRESETS, DataSource, RunConfig
+from world2minecraft.learn.data.opening import CachePlace
+from world2minecraft.learn.networks import NETWORKS
+
+PAPER_ROWS = {"monoscene": "monoscene", "ndc": "ndc", "iso": "iso", "symphonies": "symphonies"}
+GIVEN_DEPTH = ("symphonies", "embodied")  # Published with measured depth as an input.
+HEAD = (
+    "network",
+    "million weights",
+    "steps",
+    "hours",
+    "hardware",
+    "IoU",
+    "mIoU",
+    "precision",
+    "recall",
+)
+
+
+def chosen(words: argparse.Namespace, network: str) -> RunConfig:
+    """Return the run of a network."""
+    config = RunConfig(network, (DataSource(words.set),)).with_preset(words.preset)
+    changes: dict[str, Any] = {"seed": words.seed, "threads": words.threads}
+    if words.steps:
+        changes["steps"] = words.steps
+        changes["warmup_steps"] = min(config.warmup_steps, words.steps // 10)
+    for name in ("size", "batch", "validate_every", "val_share"):
+        if getattr(words, name) is not None:
+            changes[name] = getattr(words, name)
+    if network in GIVEN_DEPTH and not words.no_depth:
+        changes["depth"] = "given"
+    return replace(config, **changes)
+
+
+def cells_of(network: str, done: dict[str, Any]) -> list[str]:
+    """Return the cells of a row."""
+    facts, found = done["facts"], done["scores"]["protocols"]["monoscene"]
+    micro, spread = found["micro"], found["interval"]
+    figures = [f"{100 * micro['iou']:.2f}", f"{100 * micro['miou']:.2f}"]
+    if spread is not None:
+        figures = [
+            f"{text} ({100 * spread[name][0]:.1f}-{100 * spread[name][1]:.1f})"
+            for text, name in zip(figures, ("iou", "miou"), strict=True)
+        ]
+    return [
+        network, f"{facts['parameters'] / 1e6:.2f}", f"{facts['steps']:,}",
+        f"{facts['seconds'] / 3600:.2f}", f"{facts['hardware']}, {facts['precision']}", *figures,
+        f"{100 * micro['precision']:.2f}", f"{100 * micro['recall']:.2f}",
+    ]  # fmt: skip
+
+
+def paper_cells(network: str) -> list[str]:
+    """Return the paper's row of a network at 8k, or that it has none."""
+    if network not in PAPER_ROWS:
+        return [f"paper, 8k: no {network}", *["-"] * (len(HEAD) - 1)]
+    iou, miou, precision, recall, *_ = row(MINECRAFTOCC[f"8k {PAPER_ROWS[network]}"])
+    return [f"paper, 8k: {network}", "-", "-", "-", "-",
+            *(f"{value:.2f}" for value in (iou, miou, precision, recall))]  # fmt: skip
+
+
+def class_cells(network: str, done: dict[str, Any]) -> list[str]:
+    """Return the IoU of each class."""
+    values = done["scores"]["protocols"]["monoscene"]["micro"]["class_iou"]
+    return [network, *(f"{100 * values[name]:.2f}" for name in CLASS_NAMES)]
+
+
+def markdown(head: tuple[str, ...], rows: list[list[str]]) -> str:
+    """Return a table as Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
+
+
+def report(rows: dict[str, dict[str, Any]]) -> tuple[list[list[str]], list[list[str]]]:
+    """Return the two tables' rows: figures with the paper's beside, and classes."""
+    figures = [
+        line for name, done in rows.items() for line in (cells_of(name, done), paper_cells(name))
+    ]
+    return figures, [class_cells(name, done) for name, done in rows.items()]
+
+
+def options() -> argparse.ArgumentParser:
+    """Return the command's options."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--set", required=True, help="the data set")
+    parser.add_argument("--out", type=Path, required=True, help="the folder of all runs")
+    parser.add_argument("--networks", nargs="+", help="all by default")
+    parser.add_argument("--preset", default="1k", choices=PRESETS)
+    parser.add_argument("--steps", type=int, help="instead of the preset's")
+    parser.add_argument("--size", help="instead of the preset's")
+    parser.add_argument("--batch", type=int)
+    parser.add_argument("--validate-every", type=int)
+    parser.add_argument("--val-share", type=float)
+    parser.add_argument("--no-depth", action="store_true", help="no network is given depth")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--threads", type=int, default=0)
+    parser.add_argument("--device", default="auto")
+    parser.add_argument("--cache", default="", help="where decoded frames are kept")
+    parser.add_argument("--markdown", type=Path)
+    return parser
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Train, score and print; 0 when every network has its row."""
+    words = options().parse_args(arguments)
+    names = words.networks or list(NETWORKS.names())
+    rows = {}
+    for name in names:
+        config = chosen(words, name)
+        with shown() as progress:
+            rows[name] = done_run(
+                config, words.out / name, words.device, CachePlace.named(words.cache), progress
+            )
+        figures, classes = report(rows)  # After each, so that a stopped table says something.
+        if words.markdown is not None:
+            text = markdown(HEAD, figures) + "\n" + markdown(("class IoU", *CLASS_NAMES), classes)
+            write_text(words.markdown, text)
+    figures, classes = report(rows)
+    console = Console(width=200, highlight=False)
+    for head, lines in ((HEAD, figures), (("class IoU", *CLASS_NAMES), classes)):
+        table = Table(*head, box=None)
+        for line in lines:
+            table.add_row(*line)
+        console.print(table)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
