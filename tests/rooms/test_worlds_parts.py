@@ -1,6 +1,7 @@
 """The parts of a world: plans in blocks, ways, wares and looks, each by what it promises."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -160,6 +161,8 @@ def test_styles_are_of_blocks_and_of_materials_of_the_library():
             is_block(f"{wood}_stairs")
             is_block(f"{wood}_trapdoor")
             is_block(f"{wood}_slab")
+            look = replace(draw_look(style, "living", np.random.default_rng(0)), wood=wood)
+            is_block(look.frame.removeprefix("minecraft:"))
         assert all(0 <= hour < 24 for hour in style.hours)
         look = draw_look(style, "living", np.random.default_rng(0))
         assert look.wall in look.accents

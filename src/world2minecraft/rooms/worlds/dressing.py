@@ -56,7 +56,7 @@ def _hang_leaf(
     canvas.set(box, f"minecraft:{look.wood}_planks", OBJS, instance)
     for level in (gap.bottom, (gap.bottom + gap.top) // 2, gap.top - 1):
         rail = canvas.box((low[0], low[1], level), (*high, level + 1))
-        canvas.set(rail, f"minecraft:{look.second_wood}_planks", OBJS, instance)
+        canvas.set(rail, look.frame, OBJS, instance)
     furnisher.ways.take(room, columns)
     return True
 

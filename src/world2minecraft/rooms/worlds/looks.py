@@ -59,6 +59,12 @@ class RoomLook:
         return f"minecraft:{self.wood}_stairs"
 
     @property
+    def frame(self) -> str:
+        """The block of frames, a shade off the planks of the same wood."""
+        bare = {"crimson": "crimson_hyphae", "warped": "warped_hyphae", "bamboo": "bamboo_block"}
+        return f"minecraft:stripped_{bare.get(self.wood, f'{self.wood}_wood')}"
+
+    @property
     def handrail(self) -> str:
         """The slab on top of rails."""
         return f"minecraft:{self.wood}_slab"
