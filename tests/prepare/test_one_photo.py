@@ -14,8 +14,10 @@ from world2minecraft.errors import CaptureError, UsageError
 from world2minecraft.making import make_run
 from world2minecraft.parameters import Parameters
 from world2minecraft.prepare import one_photo, open_prepared
+from world2minecraft.scan import describe_capture
 from world2minecraft.scan.options import parse_options
 from world2minecraft.scan.sources import find_capture
+from world2minecraft.scan.telling import summary_lines
 from world2minecraft.types import Camera
 
 CAMERA = Camera(320, 240, 260.0, 260.0, 160.0, 120.0)
@@ -143,3 +145,9 @@ def test_another_predictor_makes_the_photo_anew(tmp_path, photo, network, monkey
         next(iter(open_prepared(photo, out, replace(chosen, depth_model="")).views)).colour
         is not None
     )
+
+
+def test_a_look_at_one_photo_names_what_would_help(photo):
+    lines = summary_lines(describe_capture(photo))
+    (stop,) = [line for line in lines if line.strip().startswith("stop")]
+    assert "only 1 picture" in stop and "or let a network guess: --depth hf:ORG/NAME" in stop

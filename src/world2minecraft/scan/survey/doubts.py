@@ -76,7 +76,10 @@ def _count(survey: Survey, route: Route) -> Iterator[Doubt]:
         return
     if not survey.judged.posed and count < LEAST_PHOTOS:
         text = f"only {count} {_plural('picture', count)}; places are found from 3 or more"
-        yield Doubt("stop", "few", text, "take 40 to 100 from all over the room, each overlapping")
+        advice = "take 40 to 100 from all over the room, each overlapping"
+        if survey.judged.capture.source == "photo":
+            advice += "; or let a network guess: --depth hf:ORG/NAME"
+        yield Doubt("stop", "few", text, advice)
     elif (route.from_pictures or not survey.judged.posed) and count < FEW_PHOTOS:
         text = f"only {count} pictures; 40 to 100 from all sides show a room"
         more = "take more, each sharing two thirds with the one before"
