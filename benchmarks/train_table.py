@@ -4,7 +4,8 @@ DATA is any set with a test split, as ``w2m dataset build DATA --houses 40 --ima
 one: no test scene is trained on. Each network is trained for the same steps by ``w2m train`` and
 scored by ``monoscene`` on all test frames. A table that was stopped goes on with the same command;
 each run stays in RUNS/NET. ``--markdown FILE`` writes the table for the docs, the paper's rows
-beside it. ``--preset 8k`` is the papers' grid and size, for a GPU.
+beside it. ``--preset 8k`` is the papers' grid and size, for a GPU. ``NET+depth`` is shown measured
+depth, which Symphonies was published with and the others do without.
 """
 
 import argparse
@@ -25,8 +26,14 @@ from world2minecraft.learn.config import PRESETS, DataSource, RunConfig
 from world2minecraft.learn.data.opening import CachePlace
 from world2minecraft.learn.networks import NETWORKS
 
-PAPER_ROWS = {"monoscene": "monoscene", "ndc": "ndc", "iso": "iso", "symphonies": "symphonies"}
-GIVEN_DEPTH = ("symphonies", "embodied")  # Published with measured depth as an input.
+PAPER_ROWS = {
+    "monoscene": "monoscene",
+    "ndc_scene": "ndc",
+    "iso": "iso",
+    "symphonies": "symphonies",
+}
+GIVEN = "+depth"  # Ends the name of a network that is shown measured depth,
+ALSO = ("symphonies+depth",)  # as this one was published.
 HEAD = (
     "network",
     "million weights",
@@ -42,7 +49,8 @@ HEAD = (
 
 def chosen(words: argparse.Namespace, network: str) -> RunConfig:
     """Return the run of a network."""
-    config = RunConfig(network, (DataSource(words.set),)).with_preset(words.preset)
+    config = RunConfig(network.removesuffix(GIVEN), (DataSource(words.set),))
+    config = config.with_preset(words.preset)
     changes: dict[str, Any] = {"seed": words.seed, "threads": words.threads}
     if words.steps:
         changes["steps"] = words.steps
@@ -50,7 +58,7 @@ def chosen(words: argparse.Namespace, network: str) -> RunConfig:
     for name in ("size", "batch", "validate_every", "val_share"):
         if getattr(words, name) is not None:
             changes[name] = getattr(words, name)
-    if network in GIVEN_DEPTH and not words.no_depth:
+    if network.endswith(GIVEN):
         changes["depth"] = "given"
     return replace(config, **changes)
 
@@ -74,10 +82,11 @@ def cells_of(network: str, done: dict[str, Any]) -> list[str]:
 
 def paper_cells(network: str) -> list[str]:
     """Return the paper's row of a network at 8k, or that it has none."""
-    if network not in PAPER_ROWS:
-        return [f"paper, 8k: no {network}", *["-"] * (len(HEAD) - 1)]
-    iou, miou, precision, recall, *_ = row(MINECRAFTOCC[f"8k {PAPER_ROWS[network]}"])
-    return [f"paper, 8k: {network}", "-", "-", "-", "-",
+    plain = network.removesuffix(GIVEN)
+    if plain not in PAPER_ROWS:
+        return [f"paper, 8k: no {plain}", *["-"] * (len(HEAD) - 1)]
+    iou, miou, precision, recall, *_ = row(MINECRAFTOCC[f"8k {PAPER_ROWS[plain]}"])
+    return [f"paper, 8k: {plain}", "-", "-", "-", "-",
             *(f"{value:.2f}" for value in (iou, miou, precision, recall))]  # fmt: skip
 
 
@@ -106,14 +115,13 @@ def options() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--set", required=True, help="the data set")
     parser.add_argument("--out", type=Path, required=True, help="the folder of all runs")
-    parser.add_argument("--networks", nargs="+", help="all by default")
+    parser.add_argument("--networks", nargs="+", help="all by default; NET+depth is shown depth")
     parser.add_argument("--preset", default="1k", choices=PRESETS)
     parser.add_argument("--steps", type=int, help="instead of the preset's")
     parser.add_argument("--size", help="instead of the preset's")
     parser.add_argument("--batch", type=int)
     parser.add_argument("--validate-every", type=int)
     parser.add_argument("--val-share", type=float)
-    parser.add_argument("--no-depth", action="store_true", help="no network is given depth")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--threads", type=int, default=0)
     parser.add_argument("--device", default="auto")
@@ -125,7 +133,7 @@ def options() -> argparse.ArgumentParser:
 def main(arguments: list[str] | None = None) -> int:
     """Train, score and print; 0 when every network has its row."""
     words = options().parse_args(arguments)
-    names = words.networks or list(NETWORKS.names())
+    names = words.networks or [*NETWORKS.names(), *ALSO]
     rows = {}
     for name in names:
         config = chosen(words, name)

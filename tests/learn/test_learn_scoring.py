@@ -10,6 +10,7 @@ from tests.learn.toy_sets import toy_samples, toy_set, write_toy_store
 from tests.occupy.tiny_network import write_network
 
 from world2minecraft.cli import run as w2m
+from world2minecraft.dataset.formats.sscnet import bin_bytes
 from world2minecraft.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.files import write_npz
 from world2minecraft.learn import training
@@ -192,6 +193,27 @@ def test_onnx_files_and_saved_predictions_from_the_command_line(store, tmp_path,
     scores = json.loads(found.read_text())
     assert scores["split"] == "test" and SCENES in scores["protocols"]
     assert scores["protocols"]["embodied"]["micro"]["iou"] == 1
+
+
+def test_one_frame_s_file_is_scored_against_one_bin_and_folders_of_them(tmp_path, capsys):
+    """SSCNet's own layout: any folder of .bin and depth, its split in its name, no pictures."""
+    folder = tmp_path / "NYUCADtest"
+    folder.mkdir()
+    for sample in SAMPLES[:2]:
+        region, turned = sample.occ.region, sample.occ.labels.transpose(0, 2, 1)
+        pose = np.linalg.inv(region.region_to_room) @ sample.camera_to_room
+        (folder / f"{sample.key}.bin").write_bytes(bin_bytes(turned, np.zeros(3), pose))
+        write_npz(tmp_path / "said" / f"{sample.key}.npz", {"labels": turned, "confidence": turned})
+    one, found = SAMPLES[0].key, tmp_path / "s.json"
+    words = ["evaluate", "occupancy", tmp_path / "said" / f"{one}.npz", folder / f"{one}.bin"]
+    code, out = told([*words, "--json", found], capsys)
+    assert code == 0 and "ssc left out" in out.out  # There is no depth beside it.
+    micro = json.loads(found.read_text())["protocols"]["monoscene"]["micro"]
+    assert (micro["iou"], micro["miou_present_classes"]) == (1, 1)
+    code, out = told(["evaluate", "occupancy", tmp_path / "said", folder, "--json", found], capsys)
+    scores = json.loads(found.read_text())
+    assert code == 0 and scores["split"] == "test"
+    assert scores["protocols"]["monoscene"]["scenes"] == 2
 
 
 @pytest.mark.parametrize(

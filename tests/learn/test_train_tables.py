@@ -26,7 +26,7 @@ COMMON = ["--preset", "smoke", "--threads", "1", "--device", "cpu", "--val-share
 
 def test_a_table_is_made_once_and_read_the_next_time(stores, tmp_path, capsys):
     words = ["--set", str(stores[0]), "--out", str(tmp_path / "R"), "--steps", "3",
-             "--networks", "monoscene", "symphonies", "--cache", str(tmp_path / "c"),
+             "--networks", "monoscene", "symphonies+depth", "--cache", str(tmp_path / "c"),
              "--markdown", str(tmp_path / "t.md"), *COMMON]  # fmt: skip
     assert train_table.main(words) == 0
     first = capsys.readouterr()
@@ -36,7 +36,7 @@ def test_a_table_is_made_once_and_read_the_next_time(stores, tmp_path, capsys):
     assert train_table.main(words) == 0
     again = capsys.readouterr()
     assert "train ..." not in again.err and again.out == first.out
-    given = training.read_config(tmp_path / "R/symphonies/run.yaml").depth
+    given = training.read_config(tmp_path / "R/symphonies+depth/run.yaml").depth
     assert (given, training.read_config(tmp_path / "R/monoscene/run.yaml").depth) == (
         "given",
         "taught",

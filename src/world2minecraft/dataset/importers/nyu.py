@@ -40,17 +40,19 @@ class _Place:
 
 
 def is_nyu(path: Path) -> bool:
-    """Return whether a path is a ``.bin``, or a folder with NYUtrain or NYUtest or one of them."""
+    """Return whether a path is a ``.bin``, or a folder of them or with NYUtrain or NYUtest."""
     if path.suffix == ".bin":
         return path.is_file()
-    return path.name in FOLDERS or any((path / name).is_dir() for name in FOLDERS)
+    if path.name in FOLDERS or any((path / name).is_dir() for name in FOLDERS):
+        return True
+    return path.is_dir() and any(path.glob("*.bin"))
 
 
 def open_nyu(path: Path, labels: Path | None = None) -> ImportedSet:
     """List the frames.
 
     Args:
-        path: the folder of NYUtrain and NYUtest, one of these, or one ``.bin``.
+        path: the folder of NYUtrain and NYUtest, any folder of ``.bin``, or one ``.bin``.
         labels: the folder that ``base/`` of the preprocessing lies in, where it is elsewhere.
 
     Raises:
@@ -58,7 +60,7 @@ def open_nyu(path: Path, labels: Path | None = None) -> ImportedSet:
     """
     places: dict[str, _Place] = {}
     for folder in _folders(path):
-        split = FOLDERS.get(folder.name, "")
+        split = _split_of(folder)
         names = [path.stem] if path.suffix == ".bin" else _names(folder, path, labels)
         for name in names:
             key = name if name not in places else f"{split or folder.name}-{name}"
@@ -69,12 +71,18 @@ def open_nyu(path: Path, labels: Path | None = None) -> ImportedSet:
     return ImportedSet(path, "nyu", splits, lambda key: _read(key, places[key]))
 
 
+def _split_of(folder: Path) -> str:
+    """Return the split in a folder's name: SSCNet's are NYUCADtest, SUNCGtrain_1 and such."""
+    if folder.name in FOLDERS:
+        return FOLDERS[folder.name]
+    return next((split for split in ("train", "test") if split in folder.name.lower()), "")
+
+
 def _folders(path: Path) -> list[Path]:
     if path.suffix == ".bin":
         return [path.parent]
-    if path.name in FOLDERS:
-        return [path]
-    return [path / name for name in FOLDERS if (path / name).is_dir()]
+    known = [path / name for name in FOLDERS if (path / name).is_dir()]
+    return known if known and path.name not in FOLDERS else [path]
 
 
 def _names(folder: Path, path: Path, labels: Path | None) -> list[str]:
