@@ -10,7 +10,7 @@ import torch
 from world2minecraft.errors import UsageError
 from world2minecraft.learn.batch import OccInput, OccOutput, OccTarget
 from world2minecraft.learn.losses import LossWeights, occupancy_losses
-from world2minecraft.learn.losses.depth import depth_loss, least_depth
+from world2minecraft.learn.losses.depth import depth_loss
 from world2minecraft.learn.losses.frusta import frustum_loss
 from world2minecraft.learn.losses.relations import coarse_labels, relation_loss, relations_of
 from world2minecraft.learn.losses.semantic import (
@@ -18,6 +18,7 @@ from world2minecraft.learn.losses.semantic import (
     geometric_affinity,
     semantic_affinity,
 )
+from world2minecraft.learn.networks.parts.depth import least_depth
 
 SHAPE = (9, 8, 6)
 SEEDS = pytest.mark.parametrize("seed", range(4))
@@ -96,7 +97,7 @@ def test_depth(seed):
 
 def test_a_pixel_of_the_branch_says_what_is_nearest():
     depth_m = torch.tensor([[[0.0, 3.0, 0.0, 0.0], [2.0, 9.0, 0.0, 0.0]]])
-    assert least_depth(depth_m, (1, 2)).tolist() == [[[2.0, 0.0]]]
+    assert least_depth(depth_m, 2).tolist() == [[[2.0, 0.0]]]
 
 
 def test_by_hand():

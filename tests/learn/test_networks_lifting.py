@@ -98,6 +98,14 @@ def test_a_pixels_feature_lands_where_its_depth_says():
     assert hits > 0.8 * near
 
 
+def test_mixed_precision_moves_no_cell():
+    inputs, _ = room_batch()
+    with torch.autocast("cpu", torch.bfloat16):
+        mixed = sight_of(inputs)
+    assert torch.equal(mixed.pixels, sight_of(inputs).pixels)
+    assert mixed.pixels.dtype == torch.float32
+
+
 def test_cells_behind_the_camera_get_nothing():
     inputs = seen(3)
     behind = torch.eye(4, dtype=torch.float64)[None]

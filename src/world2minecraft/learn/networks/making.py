@@ -13,6 +13,10 @@ NETWORKS = Registry(
     "network",
     {
         "monoscene": "world2minecraft.learn.networks.monoscene:MonoScene",
+        "ndc_scene": "world2minecraft.learn.networks.ndc_scene:NdcScene",
+        "iso": "world2minecraft.learn.networks.iso:Iso",
+        "symphonies": "world2minecraft.learn.networks.symphonies:Symphonies",
+        "embodied": "world2minecraft.learn.networks.embodied:Embodied",
     },
 )
 
@@ -44,7 +48,7 @@ def make_network(
 
     Example:
         >>> net = make_network("monoscene", "tiny", grid_shape=(30, 30, 18), voxel_m=0.16)
-        >>> sum(weights.numel() for weights in net.parameters()) < 700_000
+        >>> sum(weights.numel() for weights in net.parameters()) < 1_000_000
         True
     """
     if size not in SIZES:

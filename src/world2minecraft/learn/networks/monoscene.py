@@ -29,7 +29,7 @@ class Choice:
     reaches: tuple[int, ...] = (1, 2, 3)  # dilations
 
 
-CHOICES = {"tiny": Choice(12, (1, 2)), "small": Choice(32), "full": Choice(200)}
+CHOICES = {"tiny": Choice(16, (2,)), "small": Choice(32), "full": Choice(200)}
 
 
 class MonoScene(nn.Module):

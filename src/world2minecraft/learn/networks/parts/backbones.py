@@ -12,8 +12,10 @@ WIDTHS = {
     "tiny": PictureWidths((8, 12, 16, 24, 32), (0, 0, 0, 0, 1), 32, 48),
     "small": PictureWidths((16, 24, 48, 96, 128), (1, 1, 2, 2, 2), 128, 256),
     "full": PictureWidths((32, 48, 80, 224, 2560), (1, 2, 4, 8, 4), 640, 2560),
+    # As full, without the wide top that EfficientNet-B7 has: for networks that never had it.
+    "lean": PictureWidths((32, 48, 80, 224, 640), (1, 2, 4, 8, 4), 640, 1024),
 }
-NORMS: dict[str, Norm] = {"tiny": "group", "small": "group", "full": "batch"}
+NORMS: dict[str, Norm] = {"tiny": "group", "small": "group", "full": "batch", "lean": "batch"}
 PREFIX = "hf:"
 
 
@@ -22,7 +24,7 @@ def make_backbone(name: str | None, size: str, channels: int, scales: Sequence[i
 
     Args:
         name: None for our own, or ``hf:ID_OR_FOLDER``.
-        size: tiny, small or full: how wide our own is, and the decoder of either.
+        size: one of ``WIDTHS``: how wide our own is, and the decoder of either.
         channels: of each map.
         scales: which maps are wanted, of 1, 2, 4, 8 and 16.
 

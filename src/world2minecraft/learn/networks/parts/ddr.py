@@ -6,6 +6,8 @@ and carried by kernels of one cell. The published code owns such kernels in the 
 nothing too, where nothing flows through them: here they are left out.
 """
 
+from collections.abc import Sequence
+
 import torch
 from torch import Tensor, nn
 
@@ -56,17 +58,17 @@ def axis_blocks(channels: int, norm: Norm, dilations: tuple[int, ...] = (1, 2, 3
 
 
 class Double(nn.Module):
-    """Doubles the sides of a grid, up to those of the grid that it is to be added to."""
+    """Doubles the sides of a grid, or one less where that is what was halved before."""
 
     def __init__(self, channels: int, made: int, norm: Norm):
         super().__init__()
         self.up = nn.ConvTranspose3d(channels, made, 3, stride=2, padding=1)
         self.norm = norm3d(norm, made)
 
-    def forward(self, cells: Tensor, beside: Tensor) -> Tensor:
-        """Return [B, C', ...] of the sides of ``beside``, which are even or one less."""
-        sides = [int(side) for side in beside.shape[2:]]
-        return torch.relu(self.norm(self.up(cells, output_size=sides)))
+    def forward(self, cells: Tensor, sides: Sequence[int]) -> Tensor:
+        """Return [B, C', ...] of these sides, each twice what came in or one less."""
+        wanted = [int(side) for side in sides]
+        return torch.relu(self.norm(self.up(cells, output_size=wanted)))
 
 
 class _Halved(nn.Module):

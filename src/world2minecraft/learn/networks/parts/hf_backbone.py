@@ -69,9 +69,10 @@ def _loaded(model: str) -> Any:
     try:
         config = transformers.AutoConfig.from_pretrained(model)
         config.out_indices = _taps_of(config)
-        return transformers.AutoBackbone.from_pretrained(
-            model, config=config, dtype=torch.float32, use_safetensors=True
-        )
+        # The library's own way by a name refuses folders; the class that it would take does not.
+        with torch.device("meta"):
+            kind = type(transformers.AutoBackbone.from_config(config))
+        return kind.from_pretrained(model, config=config, dtype=torch.float32, use_safetensors=True)
     except (OSError, ValueError, KeyError) as error:
         reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
         raise InputError(model, f"no backbone of transformers: {reason}") from None

@@ -1,48 +1,28 @@
 """How layers are normalised, and the small blocks of two and three dimensions.
 
 ``batch`` is what the papers use, on many GPUs. ``group`` says the same whatever else is in the
-batch, which on two CPU cores is one or two pictures. ``cell`` looks at one cell's channels alone,
-so that a grid of any size is read alike.
+batch, which on two CPU cores is one or two pictures.
 """
 
 from typing import Literal
 
-import torch
-from torch import Tensor, nn
+from torch import nn
 
-Norm = Literal["batch", "group", "cell"]
+Norm = Literal["batch", "group"]
 GROUPS = 4  # Of channels; the small networks have 8 to 32.
-
-
-class CellNorm(nn.Module):
-    """Normalises the channels of each cell or pixel by themselves."""
-
-    def __init__(self, channels: int):
-        super().__init__()
-        self.weight = nn.Parameter(torch.ones(channels))
-        self.bias = nn.Parameter(torch.zeros(channels))
-
-    def forward(self, values: Tensor) -> Tensor:
-        """Return [B, C, ...] of the same shape."""
-        middle = values - values.mean(dim=1, keepdim=True)
-        spread = (middle * middle).mean(dim=1, keepdim=True)
-        sides = (1, -1) + (1,) * (values.ndim - 2)
-        return middle * torch.rsqrt(spread + 1e-5) * self.weight.view(sides) + self.bias.view(sides)
 
 
 def norm2d(kind: Norm, channels: int) -> nn.Module:
     """Return a normalisation of [B, C, H, W]."""
-    return nn.BatchNorm2d(channels) if kind == "batch" else _of_any_size(kind, channels)
+    return nn.BatchNorm2d(channels) if kind == "batch" else _grouped(channels)
 
 
 def norm3d(kind: Norm, channels: int) -> nn.Module:
     """Return a normalisation of [B, C, X, Y, Z]."""
-    return nn.BatchNorm3d(channels) if kind == "batch" else _of_any_size(kind, channels)
+    return nn.BatchNorm3d(channels) if kind == "batch" else _grouped(channels)
 
 
-def _of_any_size(kind: Norm, channels: int) -> nn.Module:
-    if kind == "cell":
-        return CellNorm(channels)
+def _grouped(channels: int) -> nn.GroupNorm:
     groups = next(count for count in range(min(GROUPS, channels), 0, -1) if channels % count == 0)
     return nn.GroupNorm(groups, channels)
 

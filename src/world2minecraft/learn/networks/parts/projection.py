@@ -45,7 +45,16 @@ def cells_in_camera(inputs: OccInput) -> Tensor:
     """Return the centres of all cells in the camera's axes, float32 [B, N, 3], metres."""
     centers = cell_centers_m(inputs.grid_shape, inputs.voxel_m, inputs.camera_to_grid)
     turn, place = inputs.camera_to_grid[:, :3, :3], inputs.camera_to_grid[:, :3, 3]
-    return (centers[None] - place[:, None]) @ turn  # A turn's inverse is its transpose.
+    # A turn's inverse is its transpose.
+    return turned(centers[None] - place[:, None], turn.transpose(1, 2))
+
+
+def turned(places: Tensor, turn: Tensor) -> Tensor:
+    """Return places [B, N, 3] turned by [B, 3, 3], whatever precision layers work in.
+
+    Matrix products are rounded to half precision where training is mixed: to some ten pixels.
+    """
+    return (places[:, :, None] * turn[:, None]).sum(dim=-1)
 
 
 def cell_centers_m(shape: tuple[int, int, int], voxel_m: float, like: Tensor) -> Tensor:

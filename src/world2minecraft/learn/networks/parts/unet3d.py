@@ -46,8 +46,8 @@ class UNet3D(nn.Module):
         quarter, relations = self.down_again(half), None
         if self.context is not None:
             quarter, relations = self.context(quarter)
-        half = self.up(quarter, half) + half
-        return self.head(self.up_again(half, cells) + cells), relations
+        half = self.up(quarter, half.shape[2:]) + half
+        return self.head(self.up_again(half, cells.shape[2:]) + cells), relations
 
 
 def coarsest(shape: tuple[int, int, int]) -> tuple[int, int, int]:
