@@ -164,5 +164,6 @@ def test_without_a_network_it_is_told_how_one_is_made(monkeypatch, tmp_path):
         predictor("mono")
     assert str(caught.value) == (
         "no monocular network is shipped with this version; train one: w2m train monoscene "
-        "--data DIR --size small, then w2m export, and type --predictor mono:FILE.onnx"
+        "--data DIR --size small --out RUN, then w2m export RUN --out net.onnx, and type "
+        "--predictor mono:net.onnx"
     )

@@ -45,8 +45,8 @@ class MonoPredictor:
         if not network and not SHIPPED.is_file():
             raise UsageError(
                 "no monocular network is shipped with this version; train one: w2m train "
-                "monoscene --data DIR --size small, then w2m export, and type "
-                "--predictor mono:FILE.onnx"
+                "monoscene --data DIR --size small --out RUN, then w2m export RUN --out net.onnx, "
+                "and type --predictor mono:net.onnx"
             )
         self.network = OccupancyNetwork(network or SHIPPED)
 
