@@ -30,6 +30,7 @@ VERBS: dict[str, str] = {
     "evaluate reconstruction": "Score a reconstruction against a scanned room's truth.",
     "occupy": "Name and complete the cells that one depth picture shows.",
     "train": "Train an occupancy network on any data sets.",
+    "export": "Write a trained network as ONNX, which runs without torch.",
     "evaluate occupancy": "Score a network or saved predictions by the published protocols.",
     "dataset stats": "Tell what a data set holds, beside the paper's.",
     "dataset quality": "Measure how natural and how sharp pictures are.",
