@@ -190,6 +190,10 @@ def test_onnx_files_and_saved_predictions_from_the_command_line(store, tmp_path,
     words = ["evaluate", "occupancy", saved, store, "--json", found]
     code, out = told(words, capsys)
     assert code == 0 and "100.00" in out.out
+    assert "…" not in out.out  # All fits 80 columns.
+    code, out = told([*words, "--split", "all"], capsys)
+    assert code == 0 and "95 % intervals over 4 scenes" in out.out and "…" not in out.out
+    told(words, capsys)
     scores = json.loads(found.read_text())
     assert scores["split"] == "test" and SCENES in scores["protocols"]
     assert scores["protocols"]["embodied"]["micro"]["iou"] == 1

@@ -94,7 +94,10 @@ def run(
     scores |= {"said": str(said), "data": str(truth), "split": part or "all"}
     console = Console(highlight=False)
     console.print(score_table(scores))
-    console.print(class_table(scores))
+    intervals = interval_table(scores)
+    for table in (intervals, class_table(scores)):
+        if table is not None:
+            console.print(table)
     for name, reason in scores["left_out"].items():
         print(f"{name} left out: {reason}")
     if json_path is not None:
@@ -204,49 +207,54 @@ def _split_of(asked: str, held: Any) -> str | None:
 
 
 def score_table(scores: dict[str, Any]) -> "Table":
-    """Return the figures by protocol, with their intervals."""
-    from rich.table import Table
-
-    table = Table("protocol", "frames", "IoU", "precision", "recall", "mIoU", "macro IoU / mIoU",
-                  box=None, header_style="bold", pad_edge=False)  # fmt: skip
-    for column in table.columns[1:]:
-        column.justify = "right"
+    """Return the micro figures by protocol, and the macro ones that most ask for."""
+    rows = []
     for name, found in scores["protocols"].items():
-        spread = found["interval"] or {}
-        cells = [_with_interval(found["micro"][key], spread.get(key)) for key in _FIGURES]
-        macro = found["macro"]
-        table.add_row(
-            name, f"{found['frames']:,}", *cells, f"{_per_cent(macro['iou'])} / "
-            f"{_per_cent(macro['miou'])}",
-        )  # fmt: skip
-    scenes = max((found["scenes"] for found in scores["protocols"].values()), default=0)
-    table.title = f"per cent, 95 % intervals over {scenes} scenes" if scenes > 1 else "per cent"
-    table.title_justify = "left"
-    return table
+        micro, macro = found["micro"], found["macro"]
+        both = f"{_per_cent(macro['iou'])} / {_per_cent(macro['miou'])}"
+        rows.append(
+            (name, f"{found['frames']:,}", *(_per_cent(micro[key]) for key in _FIGURES), both)
+        )
+    head = ("protocol", "frames", "IoU", "precision", "recall", "mIoU", "macro")
+    return _table("per cent; macro: IoU / mIoU, means over frames", head, rows)
+
+
+def interval_table(scores: dict[str, Any]) -> "Table | None":
+    """Return the intervals of the micro figures; None where there is one scene."""
+    rows, scenes = [], 0
+    for name, found in scores["protocols"].items():
+        if found["interval"] is not None:
+            ends = (found["interval"][key] for key in _FIGURES)
+            rows.append((name, *(f"{100 * low:.1f}-{100 * high:.1f}" for low, high in ends)))
+            scenes = max(scenes, found["scenes"])
+    head = ("protocol", "IoU", "precision", "recall", "mIoU")
+    return _table(f"95 % intervals over {scenes} scenes", head, rows) if rows else None
 
 
 _FIGURES = ("iou", "precision", "recall", "miou")
 
 
-def class_table(scores: dict[str, Any]) -> "Table":
-    """Return the IoU of each class by protocol."""
+def _table(title: str, head: tuple[str, ...], rows: list[tuple[str, ...]]) -> "Table":
     from rich.table import Table
 
-    names = list(scores["protocols"])
-    table = Table("class", *names, box=None, header_style="bold", pad_edge=False)
+    table = Table(*head, box=None, header_style="bold", pad_edge=False, title=title)
+    table.title_justify = "left"
     for column in table.columns[1:]:
         column.justify = "right"
-    first = scores["protocols"][names[0]]["micro"]["class_iou"]
-    for label in first:
-        values = (scores["protocols"][name]["micro"]["class_iou"][label] for name in names)
-        table.add_row(label, *(_per_cent(value) for value in values))
+    for row in rows:
+        table.add_row(*row)
     return table
 
 
-def _with_interval(value: float, interval: list[float] | None) -> str:
-    if interval is None:
-        return _per_cent(value)
-    return f"{_per_cent(value)} ({_per_cent(interval[0])}-{_per_cent(interval[1])})"
+def class_table(scores: dict[str, Any]) -> "Table":
+    """Return the IoU of each class by protocol."""
+    names = list(scores["protocols"])
+    micro = {name: scores["protocols"][name]["micro"]["class_iou"] for name in names}
+    rows = [
+        (label, *(_per_cent(micro[name][label]) for name in names)) for label in micro[names[0]]
+    ]
+    heads = ("class", *(name.replace(" ", "\n") for name in names))
+    return _table("IoU of each class", heads, rows)
 
 
 def _per_cent(value: float) -> str:
