@@ -5,10 +5,10 @@
 Each seed is a set of rooms of its own (from 8,000 on, which training never takes), scanned with
 the noise that the samples have: the share of fused surface cells that are empty in the truth is
 printed. In the same table: ``surface`` (what was fused, of no class), ``geometric`` (its labels
-on that surface; single views beside the room's axes have none and are left out of its row), and
-``ceiling`` (observed surface kept, all else as the truth says). Figures are IoU / mIoU of 11
-classes in percent, micro over the rooms of a seed, mean and spread over seeds. ``near`` forgives
-one cell.
+on that surface; single views beside the room's axes have none and are left out of its row),
+``votes`` (where a scan has label images, what that labeller says of the surface) and ``ceiling``
+(observed surface kept, all else as the truth says). Figures are IoU / mIoU of 11 classes in
+percent, micro over the rooms of a seed, mean and spread over seeds. ``near`` forgives one cell.
 """
 
 import argparse
@@ -22,7 +22,8 @@ from rich.table import Table
 from scipy import ndimage
 
 from world2minecraft.classes import CLASS_NAMES, UNKNOWN
-from world2minecraft.label.completion_net import CompletionModel
+from world2minecraft.label.channels import Sight
+from world2minecraft.label.completion_net import CompletionModel, likeliest
 from world2minecraft.learn.completion.samples import (
     Sample,
     make_samples,
@@ -37,7 +38,8 @@ from world2minecraft.metrics.occupancy import (
 
 FIRST_SEED, SEEDS_APART = 8_000, 100
 BANDS = ((0.0, 0.25), (0.25, 0.55), (0.55, 1.0))
-WHO = ("surface", "geometric", "completion", "ceiling")
+WHO = ("surface", "geometric", "votes", "completion", "ceiling")
+STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15  # Of ``label/votes.py``.
 ROOT = Path(__file__).resolve().parents[1]
 
 
@@ -106,16 +108,27 @@ def answers(sample: Sample, model: CompletionModel) -> dict[str, np.ndarray]:
     sight, truth = sample.sight, sample.truth
     surface = sight.log_odds > 0
     chance = model.chances(sight)
-    labels = chance.argmax(axis=0).astype(np.uint8)
-    labels[surface] = chance[1:].argmax(axis=0)[surface].astype(np.uint8) + 1
     flat = np.where(surface, np.uint8(11), np.uint8(0))
-    result = {"surface": flat, "completion": labels}
+    result = {"surface": flat, "completion": likeliest(chance, sight.log_odds)}
     true = np.where(truth == UNKNOWN, np.uint8(0), truth)
     result["ceiling"] = np.where(surface & (true == 0), np.uint8(11), true)
     if sight.hint is not None:
         named = flat.copy()
         named.reshape(-1)[sight.at] = np.where(sight.hint, sight.hint, 11)
         result["geometric"] = named
+        if sight.votes is not None:
+            result["votes"] = _by_votes(sight, named)
+    return result
+
+
+def _by_votes(sight: Sight, named: np.ndarray) -> np.ndarray:
+    """Return what the ``votes`` labeller says of the surface, before it smooths."""
+    voted = sight.votes.astype(np.float32) / 255 if sight.votes is not None else np.zeros((0, 11))
+    base = named.reshape(-1)[sight.at].astype(np.int64)
+    prior = np.where(base <= 4, STRUCTURE_PRIOR, OBJECT_PRIOR)
+    voted[np.arange(len(base)), base - 1] += np.where(voted.any(axis=1), prior, 1)
+    result = named.copy()
+    result.reshape(-1)[sight.at] = voted.argmax(axis=1) + 1
     return result
 
 
@@ -127,7 +140,11 @@ def groups(sample: Sample) -> list[str]:
     band = next(n for n, (low, high) in enumerate(BANDS) if low <= share <= high)
     low, high = BANDS[band]
     result = [views, f"{views}, {low:.0%} to {high:.0%} seen"]
-    return [*result, f"{views}, along the axes"] if sample.sight.hint is not None else result
+    if sample.sight.hint is not None:
+        result.append(f"{views}, along the axes")
+        if sample.sight.votes is not None:
+            result.append(f"{views}, along the axes, with votes")
+    return result
 
 
 def main() -> None:

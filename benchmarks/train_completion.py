@@ -31,11 +31,13 @@ def main() -> None:
     parser.add_argument("--until", type=int, help="stop before the last step")
     parser.add_argument("--every", type=int, default=100)
     parser.add_argument("--score-every", type=int, default=400)
+    parser.add_argument("--batch", type=int, default=4)
     parser.add_argument("--threads", type=int, default=1)
     chosen = parser.parse_args()
     torch.set_num_threads(chosen.threads)
     trainer = Trainer(
-        CompletionRun(steps=chosen.steps), SamplePool(chosen.samples, range(FIRST_SEED, 1 << 31))
+        CompletionRun(steps=chosen.steps, batch=chosen.batch),
+        SamplePool(chosen.samples, range(FIRST_SEED, 1 << 31)),
     )
     trainer.resume(chosen.run)
     files = sorted(p for p in chosen.samples.glob("*.npz") if int(p.stem) < FIRST_SEED)
@@ -46,7 +48,7 @@ def main() -> None:
         told = " ".join(f"{name} {value:.3f}" for name, value in losses.items())
         spent = time.process_time() - start
         rate = spent / max(step - before, 1)
-        print(f"{step} {told}; {len(trainer.pool)} samples, {rate:.2f} CPU s a step", flush=True)
+        print(f"{step} {told}; {len(trainer.pool)} rooms, {rate:.2f} CPU s a step", flush=True)
         trainer.save(chosen.run)
         if step % chosen.score_every == 0:
             print(f"    {quick_scores(network, held_out)}", flush=True)

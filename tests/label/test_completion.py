@@ -14,7 +14,7 @@ from world2minecraft.label.completion import (
     CompletionParameters,
     piece_votes,
 )
-from world2minecraft.label.completion_net import CompletionModel
+from world2minecraft.label.completion_net import WEIGHTS, CompletionModel, likeliest
 from world2minecraft.label.geometric import GeometricLabeller
 from world2minecraft.types import COMPLETED, OBSERVED, UNSEEN
 
@@ -63,11 +63,13 @@ def test_what_was_seen_stays_though_the_network_calls_all_empty(scanned):
 def test_free_stays_free_and_far_stays_unseen_though_it_calls_all_solid(scanned):
     grid, evidence, _ = scanned
     base = GeometricLabeller().label(grid, evidence)
-    result = labelled(scanned, always(10), reach_cells=2)
+    result = labelled(scanned, always(3), reach_cells=2, hint_share=0.0)
     assert not result.occupied[base.labels == 0].any()
-    filled = result.source == COMPLETED
+    filled = (result.source == COMPLETED) & (base.source == UNSEEN)
     assert filled.any()
-    assert (result.labels[filled & (base.source == UNSEEN)] == 10).all()
+    assert (result.labels[filled] == 3).all()
+    things = labelled(scanned, always(10), hint_share=0.0)
+    assert (things.source[filled] == UNSEEN).all()
     assert (result.source[result.labels == 255] == UNSEEN).all()
 
 
@@ -108,6 +110,25 @@ def test_weights_that_are_not_there_or_are_none_are_said(scanned, tmp_path):
         CompletionModel(tmp_path / "bad.onnx").chances(
             Sight(np.zeros((4, 4, 4), np.int8), np.zeros(0, np.int32), np.zeros(0, np.uint8), 0.08)
         )
+
+
+def test_the_shipped_weights_name_a_small_room(scanned):
+    grid, evidence, truth = scanned
+    result = CompletionLabeller().label(grid, evidence)
+    kept = result.occupied & (truth > 0)
+    assert (result.labels[kept] == truth[kept]).mean() > 0.9
+    assert WEIGHTS.stat().st_size <= 6_000_000
+    again = CompletionLabeller().label(grid, evidence)
+    assert np.array_equal(result.labels, again.labels)
+    assert np.array_equal(result.confidence, again.confidence)
+
+
+def test_surface_is_kept_and_unseen_cells_are_solid_where_that_is_likelier():
+    chance = np.full((12, 4, 1, 1), 0.05, np.float32)
+    chance[0] = np.array([0.9, 0.45, 0.45, 0.9])[:, None, None]
+    chance[3], chance[8] = 0.08, 0.06
+    odds = np.array([60, 0, -60, 0], np.int8)[:, None, None]
+    assert likeliest(chance, odds)[:, 0, 0].tolist() == [3, 3, 0, 0]
 
 
 def test_it_is_found_by_name():

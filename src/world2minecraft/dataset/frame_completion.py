@@ -18,7 +18,7 @@ from world2minecraft.errors import CaptureError, DamagedFileError, InputError, U
 from world2minecraft.files import array_names, read_npz
 from world2minecraft.fuse import CleanParameters, EvidenceMap, read_out, remove_floaters
 from world2minecraft.label.channels import sight_of
-from world2minecraft.label.completion_net import CompletionModel
+from world2minecraft.label.completion_net import CompletionModel, likeliest
 from world2minecraft.occupy.depth import DepthPredictor
 from world2minecraft.types import Camera, FusedEvidence, PointEvidence, View
 from world2minecraft.types.checks import transform
@@ -164,9 +164,7 @@ def complete_frame(
     grid = remove_floaters(read_out(evidence), CleanParameters())
     sight = sight_of(grid, evidence, floor_m=floor_of(points, world_to_grid))
     chance = (model or CompletionModel()).chances(sight)
-    labels = chance.argmax(axis=0).astype(np.uint8)
-    surface = grid.occupied
-    labels[surface] = chance[1:].argmax(axis=0)[surface].astype(np.uint8) + 1
+    labels = likeliest(chance, sight.log_odds)
     confidence = np.take_along_axis(chance, labels[None].astype(np.int64), axis=0)[0]
     return CompletedFrame(labels, confidence, grid.source > 0)
 

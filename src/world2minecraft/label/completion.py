@@ -34,14 +34,20 @@ class CompletionParameters:
     small_cells: parts of a class with fewer cells take the class around them.
     agreed_share: a piece that the geometric labeller cut takes one class where this share of its
         cells, by their chances, agrees.
+    hint_share: what the geometric label adds to the chance of its class: it is seldom wrong where
+        the scan is clean.
     sure: the chance of being solid from which an unseen cell is completed.
-    reach_cells: how far off the observed surface that may be: 4 cells are 32 cm.
+    reach_cells: how far off the observed surface that may be: 3 cells are 24 cm.
+    filled: the classes that are filled: ceiling, floor and wall. Filled furniture is right more
+        often than not, but of three tuning scans object F1 fell from 0.85 to 0.82 by it.
     """
 
     small_cells: int = 4
     agreed_share: float = 0.6
-    sure: float = 0.6
-    reach_cells: int = 4
+    hint_share: float = 0.6
+    sure: float = 0.8
+    reach_cells: int = 3
+    filled: tuple[int, ...] = (1, 2, 3)
 
 
 class CompletionLabeller:
@@ -96,12 +102,21 @@ class CompletionLabeller:
         cells = base.occupied
         share = voted.reshape(CLASS_COUNT, -1)[1:, origin[cells]]
         share = share / np.maximum(share.sum(axis=0), LEAST_CHANCE)
+        said = share + self._from_hint(hint.reshape(-1)[origin[cells]])
         labels, confidence = base.labels.copy(), np.array(base.confidence, np.float32)
-        labels[cells] = share.argmax(axis=0) + 1
-        confidence[cells] = share.max(axis=0)
+        kinds = said.argmax(axis=0)
+        labels[cells] = kinds + 1
+        confidence[cells] = share[kinds, np.arange(len(kinds))]
         labels = smooth_labels(labels, self.parameters.small_cells)
         confidence = np.round(np.clip(confidence, 0, 1), 3)
         return replace(base, labels=labels, confidence=confidence.astype(np.float16))
+
+    def _from_hint(self, hint: np.ndarray) -> np.ndarray:
+        """Return float32 [11, N]: what geometric labels [N] add to each class."""
+        result = np.zeros((CLASS_COUNT - 1, len(hint)), np.float32)
+        named = np.flatnonzero(hint)
+        result[hint[named] - 1, named] = self.parameters.hint_share
+        return result
 
     def _completed(self, grid: OccupancyGrid, chance: np.ndarray) -> OccupancyGrid:
         """Return the grid with unseen cells filled that are surely solid and near their like."""
@@ -109,11 +124,11 @@ class CompletionLabeller:
         confidence, colour = grid.confidence.copy(), grid.colour.copy()
         best = chance[1:].argmax(axis=0).astype(np.uint8) + 1
         wanted = (grid.source == UNSEEN) & (1 - chance[0] >= self.parameters.sure)
-        for kind in np.unique(best[wanted]):
-            seen = grid.labels == kind
-            fill = wanted & (best == kind) & _reached(wanted | seen, seen, self.parameters)
-            if not fill.any():
+        for kind in self.parameters.filled:
+            seen, like = grid.labels == kind, wanted & (best == kind)
+            if not (seen.any() and like.any()):
                 continue
+            fill = like & _reached(like | seen, seen, self.parameters)
             labels[fill], source[fill] = kind, COMPLETED
             confidence[fill] = np.round(chance[kind][fill], 3)
             nearest = ndimage.distance_transform_edt(

@@ -17,6 +17,7 @@ MULTIPLE = 8  # Of the sides that the network takes.
 TILE, MARGIN = 96, 16  # Cells: a room is one tile; what lies at a tile's edge sees less around it.
 MAX_BYTES = 64 << 20
 THREADS = 2
+HALF = 0.5
 
 
 class CompletionModel:
@@ -71,6 +72,22 @@ class CompletionModel:
         padded[2] = np.pad(cells[2], padding, constant_values=1)
         (logits,) = self._session.run(None, {self._session.get_inputs()[0].name: padded[None]})
         return logits[0, :, : shape[0], : shape[1], : shape[2]]
+
+
+def likeliest(chance: np.ndarray, log_odds: np.ndarray) -> np.ndarray:
+    """Return uint8 [X, Y, Z]: what each cell most likely is, observed surface kept.
+
+    Surface takes the likeliest of the eleven classes. An unseen cell is solid where its classes
+    together are likelier than empty; so are more rooms whole than by the single best class.
+
+    Args:
+        chance: float32 [12, X, Y, Z].
+        log_odds: [X, Y, Z]; above 0 where surface was observed, 0 where nothing was.
+    """
+    best = chance[1:].argmax(axis=0).astype(np.uint8) + 1
+    labels = chance.argmax(axis=0).astype(np.uint8)
+    solid = (log_odds > 0) | ((log_odds == 0) & (chance[0] < HALF))
+    return np.where(solid, best, labels)
 
 
 def spans(length: int) -> list[tuple[int, int, int, int]]:

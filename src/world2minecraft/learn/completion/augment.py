@@ -13,7 +13,7 @@ from world2minecraft.learn.completion.samples import Sample, cut
 
 CROP = (48, 48, 40)
 # How often each is left out: a room may come without colour, a frame without known walls.
-NO_HINT, NO_VOTES, NO_COLOUR, NO_OFFSET, NO_HEIGHT, NO_FREE = 0.25, 0.45, 0.2, 0.12, 0.1, 0.08
+NO_HINT, NO_VOTES, NO_COLOUR, NO_OFFSET, NO_HEIGHT, NO_FREE = 0.25, 0.45, 0.2, 0.12, 0.1, 0.05
 
 
 def augmented(sample: Sample, rng: np.random.Generator, crop: tuple[int, int, int]) -> Sample:

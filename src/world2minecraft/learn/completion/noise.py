@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.classes import CLASS_COUNT, SemanticClass
 from world2minecraft.rooms.sensor import SENSORS, Sensor
 
-MISFIT_M = {"walk": 0.012, "few": 0.04, "single": 0.033}  # Of a quarter false, measured.
+MISFIT_M = {"walk": 0.016, "few": 0.045, "single": 0.048}  # Of a quarter false, measured.
 PATCH_SHARE = 1 / 80  # Of the width: 8 px at 640, the patches in which label images err.
 
 
@@ -45,8 +45,8 @@ def draw_noise(rng: np.random.Generator, kind: str) -> ScanNoise:
         sigma_growth=0.0019 * float(rng.uniform(0.5, 2)),
         hole_share=float(rng.uniform(0, 0.08)),
         edge_px=int(rng.integers(0, 2)),
-        jitter_m=0.019 * level,
-        jitter_deg=0.5 * level,
+        jitter_m=0.023 * level,
+        jitter_deg=0.58 * level,
     )
     return ScanNoise(
         sensor=sensor,

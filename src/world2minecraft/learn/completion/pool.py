@@ -17,7 +17,7 @@ LOOK_AGAIN = 100  # Steps after which new files are looked for.
 
 
 class SamplePool:
-    """Draws samples of a folder: first the kind of look, then one of its samples."""
+    """Draws samples of a folder: the kind of look, a room, one of its samples. Files are kept."""
 
     def __init__(self, folder: Path, seeds: range):
         """Begin with the files of these seeds that are there.
@@ -26,34 +26,40 @@ class SamplePool:
             InputError: there is none.
         """
         self.folder, self.seeds = folder, seeds
-        self._known: set[str] = set()
-        self._held: dict[str, list[Sample]] = {}
+        self._paths: list[Path] = []
+        self._held: dict[Path, dict[str, list[Sample]]] = {}
         self.refresh()
-        if not self._held:
+        if not self._paths:
             raise InputError(folder, "has no samples; run benchmarks.make_completion_samples")
 
     def refresh(self) -> None:
         """Take in files that are new."""
-        for path in sorted(self.folder.glob("*.npz")):
-            if path.name not in self._known and int(path.stem) in self.seeds:
-                self._known.add(path.name)
-                for sample in read_samples(path):
-                    self._held.setdefault(sample.kind, []).append(sample)
+        found = sorted(self.folder.glob("*.npz"))
+        self._paths = [path for path in found if int(path.stem) in self.seeds]
 
     def __len__(self) -> int:
-        """The number of samples."""
-        return sum(len(samples) for samples in self._held.values())
+        """The number of rooms."""
+        return len(self._paths)
+
+    def draw(self, rng: np.random.Generator) -> Sample:
+        """Return one sample; a file that is drawn for the first time is read."""
+        kinds = sorted(KIND_WEIGHTS)
+        shares = np.array([KIND_WEIGHTS[kind] for kind in kinds])
+        kind = str(rng.choice(kinds, p=shares / shares.sum()))
+        path = self._paths[int(rng.integers(len(self._paths)))]
+        if path not in self._held:
+            by_kind: dict[str, list[Sample]] = {}
+            for sample in read_samples(path):
+                by_kind.setdefault(sample.kind, []).append(sample)
+            self._held[path] = by_kind
+        samples = self._held[path].get(kind) or next(iter(self._held[path].values()))
+        return samples[int(rng.integers(len(samples)))]
 
     def batch(
         self, rng: np.random.Generator, count: int, crop: tuple[int, int, int]
     ) -> tuple[Tensor, Tensor, Tensor]:
         """Return inputs [B, C, X, Y, Z], truth int64 [B, X, Y, Z], and the observed surface."""
-        kinds = sorted(self._held)
-        shares = np.array([KIND_WEIGHTS[kind] for kind in kinds])
-        chosen = []
-        for kind in rng.choice(kinds, count, p=shares / shares.sum()):
-            held = self._held[str(kind)]
-            chosen.append(augmented(held[int(rng.integers(len(held)))], rng, crop))
+        chosen = [augmented(self.draw(rng), rng, crop) for _ in range(count)]
         return as_batch(chosen)
 
 
