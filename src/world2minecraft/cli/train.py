@@ -84,4 +84,4 @@ def tell(out: Path, config: "RunConfig", state: Any, scores: dict[str, Any]) -> 
     )
     data = config.data[0].path
     print(f"next: w2m evaluate occupancy {out} {data}    every protocol, class and interval")
-    print(f"then: tensorboard --logdir {out / 'tensorboard'}    how it learned")
+    print(f"then: w2m export {out} --out net.onnx    to run it without torch")
