@@ -16,7 +16,7 @@ from world2minecraft.label.completion import (
 )
 from world2minecraft.label.completion_net import WEIGHTS, CompletionModel, likeliest
 from world2minecraft.label.geometric import GeometricLabeller
-from world2minecraft.types import COMPLETED, OBSERVED, UNSEEN
+from world2minecraft.types import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
 
 
 class Saying:
@@ -78,6 +78,21 @@ def test_a_class_that_was_not_seen_is_not_completed(scanned):
     named = replace(grid, labels=np.where(grid.occupied, np.uint8(3), grid.labels))
     result = CompletionLabeller()._completed(named, always(6)(grid.shape))
     assert not (result.source == COMPLETED).any()
+
+
+def test_planes_grow_along_themselves_and_no_thicker():
+    labels = np.full((12, 12, 12), 255, np.uint8)
+    labels[5, 2:8, 2:8] = 3
+    seen = labels == 3
+    grid = OccupancyGrid(
+        labels, np.zeros(labels.shape, np.float16), np.zeros((*labels.shape, 3), np.uint8),
+        seen.astype(np.uint8), np.zeros(labels.shape, np.uint16), 0.08, np.zeros(3),
+    )  # fmt: skip
+    result = CompletionLabeller()._completed(grid, always(3)(labels.shape))
+    filled = result.source == COMPLETED
+    assert filled[5].sum() == 11 * 11 - 36
+    assert not filled[:5].any()
+    assert not filled[6:].any()
 
 
 def test_an_unsure_network_completes_nothing(scanned):

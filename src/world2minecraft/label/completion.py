@@ -128,7 +128,7 @@ class CompletionLabeller:
             seen, like = grid.labels == kind, wanted & (best == kind)
             if not (seen.any() and like.any()):
                 continue
-            fill = like & _reached(like | seen, seen, self.parameters)
+            fill = like & _reached(like | seen, kind, seen, self.parameters.reach_cells)
             labels[fill], source[fill] = kind, COMPLETED
             confidence[fill] = np.round(chance[kind][fill], 3)
             nearest = ndimage.distance_transform_edt(
@@ -200,8 +200,16 @@ def _raised(value: OccupancyGrid | FusedEvidence, layers: slice) -> np.ndarray:
     return value.origin_m + np.array([0.0, 0.0, layers.start * value.voxel_m])
 
 
-def _reached(way: np.ndarray, seen: np.ndarray, parameters: CompletionParameters) -> np.ndarray:
-    """Return the cells to which a way of few steps leads from seen ones, bool [X, Y, Z]."""
-    return ndimage.binary_dilation(
-        seen, np.ones((3, 3, 3), bool), iterations=parameters.reach_cells, mask=way
-    )
+def _reached(way: np.ndarray, kind: int, seen: np.ndarray, steps: int) -> np.ndarray:
+    """Return the cells to which a way of few steps leads within the planes of a class of structure.
+
+    A plane grows along itself and never thicker: the network was not taught what lies behind a
+    wall. Walls are told from what stands across them by the 3 x 3 cells of their plane.
+    """
+    result = np.zeros(seen.shape, bool)
+    level = kind in (SemanticClass.CEILING, SemanticClass.FLOOR)
+    for axis in (2,) if level else (0, 1):
+        plane = np.ones([1 if a == axis else 3 for a in range(3)], bool)
+        flat = ndimage.binary_opening(seen, plane)
+        result |= ndimage.binary_dilation(flat, plane, iterations=steps, mask=way | flat)
+    return result
