@@ -9,8 +9,8 @@ the frustum, and of some cells whether a ray crossed them. The command leaves wi
 of any frame differs; ``--spoil`` labels from a millimetre beside, so that one sees it fail.
 
 Then what the id buffer says: of the pixels of all visible cells, and of the cells, how many have
-the cell's class. Where a cell is a block all do; where blocks' borders cross cells, a cell has the
-class of the block that fills most of it, and some of its pixels show the other.
+the cell's class. All but those that look along an edge do, since a block of a generated house is
+three cells wide; where blocks' borders cross cells, some pixels of a cell show the other block.
 
 ``bench_labels.py`` tells what they cost.
 """
