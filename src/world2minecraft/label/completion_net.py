@@ -97,7 +97,7 @@ def spans(length: int) -> list[tuple[int, int, int, int]]:
         >>> spans(100)
         [(0, 0, 100, 100)]
         >>> spans(200)
-        [(0, 0, 100, 116), (84, 100, 200, 200)]
+        [(0, 0, 67, 83), (51, 67, 133, 149), (117, 133, 200, 200)]
     """
     count = 1 if length <= TILE + MARGIN else -(-length // TILE)
     edges = [round(length * n / count) for n in range(count + 1)]
