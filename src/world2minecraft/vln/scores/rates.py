@@ -9,17 +9,17 @@ CONFIDENCE = 0.95
 
 
 class Rate(NamedTuple):
-    """``hits`` of ``count``, and the interval (Wilson, 95 %) in which the true share lies."""
+    """``hits`` of ``total``, and the interval (Wilson, 95 %) in which the true share lies."""
 
     hits: int
-    count: int
+    total: int
     low: float
     high: float
 
     @property
     def share(self) -> float:
         """The share of hits, 0 where nothing was counted."""
-        return self.hits / self.count if self.count else 0.0
+        return self.hits / self.total if self.total else 0.0
 
 
 def rate(hits: int, count: int) -> Rate:
