@@ -6,6 +6,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from world2minecraft.errors import UsageError
+from world2minecraft.geometry.undistort import pinhole_of
 from world2minecraft.render.lamps import DAY
 from world2minecraft.render.light import LookLight
 from world2minecraft.render.scene import BlockScene
@@ -74,24 +75,10 @@ def drawn_views(
         width_px: how wide.
         light: how it is lit.
     """
-    cameras = [scaled_camera(camera, width_px) for camera, _ in views]
+    cameras = [pinhole_of(camera, width_px) for camera, _ in views]
     options = DrawOptions(outputs=("colour",), light=light, samples=2)
     for picture in frames(scene, cameras, [pose for _, pose in views], options):
         yield np.asarray(picture.colour)
-
-
-def scaled_camera(camera: Camera, width_px: int) -> Camera:
-    """Return a camera that sees the same with other numbers of pixels."""
-    height_px = max(1, round(camera.height_px * width_px / camera.width_px))
-    across, down = width_px / camera.width_px, height_px / camera.height_px
-    return Camera(
-        width_px,
-        height_px,
-        camera.fx_px * across,
-        camera.fy_px * down,
-        camera.cx_px * across,
-        camera.cy_px * down,
-    )
 
 
 def _shrunk(colour: np.ndarray, width_px: int) -> Image.Image:
