@@ -146,6 +146,11 @@ def files_of(folder: Path) -> dict[str, bytes]:
     }
 
 
+def differing(found: dict[str, bytes], wanted: dict[str, bytes]) -> list[str]:
+    """Return the names of files that are in one set alone, or differ."""
+    return sorted(name for name in found | wanted if found.get(name) != wanted.get(name))
+
+
 def main() -> int:
     options = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     options.add_argument("--kills", type=int, default=USUAL_KILLS)
@@ -167,9 +172,10 @@ def main() -> int:
             if is_complete(folder) or number == words.kills - 1:
                 with opened_engine("pool", 1) as engine:
                     build_dataset(folder, the_plan(), engine)
-                same = files_of(folder) == wanted and not verify_store(folder).faults
+                other = differing(files_of(folder), wanted)
+                same = not other and not verify_store(folder).faults
                 right, whole_sets = right and same, whole_sets + 1
-                line += f"; a whole set, {'the same' if same else 'NOT THE SAME'}"
+                line += f"; a whole set, {'the same' if same else 'NOT THE SAME'} {other[:5] or ''}".rstrip()
                 folder = Path(place) / f"again{number}"
             wrong += not right
             print(f"{number + 1:3} {'right' if right else 'WRONG'}  {line}", flush=True)
