@@ -175,7 +175,8 @@ def main() -> int:
                 other = differing(files_of(folder), wanted)
                 same = not other and not verify_store(folder).faults
                 right, whole_sets = right and same, whole_sets + 1
-                line += f"; a whole set, {'the same' if same else 'NOT THE SAME'} {other[:5] or ''}".rstrip()
+                line += f"; a whole set, {'the same' if same else 'NOT THE SAME'}"
+                line += f": {', '.join(other[:5])}" if other else ""
                 folder = Path(place) / f"again{number}"
             wrong += not right
             print(f"{number + 1:3} {'right' if right else 'WRONG'}  {line}", flush=True)
