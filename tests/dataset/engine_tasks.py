@@ -40,6 +40,11 @@ def die(number, tick):
     os._exit(7)
 
 
+def say_nothing(place, tick):
+    Path(place).write_text(str(os.getpid()))
+    time.sleep(3600)
+
+
 def tick_for_ever(place, tick):
     Path(place).write_text(str(os.getpid()))
     while True:

@@ -4,7 +4,11 @@ import errno
 import io
 import json
 import os
+import pickle
 import shutil
+import subprocess
+import sys
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +20,7 @@ from world2minecraft import cli
 from world2minecraft.dataset.building import build as build_module
 from world2minecraft.dataset.building import build_dataset
 from world2minecraft.dataset.building import scenes as scenes_module
+from world2minecraft.dataset.building.crew import wait_for_others
 from world2minecraft.dataset.building.shards import units_of
 from world2minecraft.dataset.engine import opened_engine
 from world2minecraft.dataset.labels import label_image
@@ -226,6 +231,42 @@ def test_a_second_run_on_the_same_folder_is_refused(plan, tmp_path):
     with pytest.raises(ConflictError, match="is being built by process"):
         build(tmp_path, plan)
     lock.let_go()
+
+
+PARENT = """
+import pickle, sys
+from pathlib import Path
+from world2minecraft.dataset.building import build_dataset
+from world2minecraft.dataset.engine import opened_engine
+if __name__ == "__main__":
+    with opened_engine("pool", 2) as engine:
+        build_dataset(sys.argv[1], pickle.loads(Path(sys.argv[2]).read_bytes()), engine)
+"""
+
+
+def is_at_work(folder):
+    """Whether a worker has begun: the crew's file is there before that."""
+    try:
+        wait_for_others(folder, patience_s=0)
+    except ConflictError:
+        return True
+    except OutputError:
+        pass
+    return False
+
+
+def test_a_run_may_begin_the_moment_a_pool_lost_its_parent(made, plan, tmp_path):
+    (tmp_path / "plan").write_bytes(pickle.dumps(plan))
+    (tmp_path / "parent.py").write_text(PARENT)
+    words = [sys.executable, *(str(tmp_path / name) for name in ("parent.py", "data", "plan"))]
+    process = subprocess.Popen(words)
+    while not is_at_work(tmp_path / "data"):
+        assert process.poll() is None
+        time.sleep(0.01)
+    process.kill()
+    process.wait()
+    build(tmp_path / "data", plan)
+    assert files_of(tmp_path / "data") == files_of(made[0])
 
 
 def test_another_plan_in_the_same_folder_is_refused(made, worlds):

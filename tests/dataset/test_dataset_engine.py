@@ -64,18 +64,19 @@ def test_an_item_that_kills_every_worker_is_told_in_one_line():
 
 PARENT = """
 import sys
-from engine_tasks import tick_for_ever
+import engine_tasks
 from world2minecraft.dataset.engine import opened_engine
 if __name__ == "__main__":
     with opened_engine("pool", 2) as engine:
-        list(engine.run(tick_for_ever, sys.argv[1:], lambda _: None))
+        list(engine.run(getattr(engine_tasks, sys.argv[1]), sys.argv[2:], lambda _: None))
 """
 
 
-def test_workers_end_with_a_parent_that_is_killed(tmp_path):
+@pytest.mark.parametrize("task", ["tick_for_ever", "say_nothing"])
+def test_workers_end_with_a_parent_that_is_killed(tmp_path, task):
     script, places = tmp_path / "parent.py", [tmp_path / name for name in "ab"]
     script.write_text(PARENT)
-    process = subprocess.Popen([sys.executable, str(script), *map(str, places)])
+    process = subprocess.Popen([sys.executable, str(script), task, *map(str, places)])
     until = time.monotonic() + 60
     while not all(place.exists() and place.read_text() for place in places):
         assert time.monotonic() < until

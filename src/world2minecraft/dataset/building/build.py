@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.dataset.building.clock import STAGES, milliseconds_an_image
+from world2minecraft.dataset.building.crew import dismiss, wait_for_others
 from world2minecraft.dataset.building.scenes import SceneFacts, SceneTask, survey
 from world2minecraft.dataset.building.shards import in_order, index_shard, make_shard, units_of
 from world2minecraft.dataset.building.shares import shared_views
@@ -79,12 +80,14 @@ def build_dataset(
     lock = Lock(root / LOCK, "built")
     lock.take()
     try:
+        wait_for_others(root)
         begin(root, plan)
         sweep(root)
         report = _finished(root) or _Build(root, plan, engine, progress).run()
     except BaseException:
         lock.let_go()
         raise
+    dismiss(root)
     lock.remove()
     return replace(report, seconds=time.monotonic() - began)
 

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.dataset.building.crew import of_the_crew
 from world2minecraft.dataset.building.recorded import given_views
 from world2minecraft.dataset.naming import fine_names
 from world2minecraft.dataset.plan import Recipe, SceneSpec
@@ -62,6 +63,7 @@ class SceneFacts:
         return dict(self.plans).get(asked)
 
 
+@of_the_crew
 def survey(task: SceneTask, tick: Callable[[int], None]) -> tuple[SceneFacts, float]:
     """Look at a scene and plan its views, unless that was done; return what is known, and CPU.
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.dataset.building.clock import StageClock
+from world2minecraft.dataset.building.crew import of_the_crew
 from world2minecraft.dataset.building.studio import studio_of
 from world2minecraft.dataset.plan import DatasetPlan, Recipe, SceneSpec
 from world2minecraft.dataset.store.index import shard_rows
@@ -48,6 +49,7 @@ def units_of(folder: Path, plan: DatasetPlan) -> list[Unit]:
     ]
 
 
+@of_the_crew
 def make_shard(unit: Unit, tick: Callable[[int], None]) -> tuple[int, dict[str, float]]:
     """Make a shard, or what is missing of it; return how many samples were made, and CPU seconds.
 

@@ -1,8 +1,8 @@
 """A pool of processes: each takes an item, tells how far it is, and gives its result.
 
 A process that dies (out of memory, killed) is replaced and its item begun again: what it had
-written to disk is found there. Processes end with their parent, however that ends: they notice at
-their next word to it.
+written to disk is found there. Processes end with their parent, however that ends: a thread of each
+waits for that.
 """
 
 from collections import Counter, deque

@@ -1,11 +1,14 @@
 """What a process of the pool does: it takes orders through a pipe until that ends."""
 
+import os
 import pickle
 import signal
 import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
+from multiprocessing import parent_process
 from multiprocessing.connection import Connection
+from threading import Thread
 from typing import Any
 
 from world2minecraft.errors import WorkerError
@@ -49,6 +52,7 @@ class _Deserted(BaseException):
 def serve(pipe: Connection) -> None:
     """Do what comes through the pipe until it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent is told, and ends us.
+    Thread(target=_end_with_parent, daemon=True).start()
     one_thread()
 
     def tick(count: int) -> None:
@@ -65,11 +69,26 @@ def serve(pipe: Connection) -> None:
         return
 
 
+def end_if_deserted() -> None:
+    """End what is being done, in a worker of a pool whose parent has ended."""
+    parent = parent_process()
+    if parent is not None and not parent.is_alive():
+        raise _Deserted
+
+
 def one_thread() -> None:
     """Let libraries use one thread: there is a process for each core."""
     from threadpoolctl import threadpool_limits  # noqa: PLC0415
 
     threadpool_limits(1)
+
+
+def _end_with_parent() -> None:
+    """End this process with its parent, in the middle of whatever it does."""
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def _answer(order: Order, tick: Callable[[int], None]) -> Done | Failed:

@@ -22,12 +22,13 @@ from world2minecraft.dataset.values import FineClass
 from world2minecraft.errors import DamagedFileError, InputError
 from world2minecraft.files import read_json, write_json, write_text
 
-META, CLASSES, INDEX, CARD, LOCK = (
+META, CLASSES, INDEX, CARD, LOCK, CREW = (
     "dataset.json",
     "classes.json",
     "index.parquet",
     "README.md",
     ".lock",
+    ".crew",
 )
 SHARDS, SCENES, WORLDS = "shards", "scenes", "worlds"
 SPLITS = ("train", "test")

@@ -9,6 +9,7 @@ from world2minecraft.dataset.store.index import COUNTS, read_index, shard_rows, 
 from world2minecraft.dataset.store.layout import (
     CARD,
     CLASSES,
+    CREW,
     INDEX,
     LEFTOVER,
     LOCK,
@@ -82,7 +83,7 @@ def _check_shard(path: Path, name: str, rows: list[dict[str, Any]]) -> list[str]
 def _strays(root: Path, known: Iterable[str]) -> list[str]:
     """Name files that belong to no data set: parts, leftovers, shards that no row is in."""
     shards = {root / name for name in known}
-    own = {META, CLASSES, INDEX, CARD, LOCK, SHARDS, SCENES, WORLDS}
+    own = {META, CLASSES, INDEX, CARD, LOCK, CREW, SHARDS, SCENES, WORLDS}
     strays = [
         path
         for path in root.iterdir()
