@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run as w2m
+from world2minecraft.dataset import photo_rooms
 from world2minecraft.dataset.photo_rooms import PhotoRooms, photo_samples, room_voxels
 from world2minecraft.dataset.showing import seen_in_cells
 from world2minecraft.dataset.store import open_store
-from world2minecraft.errors import UsageError
+from world2minecraft.errors import UsageError, World2MinecraftError
 from world2minecraft.rooms import generate_room
 from world2minecraft.types import Camera
 
@@ -51,6 +52,27 @@ def test_labels_fit_the_pictures(samples):
         assert sample.colour.std() > 10
         assert {2, 3} & set(np.unique(sample.occ.labels[sample.occ.visible]))
         assert sample.occ.free.any() and not (sample.occ.free & sample.occ.occupied).any()
+
+
+def test_a_seed_that_gives_no_room_of_its_kind_gives_one_of_another(monkeypatch):
+    asked = []
+
+    def reluctant(seed, kind, **words):
+        asked.append(kind)
+        if len(asked) == 1:
+            raise World2MinecraftError(f"seed {seed} gives no {kind} room; try another seed")
+        return generate_room(seed, kind=kind, **words)
+
+    monkeypatch.setattr(photo_rooms, "generate_room", reluctant)
+    (sample,) = photo_samples(PhotoRooms(1, 1, 0, 2, CAMERA))
+    assert sample.facts["room"]["kind"] == asked[1] != asked[0]
+
+    def unable(seed, kind, **words):
+        raise World2MinecraftError("no")
+
+    monkeypatch.setattr(photo_rooms, "generate_room", unable)
+    with pytest.raises(UsageError, match="seed 42000 gives no room of any kind"):
+        next(photo_samples(PhotoRooms(1, 1, 0, 2, CAMERA)))
 
 
 def test_rooms_are_of_one_split_and_share_the_pictures(samples):

@@ -7,6 +7,7 @@ exposure and noise of a chip. Depth is exact.
 """
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +18,7 @@ from world2minecraft.dataset.formats.sscnet import downsampled
 from world2minecraft.dataset.labels import label_image
 from world2minecraft.dataset.region import region_in
 from world2minecraft.dataset.values import USUAL_VOXEL_M, FineClass, OccSample, SceneVoxels
-from world2minecraft.errors import UsageError
+from world2minecraft.errors import UsageError, World2MinecraftError
 from world2minecraft.render.voxels import cast_voxels
 from world2minecraft.rooms import Room, generate_room
 from world2minecraft.rooms.exposure import TexturedScene, developed, exposed, prepare_textured
@@ -103,10 +104,17 @@ def room_voxels(room: Room, voxel_m: float = USUAL_VOXEL_M) -> SceneVoxels:
 
 
 def _room(plan: PhotoRooms, number: int) -> Room:
-    """Return a room of any kind and shape, more or less tidy."""
+    """Return a room of any kind and shape, more or less tidy; where one kind fails, the next."""
     seed = FIRST_SEED + ROOMS_A_SEED * plan.seed + number
     clutter = float(np.random.default_rng([seed, 5]).uniform(0, MOST_CLUTTER))
-    return generate_room(seed, kind=sorted(KINDS)[seed % len(KINDS)], clutter=clutter, shape=None)
+    kinds = sorted(KINDS)
+    turn = seed % len(kinds)
+    for kind in (*kinds[turn:], *kinds[:turn]):
+        with suppress(
+            World2MinecraftError
+        ):  # Its furniture found no place in the rooms of this seed.
+            return generate_room(seed, kind=kind, clutter=clutter, shape=None)
+    raise UsageError(f"seed {seed} gives no room of any kind; take another --seed")
 
 
 def _of_room(plan: PhotoRooms, number: int, room: Room, split: str) -> Iterator[OccSample]:
