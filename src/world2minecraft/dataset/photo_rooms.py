@@ -110,9 +110,7 @@ def _room(plan: PhotoRooms, number: int) -> Room:
     kinds = sorted(KINDS)
     turn = seed % len(kinds)
     for kind in (*kinds[turn:], *kinds[:turn]):
-        with suppress(
-            World2MinecraftError
-        ):  # Its furniture found no place in the rooms of this seed.
+        with suppress(World2MinecraftError):  # Its furniture found no place here.
             return generate_room(seed, kind=kind, clutter=clutter, shape=None)
     raise UsageError(f"seed {seed} gives no room of any kind; take another --seed")
 
