@@ -3,10 +3,11 @@
 ``python -m benchmarks.fit_confidence [--each 2 --keep FOLDER --check N]``
 
 The first scans of each difficulty of the tuning split are reconstructed. Each is labelled by its 2D
-label images, a tenth of them wrong, and by geometry alone; the cells that rays could reach say
-which labels are right. A logistic fit for each labeller goes to ``fuse/data/confidence.json``.
-Scans weigh alike whatever their size, so that a house does not speak for all rooms. ``--check N``
-keeps every N-th scan out of the fit and prints the expected calibration error of those alone.
+label images, a tenth of them wrong, by geometry alone, and by the completion network with and
+without the images; the cells that rays could reach say which labels are right. A logistic fit for
+each labeller goes to ``fuse/data/confidence.json``. Scans weigh alike whatever their size, so that
+a house does not speak for all rooms. ``--check N`` keeps every N-th scan out of the fit and prints
+the expected calibration error of those alone.
 """
 
 import argparse
@@ -23,8 +24,8 @@ from world2minecraft.evaluate.frames import used_frames
 from world2minecraft.evaluate.score import TrueRoom, see_truth
 from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.exchange.evidence import read_evidence
-from world2minecraft.exchange.room import read_room
 from world2minecraft.files import write_json
+from world2minecraft.fuse import CleanParameters, close_structure, read_out, remove_floaters
 from world2minecraft.fuse.confidence import (
     FREE_FEATURES,
     OCCUPIED_FEATURES,
@@ -34,22 +35,23 @@ from world2minecraft.fuse.confidence import (
     free_features,
     occupied_features,
 )
+from world2minecraft.label import labeller
 from world2minecraft.metrics.calibration import CalibrationCounts, count_calibration
 from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct
 from world2minecraft.rooms.trials import DIFFICULTIES, trials, write_trial
-from world2minecraft.steps import label_stage
 from world2minecraft.types import COMPLETED, OBSERVED, FusedEvidence, OccupancyGrid
 
-LABELLERS = ("geometric", "votes")
+# Whether their evidence keeps its votes. A network's own confidence counts beside the evidence.
+LABELLERS = {"geometric": (True,), "votes": (True,), "completion": (True, False)}
 PULL = 20.0  # Completed cells that a class needs before it leaves the mean of all classes.
 
 
 class Example:
     """One labelled scan: which of its cells are scored, and which of those are right."""
 
-    def __init__(self, grid: OccupancyGrid, evidence: FusedEvidence, room: TrueRoom):
-        self.grid, self.evidence = grid, evidence
+    def __init__(self, number: int, grid: OccupancyGrid, evidence: FusedEvidence, room: TrueRoom):
+        self.number, self.grid, self.evidence = number, grid, evidence
         true = _in_grid(room.labels, grid, room, UNKNOWN)
         reached = _in_grid(room.reached.scored, grid, room, False)
         self.scored = reached & (true != UNKNOWN)
@@ -69,7 +71,8 @@ def _in_grid(values: np.ndarray, grid: OccupancyGrid, room: TrueRoom, fill: Any)
 def gather(each: int, base: Path) -> dict[str, list[Example]]:
     """Reconstruct the first tuning scans of each difficulty, and label them in both ways."""
     found: dict[str, list[Example]] = {name: [] for name in LABELLERS}
-    for trial in (t for name in DIFFICULTIES for t in trials("tune", name)[:each]):
+    chosen = [trial for name in DIFFICULTIES for trial in trials("tune", name)[:each]]
+    for number, trial in enumerate(chosen):
         capture, out = base / trial.name, base / f"{trial.name}-out"
         if not (capture / "truth.json").is_file():
             write_trial(trial, capture)
@@ -78,14 +81,22 @@ def gather(each: int, base: Path) -> dict[str, list[Example]]:
         truth, evidence = read_truth(capture), read_evidence(out / "evidence.npz")
         frames = used_frames(out, truth)
         room = see_truth(truth, frames, evidence.scan_to_room, evidence.voxel_m)
-        for name in LABELLERS:
-            label_stage(out, replace(Parameters(), labeller=name))
-            found[name].append(Example(read_room(out / "room.npz")[0], evidence, room))
+        silent = replace(evidence, votes=np.zeros_like(evidence.votes))
+        for name, ways in LABELLERS.items():
+            for voted in ways:
+                told = evidence if voted else silent
+                found[name].append(Example(number, named(name, told), told, room))
         print(f"read {trial.name}", flush=True)
     return found
 
 
-def fit(examples: list[Example], uses_votes: bool) -> ConfidenceTable:
+def named(name: str, evidence: FusedEvidence) -> OccupancyGrid:
+    """Return what a labeller says, with its own confidence."""
+    grid = remove_floaters(read_out(evidence), CleanParameters())
+    return close_structure(labeller(name).label(grid, evidence), CleanParameters())
+
+
+def fit(examples: list[Example], uses_votes: bool, uses_said: bool = False) -> ConfidenceTable:
     """Return the table that explains best which labels were right."""
     rows, classes, right, weights = [], [], [], []
     free_rows, free_right, free_weights = [], [], []
@@ -93,7 +104,7 @@ def fit(examples: list[Example], uses_votes: bool) -> ConfidenceTable:
     for item in examples:
         grid = item.grid
         cells = item.scored & grid.occupied & (grid.source == OBSERVED)
-        rows.append(occupied_features(grid, item.evidence, cells, uses_votes))
+        rows.append(occupied_features(grid, item.evidence, cells, uses_votes, uses_said))
         classes.append(grid.labels[cells])
         right.append(item.right[cells])
         weights.append(np.full(len(right[-1]), 1e4 / max(len(right[-1]), 1)))
@@ -117,6 +128,7 @@ def fit(examples: list[Example], uses_votes: bool) -> ConfidenceTable:
         free=tuple(np.round(_logistic(np.concatenate(free_rows), free_right, free_weights), 4)),
         completed=tuple(np.round((done_right + PULL * mean) / (done + PULL), 3)),
         uses_votes=uses_votes,
+        uses_said=uses_said,
     )
 
 
@@ -141,7 +153,7 @@ def errors(examples: list[Example], table: ConfidenceTable) -> tuple[float, floa
 
 def main() -> None:
     """Fit and write the tables, or check them on scans left out."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--each", type=int, default=2, help="scans of each difficulty")
     parser.add_argument("--keep", type=Path, help="a folder for scans and runs, used again")
     parser.add_argument("--check", type=int, default=0, help="leave out every N-th scan")
@@ -149,9 +161,9 @@ def main() -> None:
     found = gather(chosen.each, chosen.keep or Path(tempfile.mkdtemp()))
     tables: dict[str, Any] = {}
     for name, examples in found.items():
-        kept = [e for n, e in enumerate(examples) if not chosen.check or n % chosen.check]
-        table = fit(kept, uses_votes=name == "votes")
-        left = [e for n, e in enumerate(examples) if chosen.check and not n % chosen.check]
+        kept = [e for e in examples if not chosen.check or e.number % chosen.check]
+        table = fit(kept, name != "geometric", name == "completion")
+        left = [e for e in examples if chosen.check and not e.number % chosen.check]
         tables[name] = {key: getattr(table, key) for key in table.__dataclass_fields__}
         print(f"{name}: ECE all, occupied; fitted {_two(kept, table)}", end="")
         print(f", left out {_two(left, table)}" if left else "")

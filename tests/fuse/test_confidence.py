@@ -11,11 +11,12 @@ from world2minecraft.fuse.confidence import _neighbours
 from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 TABLE = ConfidenceTable(
-    occupied=(2.0, 1.0, 0.5, 1.0, 1.0, 2.0, 0.0),
+    occupied=(2.0, 1.0, 0.5, 1.0, 1.0, 2.0, 0.0, 0.7),
     classes=tuple(-0.1 * n for n in range(12)),
     free=(3.0, -2.0, -1.0, -1.5, -0.5, -0.5),
     completed=(0.5,) * 12,
     uses_votes=True,
+    uses_said=True,
 )
 
 
@@ -39,7 +40,7 @@ def scene(seed: int = 0) -> tuple[OccupancyGrid, FusedEvidence]:
     )
     grid = OccupancyGrid(
         labels=labels,
-        confidence=np.zeros(shape, np.float16),
+        confidence=random.uniform(0, 1, shape).astype(np.float16),
         colour=np.zeros((*shape, 3), np.uint8),
         source=source,
         instance=np.zeros(shape, np.uint16),
@@ -72,10 +73,11 @@ def test_the_chance_is_the_logistic_of_the_features_read_cell_by_cell():
         around = (((box > 0) & (box != 255)).sum() - 1) / 26
         votes = evidence.votes[i, j, k].astype(float)
         share = votes[label] / votes.sum()
+        own = np.clip(float(grid.confidence[i, j, k]), 0.01, 0.995)
         row = [
             np.clip(float(evidence.log_odds[i, j, k]), -6, 6) / 6,
             np.log1p(float(evidence.hits[i, j, k])) / 8,
-            1, share, share**2, same, around,
+            1, share, share**2, same, around, np.log(own / (1 - own)),
         ]  # fmt: skip
         value = np.dot(row, TABLE.occupied) + TABLE.classes[label]
         expected = np.clip(1 / (1 + np.exp(-value)), 0.01, 0.995)
@@ -136,5 +138,5 @@ def test_a_damaged_table_says_which_file(tmp_path, monkeypatch):
 
 
 def test_a_table_of_the_wrong_size_is_refused():
-    with pytest.raises(ValueError, match="occupied must be 7 finite numbers"):
+    with pytest.raises(ValueError, match="occupied must be 8 finite numbers"):
         ConfidenceTable((1.0,), TABLE.classes, TABLE.free, TABLE.completed, True)

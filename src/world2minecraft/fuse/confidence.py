@@ -20,7 +20,7 @@ from world2minecraft.types import COMPLETED, OBSERVED, FusedEvidence, OccupancyG
 
 TABLES = Path(__file__).parent / "data" / "confidence.json"
 OCCUPIED_FEATURES = (
-    "log_odds", "hits", "voted", "share", "share_squared", "same_class", "occupied_around",
+    "log_odds", "hits", "voted", "share", "share_squared", "same_class", "occupied_around", "said",
 )  # fmt: skip
 FREE_FEATURES = ("one", "log_odds", "hits", "beside_occupied", "two_off", "beside_unknown")
 LEAST, MOST = 0.01, 0.995  # Nothing is certain after a few rooms.
@@ -32,7 +32,8 @@ class ConfidenceTable:
     """The fitted weights of one labeller.
 
     ``classes`` is the intercept of each class, ``completed`` the share of completed cells of each
-    class that was right; both have 12 entries, the first (empty) of no use.
+    class that was right; both have 12 entries, the first (empty) of no use. ``uses_said`` is of
+    labellers whose own confidence means something: it is one of the features then.
     """
 
     occupied: tuple[float, ...]
@@ -40,6 +41,7 @@ class ConfidenceTable:
     free: tuple[float, ...]
     completed: tuple[float, ...]
     uses_votes: bool
+    uses_said: bool = False
 
     def __post_init__(self):
         for name, size in (
@@ -89,7 +91,7 @@ def calibrate(
     confidence = np.zeros(grid.shape, np.float64)
     weights = np.array(table.occupied)
     offset = np.array(table.classes)[grid.labels[occupied]]
-    rows = occupied_features(grid, evidence, occupied, table.uses_votes)
+    rows = occupied_features(grid, evidence, occupied, table.uses_votes, table.uses_said)
     confidence[occupied] = _chance(_weighed(rows, weights) + offset)
     rows = free_features(grid, evidence, free)
     confidence[free] = _chance(_weighed(rows, np.array(table.free)))
@@ -99,12 +101,17 @@ def calibrate(
 
 
 def occupied_features(
-    grid: OccupancyGrid, evidence: FusedEvidence, cells: np.ndarray, uses_votes: bool
+    grid: OccupancyGrid,
+    evidence: FusedEvidence,
+    cells: np.ndarray,
+    uses_votes: bool,
+    uses_said: bool = False,
 ) -> np.ndarray:
-    """Return float64 [N, 7], the ``OCCUPIED_FEATURES`` of chosen cells bool [X, Y, Z].
+    """Return float64 [N, 8], the ``OCCUPIED_FEATURES`` of chosen cells bool [X, Y, Z].
 
     Log-odds are in units of 6, hits logarithmic in units of 8; ``share`` is the part of the votes
-    that the label has, ``same_class`` and ``occupied_around`` the parts of the 26 neighbours.
+    that the label has, ``same_class`` and ``occupied_around`` the parts of the 26 neighbours,
+    ``said`` the log-odds of the labeller's own confidence.
     """
     if evidence.log_odds.shape != grid.shape:
         raise ValueError(f"evidence {evidence.log_odds.shape} and grid {grid.shape} differ")
@@ -113,6 +120,8 @@ def occupied_features(
     total = votes.sum(axis=1) * uses_votes
     share = votes[np.arange(len(labels)), labels] / np.maximum(total, 1e-9) * (total > 0)
     around, same = _around(grid, cells)
+    own = np.clip(grid.confidence[cells].astype(np.float64), LEAST, MOST)
+    said = np.log(own / (1 - own)) * uses_said
     return np.column_stack(
         [
             np.clip(evidence.log_odds[cells].astype(np.float64), -6, 6) / 6,
@@ -122,6 +131,7 @@ def occupied_features(
             share**2,
             same,
             around,
+            said,
         ]
     )
 
