@@ -1,4 +1,4 @@
-"""An item as a question: the words, with a mark where each picture stands, the pictures, the answer.
+"""An item as a question: words with a mark where each picture stands, the pictures, the answer.
 
 Exports for trainers and agents that answer items ask by the same words, so that what a model was
 trained on is what it is scored on.
