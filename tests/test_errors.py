@@ -34,6 +34,7 @@ GOLDEN = [
     (errors.UsageError("give one"), "give one", 2),
     (errors.ServerError("gone"), "gone", 1),
     (errors.WorkerError("ended"), "ended", 1),
+    (errors.BudgetError("spent"), "spent", 1),
     (errors.World2MinecraftError("failed"), "failed", 1),
 ]
 

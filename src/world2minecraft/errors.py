@@ -8,6 +8,7 @@
     │   └── MissingExtraError       2   an optional dependency is not installed
     ├── ServerError                 1   a running server refuses, or cannot be reached
     ├── WorkerError                 1   a process that shares the work has ended or failed
+    ├── BudgetError                 1   a cap on calls or money is reached
     └── InputError                  3   a file or folder cannot be used
         ├── DamagedFileError        3   a file is not what its format says
         ├── LimitError              3   a file asks for more than the program allows
@@ -68,6 +69,10 @@ class ServerError(World2MinecraftError):
 
 class WorkerError(World2MinecraftError):
     """A process that shares the work has ended, or failed with an error that cannot be sent."""
+
+
+class BudgetError(World2MinecraftError):
+    """A cap on calls of a model, or on what they cost, is reached."""
 
 
 class InputError(World2MinecraftError):

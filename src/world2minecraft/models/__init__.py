@@ -1,1 +1,1 @@
-"""Networks of others, asked for by name: how they are had, and how pictures are made for them."""
+"""Models of others, asked for by name: networks from a hub, and language models on servers."""

@@ -1,0 +1,177 @@
+"""The one client for language models: any server that speaks the protocol of OpenAI's chat.
+
+``ChatModel.ask`` takes turns of text and pictures and returns a reply: from the record where the
+same was asked before, else from the server, with bounded repeats, and never over the budget.
+
+Example::
+
+    model = open_chat("gemini", store=ReplyStore("replies.jsonl"), max_usd=0.5)
+    model.ask((Turn("user", ("What is this?", Picture(jpeg))),)).text
+"""
+
+import random
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, Protocol
+
+from world2minecraft.errors import ServerError, UsageError
+from world2minecraft.models.chat_budget import Ledger, price_of, read_prices
+from world2minecraft.models.chat_endpoints import endpoint_of
+from world2minecraft.models.chat_messages import Question, Reply, Turn
+from world2minecraft.models.chat_store import ReplyStore
+from world2minecraft.models.chat_wire import BusyServerError, ChatWire
+
+ATTEMPTS = 5  # As often is a busy server asked; with the waits below that is about a minute.
+FIRST_WAIT_S, LONGEST_WAIT_S = 1.0, 30.0
+TIMEOUT_S = 60.0  # Of one attempt, from the question to the last byte.
+
+
+class Wire(Protocol):
+    """What asks a server once."""
+
+    def ask(self, question: Question) -> Reply:
+        """Return the reply; raises as ``chat_wire`` says."""
+        ...
+
+
+class ChatModel:
+    """A model on a server, with its record of replies and its budget. Threads may share it.
+
+    ``rung`` is how strictly it can be asked for a form; ``chat_forms`` lowers it for good where
+    the server refuses.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        wire: Wire | None,
+        *,
+        store: ReplyStore | None = None,
+        ledger: Ledger | None = None,
+        temperature: float | None = 0.0,
+        max_tokens: int = 1024,
+        attempts: int = ATTEMPTS,
+        sleep: Callable[[float], None] = time.sleep,
+    ):
+        """Take a wire, None where all replies come from the store."""
+        if attempts < 1:
+            raise UsageError(f"a question is asked at least once, not {attempts} times")
+        self.name, self._wire, self._store = name, wire, store
+        self.ledger = Ledger() if ledger is None else ledger
+        self.temperature, self.max_tokens = temperature, max_tokens
+        self.attempts, self._sleep = attempts, sleep
+        self.rung = 0
+
+    def ask(
+        self, turns: tuple[Turn, ...], *, form: dict[str, Any] | None = None, sample: int = 0
+    ) -> tuple[str, Reply]:
+        """Ask, and return the key of the question with the reply.
+
+        Raises:
+            BudgetError: a cap is reached. ServerError and its kinds: there is no reply.
+            InputError: only recorded replies are wanted and this question has none.
+        """
+        question = Question(self.name, turns, self.temperature, self.max_tokens, form, sample)
+        found = self._store.get(question) if self._store is not None else None
+        if found is not None:
+            self.ledger.book_replay()
+            return question.key, found
+        if self._wire is None:
+            raise UsageError("a model without a server answers from a record alone; give one")
+        reply = self._paid(self._wire, question)
+        if self._store is not None:
+            self._store.put(question, reply)
+        return question.key, reply
+
+    def _paid(self, wire: Wire, question: Question) -> Reply:
+        held = self.ledger.hold(question)
+        try:
+            reply = self._patiently(wire, question)
+        except BaseException:
+            self.ledger.settle(held, None)
+            raise
+        self.ledger.settle(held, reply)
+        return reply
+
+    def _patiently(self, wire: Wire, question: Question) -> Reply:
+        import tenacity  # noqa: PLC0415  # An extra.
+
+        repeats = tenacity.Retrying(
+            stop=tenacity.stop_after_attempt(self.attempts),
+            wait=wait_s,
+            retry=tenacity.retry_if_exception_type(BusyServerError),
+            sleep=self._sleep,
+            reraise=True,
+        )
+        reply = repeats(wire.ask, question)
+        return replace(reply, attempts=repeats.statistics.get("attempt_number", 1))
+
+
+def wait_s(state: Any) -> float:
+    """Return how long to wait before the next attempt, by what tenacity knows of the last.
+
+    As long as the server asks for, else twice as long each time, with some chance, so that
+    threads do not come back together.
+    """
+    error = state.outcome.exception()
+    asked = getattr(error, "retry_after_s", None)
+    if asked is not None:
+        return min(asked, LONGEST_WAIT_S)
+    longest = min(LONGEST_WAIT_S, FIRST_WAIT_S * 2 ** (state.attempt_number - 1))
+    return longest * random.uniform(0.5, 1.0)
+
+
+def open_chat(
+    text: str,
+    *,
+    model: str = "",
+    key_name: str | None = None,
+    store: ReplyStore | None = None,
+    prices: str | None = None,
+    max_usd: float | None = None,
+    max_calls: int | None = None,
+    temperature: float | None = 0.0,
+    max_tokens: int = 1024,
+    timeout_s: float = TIMEOUT_S,
+    attempts: int = ATTEMPTS,
+) -> ChatModel:
+    """Return a model by the name or the address of its server.
+
+    Args:
+        text: as ``endpoint_of`` takes it.
+        model: its name; without it the usual one, or the only one that the server has.
+        key_name: the variable of the environment that holds the key.
+        store: replies that were recorded. One that only replays needs no server and no key.
+        prices: a file of prices, None for the shipped one.
+        max_usd: dollars that may be spent.
+        max_calls: questions that may be asked.
+        temperature: of the replies, None for the server's own.
+        max_tokens: the most of a reply.
+        timeout_s: of one attempt.
+        attempts: how often a busy server is asked.
+
+    Raises:
+        UsageError: a name, an address, a key or a cap is wrong. ServerError: no model was named
+        and the server does not tell of one.
+    """
+    endpoint = endpoint_of(text, model=model, key_name=key_name)
+    replays = store is not None and store.mode == "replay"
+    wire = None if replays else ChatWire(endpoint, timeout_s=timeout_s)
+    name = endpoint.model or (only_model(wire.models(), endpoint.url) if wire else "")
+    if not name:
+        raise UsageError("a replay needs the name of the model that was asked: --model NAME")
+    table = read_prices(prices) if prices else read_prices()
+    ledger = Ledger(price_of(name, table), max_usd=max_usd, max_calls=max_calls)
+    return ChatModel(
+        name, wire, store=store, ledger=ledger, temperature=temperature, max_tokens=max_tokens,
+        attempts=attempts,
+    )  # fmt: skip
+
+
+def only_model(names: tuple[str, ...], url: str) -> str:
+    """Return the one name of several. Raises ServerError where there is none or more."""
+    if len(names) == 1:
+        return names[0]
+    some = ", ".join(names[:8]) or "none"
+    raise ServerError(f"{url} has these models: {some}; say which with --model NAME")

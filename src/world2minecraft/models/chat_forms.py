@@ -1,0 +1,148 @@
+"""Replies in a form: a ladder from a strict schema down to plain text, with two repairs.
+
+A server that can is held to a JSON schema; one that refuses is asked for any JSON object, and the
+next for plain text. What comes is read with care whatever the rung, for servers differ in what
+they promise and what they do. A reply that cannot be read is answered with what is wrong about it,
+twice at most; then there is no value, and the tries tell why. Nothing is ever guessed.
+"""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from world2minecraft.models.chat import ChatModel
+from world2minecraft.models.chat_messages import Reply, Turn
+from world2minecraft.models.chat_wire import RefusedQuestionError, UselessReplyError
+
+RUNGS = ("json_schema", "json_object", "text")
+REPAIRS = 2
+MAX_QUOTED = 2000  # Characters of a bad reply that it is shown again.
+CUT = "the reply was cut; be shorter"
+
+Value = TypeVar("Value")
+
+
+class UnreadableError(Exception):
+    """A reply is not of the form; the text says what is wrong, to the model."""
+
+
+@dataclass(frozen=True)
+class Form(Generic[Value]):
+    """What a reply must be.
+
+    ``read`` takes the text of a reply and returns the value; it raises UnreadableError.
+    ``words`` say the form to a model that is not held to the schema.
+    """
+
+    name: str
+    schema: dict[str, Any]
+    words: str
+    read: Callable[[str], Value]
+
+    def wire(self, rung: str) -> dict[str, Any] | None:
+        """Return the ``response_format`` of a rung."""
+        if rung == "json_schema":
+            named = {"name": self.name, "strict": True, "schema": self.schema}
+            return {"type": "json_schema", "json_schema": named}
+        return {"type": "json_object"} if rung == "json_object" else None
+
+
+@dataclass(frozen=True)
+class Try:
+    """One question of a ladder: its rung and key, the reply or none, and what was wrong."""
+
+    rung: str
+    key: str
+    reply: Reply | None
+    problem: str = ""
+
+
+@dataclass(frozen=True)
+class Formed(Generic[Value]):
+    """What came of a ladder: a value, or None, and all tries."""
+
+    value: Value | None
+    tries: tuple[Try, ...]
+
+    @property
+    def raw(self) -> str:
+        """The last text that came, empty where none did."""
+        texts = [one.reply.text for one in self.tries if one.reply is not None]
+        return texts[-1] if texts else ""
+
+    @property
+    def problem(self) -> str:
+        """What was wrong with the last try, empty where there is a value."""
+        return self.tries[-1].problem if self.tries and self.value is None else ""
+
+
+def ask_form(
+    model: ChatModel, turns: tuple[Turn, ...], form: Form[Value], *, repairs: int = REPAIRS
+) -> Formed[Value]:
+    """Ask for a value of a form.
+
+    A rung that is refused where the next one is taken is left for good (``model.rung``); that
+    costs no repair.
+
+    Raises:
+        RefusedQuestionError: even plain text is refused. BudgetError, ServerError, InputError: as
+        ``ChatModel.ask``; a reply that is no reply counts as an unreadable one.
+    """
+    tries: list[Try] = []
+    asked, left, rung = (*turns, Turn("user", (form.words,))), repairs, model.rung
+    while True:
+        try:
+            tried, value = _once(model, asked, form, RUNGS[rung])
+        except RefusedQuestionError as error:
+            if rung == len(RUNGS) - 1:
+                raise
+            tries.append(Try(RUNGS[rung], "", None, f"refused: {error}"))
+            rung += 1
+            continue
+        tries.append(tried)
+        if tried.reply is not None:
+            model.rung = max(model.rung, rung)  # This rung is taken, those above were not.
+        if value is not None or left == 0:
+            return Formed(value, tuple(tries))
+        left -= 1
+        asked = (*asked, *_repair(tried, form))
+
+
+def _once(
+    model: ChatModel, turns: tuple[Turn, ...], form: Form[Value], rung: str
+) -> tuple[Try, Value | None]:
+    try:
+        key, reply = model.ask(turns, form=form.wire(rung))
+    except UselessReplyError as error:
+        return Try(rung, "", None, str(error)), None
+    if reply.finish == "length":
+        return Try(rung, key, reply, CUT), None
+    try:
+        return Try(rung, key, reply), form.read(reply.text)
+    except UnreadableError as error:
+        return Try(rung, key, reply, str(error)), None
+
+
+def _repair(tried: Try, form: Form[Any]) -> tuple[Turn, ...]:
+    said = tried.reply.text[:MAX_QUOTED] if tried.reply is not None else ""
+    told = f"That cannot be used: {tried.problem}. {form.words}"
+    spoken = Turn("assistant", (said or "(nothing that can be read)",))
+    return (spoken, Turn("user", (told,)))
+
+
+def json_of(text: str) -> dict[str, Any] | None:
+    """Return the one JSON object of a text, bare or between other words, else None.
+
+    Example:
+        >>> json_of('Sure! ```json {"a": 1} ```'), json_of('{"a": 1} {"b": 2}')
+        ({'a': 1}, None)
+    """
+    start, end = text.find("{"), text.rfind("}")
+    if start < 0 or end < start:
+        return None
+    try:
+        found = json.loads(text[start : end + 1])
+    except (ValueError, RecursionError):
+        return None
+    return found if isinstance(found, dict) else None

@@ -1,0 +1,106 @@
+"""Replies on disk: a line a question, so that a run goes on where it stopped and can be replayed.
+
+A line is ``{"key", "question", "reply"}``; pictures are their sums and no key of a server is in
+it. A line that was cut by a crash is dropped, any other damage is an error.
+"""
+
+import json
+import threading
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.errors import DamagedFileError, InputError, OutputError, UsageError
+from world2minecraft.files import read_bytes
+from world2minecraft.models.chat_messages import Question, Reply
+
+MODES = ("record", "replay")
+MAX_STORE_BYTES = 1 << 30
+TYPES = {"text": str, "prompt_tokens": int, "completion_tokens": int, "finish": str}
+
+
+class ReplyStore:
+    """The replies of a file, by the keys of their questions.
+
+    ``record`` returns what it has and takes what is new; ``replay`` has what it has.
+    """
+
+    def __init__(self, path: str | Path, mode: str = "record"):
+        """Read the file.
+
+        Raises:
+            UsageError: no such mode. InputError: a file to replay is missing.
+            DamagedFileError: a line is no reply. LimitError: it is too large.
+        """
+        if mode not in MODES:
+            raise UsageError(f"replies are used to {' or to '.join(MODES)}, not to {mode!r}")
+        self.path, self.mode = Path(path), mode
+        self._replies: dict[str, Reply] = {}
+        self._lock = threading.Lock()
+        if self.path.exists():
+            self._read()
+        elif mode == "replay":
+            raise InputError(path, "is not there; a run with --out writes replies.jsonl")
+
+    def __len__(self) -> int:
+        return len(self._replies)
+
+    def get(self, question: Question) -> Reply | None:
+        """Return the reply to a question, None where it was not asked yet.
+
+        Raises:
+            InputError: it was not asked, and this store only replays.
+        """
+        reply = self._replies.get(question.key)
+        if reply is None and self.mode == "replay":
+            raise InputError(
+                self.path,
+                f"has no reply to question {question.key[:12]}; a replay needs the same scene, "
+                "model, prompts and options as the run that was recorded",
+            )
+        return reply
+
+    def put(self, question: Question, reply: Reply) -> None:
+        """Add a reply to the file. Raises OutputError."""
+        kept = {name: value for name, value in asdict(reply).items() if name != "is_replayed"}
+        line = {"key": question.key, "question": question.told(), "reply": kept}
+        text = json.dumps(line, sort_keys=True) + "\n"
+        with self._lock:
+            self._replies[question.key] = Reply(**kept, is_replayed=True)
+            try:
+                self.path.parent.mkdir(parents=True, exist_ok=True)
+                with self.path.open("a", encoding="utf-8") as stream:
+                    stream.write(text)
+            except OSError as error:
+                reason = f"cannot be written: {error.strerror or error}"
+                raise OutputError(self.path, reason) from error
+
+    def _read(self) -> None:
+        data = read_bytes(self.path, MAX_STORE_BYTES)
+        whole = data.rpartition(b"\n")[0]
+        if len(whole) + 1 < len(data) and self.mode == "record":
+            self._drop_after(len(whole) + 1 if whole else 0)
+        for number, line in enumerate(whole.splitlines(), start=1):
+            if line.strip():
+                key, reply = self._checked(line, number)
+                self._replies[key] = reply
+
+    def _drop_after(self, size: int) -> None:
+        try:
+            with self.path.open("r+b") as stream:
+                stream.truncate(size)
+        except OSError as error:
+            raise OutputError(self.path, f"cannot be written: {error.strerror or error}") from error
+
+    def _checked(self, line: bytes, number: int) -> tuple[str, Reply]:
+        try:
+            record: Any = json.loads(line)
+            kept = record["reply"]
+            if not isinstance(record["key"], str):
+                raise TypeError("the key is no text")
+            for name, kind in TYPES.items():
+                if type(kept[name]) is not kind:
+                    raise TypeError(f"{name} is no {kind.__name__}")
+            return record["key"], Reply(**{**kept, "is_replayed": True})
+        except (ValueError, TypeError, KeyError, RecursionError) as error:
+            raise DamagedFileError(self.path, f"line {number} is no reply ({error})") from error

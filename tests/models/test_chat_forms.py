@@ -1,0 +1,99 @@
+"""The ladder of forms: how it steps down, repairs, and ends without a guess."""
+
+import json
+
+import pytest
+from tests.models.scripted_server import BUSY, MEGABYTE, NO_SCHEMA, proper, scripted
+from tests.models.test_chat import HELLO, model_at
+
+from world2minecraft.models.chat_forms import Form, UnreadableError, ask_form, json_of
+from world2minecraft.models.chat_wire import RefusedQuestionError
+
+
+def read_colour(text):
+    found = json_of(text)
+    if found is None or found.get("colour") not in ("red", "green"):
+        raise UnreadableError("colour must be red or green")
+    return found["colour"]
+
+
+SCHEMA = {
+    "type": "object",
+    "properties": {"colour": {"enum": ["red", "green"]}},
+    "required": ["colour"],
+    "additionalProperties": False,
+}
+COLOUR = Form("colour", SCHEMA, 'Reply {"colour": "red"} or {"colour": "green"}.', read_colour)
+GREEN = json.dumps({"colour": "green"})
+
+
+def kinds(server):
+    return [(sent.get("response_format") or {"type": "text"})["type"] for sent in server.requests]
+
+
+def test_a_server_that_can_is_held_to_the_schema():
+    with scripted([GREEN]) as server:
+        formed = ask_form(model_at(server), HELLO, COLOUR)
+    assert (formed.value, len(formed.tries), formed.problem) == ("green", 1, "")
+    told = server.requests[0]["response_format"]["json_schema"]
+    assert (told["name"], told["strict"], told["schema"]) == ("colour", True, SCHEMA)
+    assert "Reply" in server.requests[0]["messages"][-1]["content"]
+
+
+def test_a_refused_rung_is_left_for_good_and_costs_no_repair():
+    def script(asked, _number):
+        kind = (asked.get("response_format") or {"type": "text"})["type"]
+        return NO_SCHEMA if kind != "text" else "I say " + GREEN
+
+    with scripted(script) as server:
+        model = model_at(server)
+        first, second = (ask_form(model, HELLO, COLOUR, repairs=0) for _ in range(2))
+        assert (first.value, second.value) == ("green", "green")
+        assert kinds(server) == ["json_schema", "json_object", "text", "text"]
+    assert [one.rung for one in first.tries] == ["json_schema", "json_object", "text"]
+    assert first.tries[0].problem.startswith("refused: ")
+
+
+def test_a_question_that_is_refused_whatever_its_form_lowers_nothing():
+    with scripted([NO_SCHEMA] * 3 + [GREEN]) as server:
+        model = model_at(server)
+        with pytest.raises(RefusedQuestionError):
+            ask_form(model, HELLO, COLOUR)
+        assert ask_form(model, HELLO, COLOUR).value == "green"
+        assert kinds(server)[-1] == "json_schema"
+
+
+def test_a_bad_reply_is_shown_again_with_what_is_wrong():
+    with scripted(["Let me think about that.", '{"colour": "blue"}', GREEN]) as server:
+        formed = ask_form(model_at(server), HELLO, COLOUR)
+    assert formed.value == "green"
+    assert [one.problem for one in formed.tries] == ["colour must be red or green"] * 2 + [""]
+    last = server.requests[2]["messages"]
+    assert [turn["role"] for turn in last] == ["user", "user"] + ["assistant", "user"] * 2
+    assert last[-2]["content"] == '{"colour": "blue"}'
+    assert last[-1]["content"].startswith("That cannot be used: colour must be red or green.")
+
+
+BAD = {
+    "prose": "I would take green.",
+    "an unknown value": '{"colour": "blue"}',
+    "two objects": GREEN + GREEN,
+    "a megabyte": MEGABYTE,
+    "cut": proper(GREEN, finish="length"),
+    "nothing": "",
+    "null": proper(None),
+}
+
+
+@pytest.mark.parametrize("answer", BAD.values(), ids=BAD)
+def test_what_stays_bad_ends_after_two_repairs_without_a_value(answer):
+    with scripted([answer]) as server:
+        formed = ask_form(model_at(server), HELLO, COLOUR)
+        assert formed.value is None and formed.problem
+        assert len(formed.tries) == len(server.requests) == 3
+
+
+def test_a_busy_moment_in_between_is_no_repair():
+    with scripted([BUSY, GREEN]) as server:
+        formed = ask_form(model_at(server), HELLO, COLOUR)
+    assert len(formed.tries) == 1 and formed.tries[0].reply.attempts == 2
