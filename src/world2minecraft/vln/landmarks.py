@@ -1,0 +1,211 @@
+"""The things of a scene that people speak of: what each is called, its colour, and where it is.
+
+In: a volume with instances and the furniture design of each block. Out: ``Landmark`` values whose
+names differ. Doubles are told apart as people do: by colour, then by what stands beside them, and
+by a number only where nothing else tells.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES, SemanticClass
+from world2minecraft.coordinates import apply
+from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.minecraft.colours import colours_of, nearest_oklab
+from world2minecraft.types import BlockVolume
+
+BESIDE_M = 1.5  # What stands nearer than this is "beside".
+LEAST_M = 0.15  # What is smaller in its two longer sides is nothing to speak of.
+
+# What people call a class where nothing better is known of a thing.
+NOUNS = {
+    int(SemanticClass.CHAIR): "chair",
+    int(SemanticClass.BED): "bed",
+    int(SemanticClass.SOFA): "sofa",
+    int(SemanticClass.TABLE): "table",
+    int(SemanticClass.TVS): "screen",
+    int(SemanticClass.FURN): "cupboard",
+    int(SemanticClass.OBJS): "object",
+}
+# Blocks of the game that are a thing by themselves; of others only the class is a name.
+_BLOCK_NOUNS = {
+    "bookshelf": "bookcase",
+    "chiseled_bookshelf": "bookcase",
+    "chest": "chest",
+    "ender_chest": "chest",
+    "trapped_chest": "chest",
+    "barrel": "barrel",
+    "furnace": "furnace",
+    "blast_furnace": "furnace",
+    "smoker": "cooker",
+    "crafting_table": "workbench",
+    "jukebox": "jukebox",
+    "lectern": "lectern",
+    "cauldron": "cauldron",
+    "enchanting_table": "enchanting table",
+    "anvil": "anvil",
+    "bell": "bell",
+    "campfire": "campfire",
+    "composter": "composter",
+    "loom": "loom",
+    "brewing_stand": "brewing stand",
+}
+_NOBODYS = NOUNS[int(SemanticClass.OBJS)]  # Says nothing, whatever else is said of it.
+_COLOURS = {
+    "white": (235, 235, 235),
+    "grey": (130, 130, 130),
+    "black": (28, 28, 30),
+    "red": (165, 40, 40),
+    "orange": (225, 120, 35),
+    "yellow": (240, 205, 70),
+    "green": (90, 130, 50),
+    "blue": (60, 80, 170),
+    "light blue": (110, 175, 215),
+    "purple": (125, 60, 165),
+    "pink": (230, 150, 175),
+    "brown": (110, 75, 45),
+    "light brown": (175, 140, 90),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Landmark:
+    """A thing of a scene. Metres and boxes are those of the room's frame.
+
+    ``name`` is its own in the scene ("piano", "red chair", "chair beside the piano"); ``noun`` is
+    the plain word. ``is_told`` says whether a person can tell which one the name means: names that
+    end in a number, and "object", tell nobody.
+    """
+
+    number: int  # its instance in the volume
+    name: str
+    noun: str
+    class_id: int
+    colour: str
+    center_m: np.ndarray  # float64 [3]
+    size_m: np.ndarray  # float64 [3]
+    design: str = ""  # of the furniture library, "" where unknown
+    room: int = -1  # of the scene's rooms
+    is_told: bool = True
+
+    @property
+    def class_name(self) -> str:
+        """One of the 12 classes."""
+        return CLASS_NAMES[self.class_id]
+
+    @property
+    def low_m(self) -> np.ndarray:
+        """The box's low corner, float64 [3]."""
+        return self.center_m - self.size_m / 2
+
+    @property
+    def high_m(self) -> np.ndarray:
+        """The box's high corner, float64 [3]."""
+        return self.center_m + self.size_m / 2
+
+
+def landmarks_of(
+    volume: BlockVolume,
+    designs: tuple[np.ndarray, Sequence[str]],
+    titles: Mapping[str, str],
+    room_of: Callable[[np.ndarray], int],
+) -> tuple[Landmark, ...]:
+    """Return the things of a volume, by their numbers, with names that differ.
+
+    Args:
+        volume: the blocks; ``instance`` says what belongs together.
+        designs: the design of each block, uint16 [X, Y, Z], and the names, "" first.
+        titles: what people call a design.
+        room_of: the room's number of a place in metres, float64 [3].
+    """
+    codes, names = designs
+    held = np.flatnonzero((volume.instance.reshape(-1) > 0) & (volume.states.reshape(-1) > 0))
+    order = held[np.argsort(volume.instance.reshape(-1)[held], kind="stable")]
+    numbers, firsts = np.unique(volume.instance.reshape(-1)[order], return_index=True)
+    found = []
+    for number, cells in zip(numbers, np.split(order, firsts[1:]), strict=True):
+        class_id = _most(volume.semantic.reshape(-1)[cells])
+        if class_id not in OBJECT_CLASSES:
+            continue
+        design = names[_most(codes.reshape(-1)[cells])]
+        landmark = _measured(volume, int(number), cells, class_id, design, titles)
+        if np.sort(landmark.size_m)[1] >= LEAST_M:
+            found.append(replace(landmark, room=room_of(landmark.center_m)))
+    return named_apart(found)
+
+
+def named_apart(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
+    """Return landmarks with names that differ: noun, colour, neighbour, and a number at last."""
+    nouns = Counter(one.noun for one in landmarks)
+    coloured = Counter((one.colour, one.noun) for one in landmarks)
+    anchors = [one for one in landmarks if nouns[one.noun] == 1]
+    phrases = [_phrase(one, nouns, coloured, anchors) for one in landmarks]
+    total, seen, result = Counter(phrases), Counter[str](), []
+    for one, phrase in zip(landmarks, phrases, strict=True):
+        if total[phrase] == 1:
+            result.append(replace(one, name=phrase, is_told=one.noun != _NOBODYS))
+            continue
+        seen[phrase] += 1
+        result.append(replace(one, name=f"{phrase} {seen[phrase]}", is_told=False))
+    return tuple(result)
+
+
+def colour_name(rgb: np.ndarray) -> str:
+    """Return the word for a colour, sRGB bytes [3].
+
+    Example:
+        >>> colour_name(np.array([160, 39, 34]))
+        'red'
+    """
+    table = oklab_of_srgb(np.array(list(_COLOURS.values()), np.uint8))
+    own = oklab_of_srgb(np.asarray(rgb, np.uint8)[None])
+    return tuple(_COLOURS)[int(nearest_oklab(own, table)[0])]
+
+
+def _measured(
+    volume: BlockVolume,
+    number: int,
+    cells: np.ndarray,
+    class_id: int,
+    design: str,
+    titles: Mapping[str, str],
+) -> Landmark:
+    at = np.stack(np.unravel_index(cells, volume.states.shape), axis=1) + np.array(volume.corner)
+    ends = apply(volume.block_to_room, np.array([at.min(axis=0), at.max(axis=0) + 1], float))
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    states = [volume.palette[row] for row in volume.states.reshape(-1)[cells]]
+    colour = colour_name(colours_of(states).astype(float).mean(axis=0).round())
+    noun = _noun(states, class_id, titles.get(design, ""))
+    return Landmark(number, noun, noun, class_id, colour, (low + high) / 2, high - low, design)
+
+
+def _noun(states: Sequence[str], class_id: int, title: str) -> str:
+    if title:
+        return title[0].lower() + title[1:] if title[1:2].islower() else title
+    block = Counter(state.partition("[")[0].split(":")[-1] for state in states).most_common(1)[0][0]
+    return _BLOCK_NOUNS.get(block, NOUNS[class_id])
+
+
+def _phrase(one: Landmark, nouns: Counter, coloured: Counter, anchors: Sequence[Landmark]) -> str:
+    if nouns[one.noun] == 1:
+        return one.noun
+    if coloured[one.colour, one.noun] == 1 and not set(one.noun.split()) & set(_COLOURS):
+        return f"{one.colour} {one.noun}"
+    same = [other for other in anchors if other.room == one.room]
+    apart = [float(np.linalg.norm(_gap(one, other))) for other in same]
+    if apart and min(apart) <= BESIDE_M:
+        return f"{one.noun} beside the {same[int(np.argmin(apart))].noun}"
+    return one.noun
+
+
+def _gap(one: Landmark, other: Landmark) -> np.ndarray:
+    """Return how far two boxes are from each other along each axis, metres."""
+    return np.maximum(0.0, np.maximum(one.low_m - other.high_m, other.low_m - one.high_m))
+
+
+def _most(values: np.ndarray) -> int:
+    found, counts = np.unique(values, return_counts=True)
+    return int(found[counts.argmax()])

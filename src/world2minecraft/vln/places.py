@@ -1,0 +1,134 @@
+"""The rooms of a scene and the doors between them, as a walker knows them."""
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+from world2minecraft.coordinates import apply
+from world2minecraft.dataset.tours.rooms import TourRoom
+from world2minecraft.rooms.stands import is_inside
+from world2minecraft.types import BlockVolume, Layout
+from world2minecraft.walk.graph import WalkGraph
+
+NEAR_M = 1.5  # A place farther from all rooms than this is in none.
+_APART = 3.0  # A metre of height counts as so many along the floor.
+
+# What people call the kinds of generated rooms, where the kind's own name is not the word.
+ROOM_WORDS = {"bed": "bedroom", "living": "living room", "dining": "dining room"}
+
+
+@dataclass(frozen=True, eq=False)
+class Door:
+    """Where one goes from a room to another: the middle of the passage, feet, world blocks."""
+
+    to: int
+    feet: tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class SceneRoom:
+    """A room: its number and name, its places in the graph, and its doors."""
+
+    number: int
+    name: str
+    places: np.ndarray  # int64 [N], into the graph
+    floor_m2: float
+    center: tuple[float, float, float]  # feet, world blocks: the place nearest to its middle
+    doors: tuple[Door, ...] = ()
+
+
+def rooms_of_places(graph: WalkGraph, rooms: list[TourRoom]) -> np.ndarray:
+    """Return the room of each place of a graph, int64 [N]; -1 for those near no room."""
+    number = np.full(len(graph), -1, np.int64)
+    if not rooms:
+        return number
+    places = np.concatenate([room.places for room in rooms])
+    owner = np.concatenate([np.full(len(room.places), room.number) for room in rooms])
+    scaled = graph.feet * [1, _APART, 1]
+    found = KDTree(scaled[places]).query(scaled)
+    near = np.asarray(found[0]) <= NEAR_M * graph.blocks_per_metre
+    number[near] = owner[np.asarray(found[1])[near]]
+    return number
+
+
+def scene_rooms(
+    volume: BlockVolume,
+    graph: WalkGraph,
+    rooms: list[TourRoom],
+    number: np.ndarray,
+    layouts: tuple[Layout, ...],
+) -> tuple[SceneRoom, ...]:
+    """Return the rooms with names and doors.
+
+    Args:
+        volume: the blocks.
+        graph: where one walks.
+        rooms: as ``find_rooms`` gives them.
+        number: the room of each place, see ``rooms_of_places``.
+        layouts: floor plans with names; may be empty.
+    """
+    doors = _doors(graph, number, len(rooms))
+    names = _names(
+        [apply(volume.block_to_room, graph.feet[room.places]) for room in rooms], layouts
+    )
+    result = []
+    for room in rooms:
+        feet = graph.feet[room.places]
+        middle = feet[((feet - feet.mean(axis=0)) ** 2).sum(axis=1).argmin()]
+        name = names[room.number]
+        x, y, z = (float(value) for value in middle)
+        own = tuple(doors[room.number])
+        result.append(SceneRoom(room.number, name, room.places, room.floor_m2, (x, y, z), own))
+    return tuple(result)
+
+
+def _names(rooms_m: list[np.ndarray], layouts: tuple[Layout, ...]) -> list[str]:
+    """Return names that differ; one that is alone of its kind needs no number."""
+    kinds = [_kind(points_m, layouts) or "room" for points_m in rooms_m]
+    total, seen, names = Counter(kinds), Counter[str](), []
+    for kind in kinds:
+        seen[kind] += 1
+        names.append(kind if total[kind] == 1 else f"{kind} {seen[kind]}")
+    return names
+
+
+def _kind(points_m: np.ndarray, layouts: tuple[Layout, ...]) -> str:
+    """Return the word for the layout that most of some places are in, without its number."""
+    best, most = "", 0
+    for layout in layouts:
+        level = abs(points_m[:, 2] - layout.floor_z_m) < layout.wall_height_m / 2
+        count = int((level & is_inside(layout.floor_polygon_m, points_m[:, :2])).sum())
+        if count > most:
+            best, most = layout.name, count
+    kind, _, last = best.rpartition(" ")
+    word = kind if kind and last.isdigit() else best
+    return ROOM_WORDS.get(word, word)
+
+
+def _doors(graph: WalkGraph, number: np.ndarray, count: int) -> list[list[Door]]:
+    """Return the doors of each room: steps between two rooms, those beside each other as one."""
+    found: list[list[Door]] = [[] for _ in range(count)]
+    begin, end = graph.edge_from, graph.edge_to
+    crossing = (number[begin] != number[end]) & (number[begin] >= 0) & (number[end] >= 0)
+    if not crossing.any():
+        return found
+    pairs = np.stack([number[begin[crossing]], number[end[crossing]]], axis=1)
+    middles = (graph.feet[begin[crossing]] + graph.feet[end[crossing]]) / 2
+    for one, other in np.unique(pairs, axis=0):
+        points = middles[(pairs == [one, other]).all(axis=1)]
+        for part in _clusters(points, 2 * graph.spacing):
+            x, y, z = (float(value) for value in points[part].mean(axis=0))
+            found[one].append(Door(int(other), (x, y, z)))
+    return found
+
+
+def _clusters(points: np.ndarray, apart: float) -> list[np.ndarray]:
+    """Return points in groups of those that hang together by less than a distance."""
+    near = KDTree(points).query_pairs(apart + 1e-6, output_type="ndarray")
+    links = coo_matrix((np.ones(len(near)), tuple(near.T)), (len(points), len(points)))
+    total, group = connected_components(links, directed=False)
+    return [np.flatnonzero(group == one) for one in range(total)]
