@@ -1,0 +1,47 @@
+"""The pictures of a set as they are made: each is written once, and known by its name."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from world2minecraft.files import write_bytes
+from world2minecraft.vln.data.pictures import Shot, hash_distance
+from world2minecraft.vln.data.stream import wrapped_deg
+from world2minecraft.vln.values import Stance
+
+NEAR_M, NEAR_DEG = 0.5, 20.0  # Two stances so alike show the same.
+LEAST_HASH = 6  # Bits of 64 by which a wrong choice differs from the right one.
+
+
+@dataclass(frozen=True)
+class Pictured:
+    """A picture of a set: where it lies, where it was taken and what tells it from others."""
+
+    image: str  # beside the records, POSIX
+    stance: Stance
+    sha256: str
+    dhash: int
+
+
+class Album:
+    """Writes pictures under a folder."""
+
+    def __init__(self, folder: Path, take: Callable[[Sequence[Stance]], list[Shot]]):
+        self._folder, self.take = folder, take
+
+    def write(self, name: str, stance: Stance, shot: Shot) -> Pictured:
+        """Write a picture. Raises OutputError."""
+        write_bytes(self._folder / name, shot.jpeg)
+        return Pictured(name, stance, shot.sha256, shot.dhash)
+
+
+def are_apart(one: Stance, other: Stance, metres_per_block: float) -> bool:
+    """Return whether two stances of a scene show different things."""
+    away_m = ((one.x - other.x) ** 2 + (one.y - other.y) ** 2 + (one.z - other.z) ** 2) ** 0.5
+    turn_deg = abs(float(wrapped_deg(one.yaw_deg - other.yaw_deg)))
+    return away_m * metres_per_block >= NEAR_M or turn_deg >= NEAR_DEG
+
+
+def look_apart(one: Pictured | Shot, other: Pictured | Shot) -> bool:
+    """Return whether two pictures differ enough to choose between them."""
+    return hash_distance(one.dhash, other.dhash) >= LEAST_HASH

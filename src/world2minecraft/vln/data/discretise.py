@@ -1,0 +1,153 @@
+"""A recorded walk as moves: turns and steps of one size that end where the walk ended.
+
+The walk's corners are aimed at one after the other from where the moves so far have led, so that
+what a turn or a step is off is made good by the next ones, never dropped. Each move is made by the
+world's physics (``Walker``): a way that meets a wall, or that ends elsewhere, is refused.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.vln.data.simplify import EPSILON_M, corners_of
+from world2minecraft.vln.data.stream import StreamFrame, feet_m, wrapped_deg
+from world2minecraft.vln.values import Move, MoveSet, Stance
+
+Walker = Callable[[Stance, Move], tuple[Stance, bool]]
+"""Where a move leads, and whether it met something."""
+
+VERSION = "corners-1"  # Of how moves are made; a record says it, so that it can be made again.
+SLACK_M = 0.1  # Of the end, beside half a step.
+PASSING_M = 0.25  # A corner that is passed so near needs no turn,
+MEETING_M = 0.15  # nor does an end that is met so near.
+MOST_MOVES = 500
+
+
+@dataclass(frozen=True)
+class Walk:
+    """Moves with the stances before each and after the last; ``refusal`` says why it is none."""
+
+    moves: tuple[Move, ...] = ()
+    stances: tuple[Stance, ...] = ()
+    refusal: str = ""
+
+
+def discretise(
+    segment: Sequence[StreamFrame],
+    move_set: MoveSet,
+    blocks_per_metre: float,
+    walker: Walker,
+    epsilon_m: float = EPSILON_M,
+) -> Walk:
+    """Return a segment as moves, STOP last, or with the reason why it is none.
+
+    It ends within half a step and 0.1 m of the recorded end and within half a turn of its heading.
+
+    Args:
+        segment: a walk of ``segments_of``.
+        move_set: how far a move goes; where ``forward_m`` is 0, a block.
+        blocks_per_metre: of the world.
+        walker: the world's physics.
+        epsilon_m: what the walk's corners are kept by.
+    """
+    step_m = move_set.forward_m or 1 / blocks_per_metre
+    path = feet_m(segment, blocks_per_metre)[:, [0, 2]]
+    corners = path[corners_of(path, epsilon_m)]
+    follower = _Follower(segment[0].stance, step_m, move_set.turn_deg, blocks_per_metre, walker)
+    for number, corner in enumerate(corners[1:], 2):
+        if not follower.go_to(corner, is_last=number == len(corners)):
+            return Walk(refusal=follower.refusal)
+    follower.face(segment[-1].stance.yaw_deg)
+    refusal = follower.refusal or _off(follower, path[-1], segment[-1].stance.yaw_deg)
+    if refusal:
+        return Walk(refusal=refusal)
+    return Walk((*follower.moves, Move.STOP), tuple(follower.stances))
+
+
+def _off(follower: "_Follower", end_m: np.ndarray, yaw_deg: float) -> str:
+    """Return how the end differs from the recorded one; nothing where it does not."""
+    away_m = float(np.linalg.norm(follower.place_m - end_m))
+    turn_deg = abs(float(wrapped_deg(yaw_deg - follower.stance.yaw_deg)))
+    if away_m > follower.step_m / 2 + SLACK_M:
+        return "ends elsewhere"
+    return "looks elsewhere" if turn_deg > follower.turn_deg / 2 + 1e-6 else ""
+
+
+class _Follower:
+    """Someone who walks to corners by moves."""
+
+    def __init__(
+        self,
+        start: Stance,
+        step_m: float,
+        turn_deg: float,
+        blocks_per_metre: float,
+        walker: Walker,
+    ):
+        level = Stance(start.x, start.y, start.z, start.yaw_deg)
+        self.stances, self.moves, self.refusal = [level], [], ""
+        self.step_m, self.turn_deg = step_m, turn_deg
+        self._blocks_per_metre, self._walker = blocks_per_metre, walker
+
+    @property
+    def stance(self) -> Stance:
+        return self.stances[-1]
+
+    @property
+    def place_m(self) -> np.ndarray:
+        return np.array([self.stance.x, self.stance.z]) / self._blocks_per_metre
+
+    def go_to(self, corner_m: np.ndarray, is_last: bool) -> bool:
+        """Walk until no step would come nearer; whether that was possible."""
+        near_m = self.step_m * (0.5 if is_last else 1.0)
+        while not self.refusal:
+            ahead = corner_m - self.place_m
+            if np.linalg.norm(ahead) <= near_m:
+                return True
+            self._aim(ahead, MEETING_M if is_last else PASSING_M)
+            yaw = np.radians(self.stance.yaw_deg)
+            forward = self.step_m * np.array([-np.sin(yaw), np.cos(yaw)])
+            if np.linalg.norm(ahead - forward) >= np.linalg.norm(ahead):
+                return True
+            self._make(Move.FORWARD)
+        return False
+
+    def _aim(self, ahead_m: np.ndarray, passing_m: float) -> None:
+        """Turn to what lies ahead, unless the present heading passes it as near as need be."""
+        yaw_deg = float(np.degrees(np.arctan2(-ahead_m[0], ahead_m[1])))
+        off = np.radians(float(wrapped_deg(yaw_deg - self.stance.yaw_deg)))
+        if np.cos(off) < 0 or abs(np.sin(off)) * np.linalg.norm(ahead_m) > passing_m:
+            self.face(yaw_deg)
+
+    def face(self, yaw_deg: float) -> None:
+        """Turn to the heading of whole turns that is nearest."""
+        off_deg = float(wrapped_deg(yaw_deg - self.stance.yaw_deg))
+        turns = int(np.floor(abs(off_deg) / self.turn_deg + 0.5 - 1e-9))
+        for _ in range(turns):
+            self._make(Move.RIGHT if off_deg > 0 else Move.LEFT)
+
+    def _make(self, move: Move) -> None:
+        if self.refusal or len(self.moves) >= MOST_MOVES:
+            self.refusal = self.refusal or f"takes over {MOST_MOVES} moves"
+            return
+        stance, collided = self._walker(self.stance, move)
+        if collided:
+            self.refusal = "meets something"
+        self.moves.append(move)
+        self.stances.append(stance)
+
+
+def free_walker(move_set: MoveSet, blocks_per_metre: float) -> Walker:
+    """Return the physics of an endless empty floor: for tests, and for streams without a world."""
+    step = (move_set.forward_m or 1 / blocks_per_metre) * blocks_per_metre
+
+    def walk(stance: Stance, move: Move) -> tuple[Stance, bool]:
+        yaw = stance.yaw_deg + move_set.turn_deg * ((move == Move.RIGHT) - (move == Move.LEFT))
+        yaw = float(wrapped_deg(yaw))
+        ahead = step if move == Move.FORWARD else 0.0
+        x = stance.x - ahead * float(np.sin(np.radians(yaw)))
+        z = stance.z + ahead * float(np.cos(np.radians(yaw)))
+        return Stance(x, stance.y, z, yaw, stance.pitch_deg), False
+
+    return walk

@@ -1,0 +1,74 @@
+"""A stream: where a walker was, frame after frame; planned by us or imported from the game."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from world2minecraft.coordinates import eye_height_blocks
+from world2minecraft.render.views.tour_file import TourPose, read_tour
+from world2minecraft.vln.values import Stance
+
+
+@dataclass(frozen=True)
+class StreamFrame:
+    """One look of a walk: when, where the feet were, and the picture where there is one."""
+
+    t_s: float
+    stance: Stance
+    scene_id: str = ""
+    tour_id: str = ""
+    image: str = ""
+
+
+def read_stream(
+    path: str | Path, blocks_per_metre: float, *, at: Literal["feet", "eye"] = "eye"
+) -> list[StreamFrame]:
+    """Read the walks of a tour file, ours or one that came with screenshots, in time's order.
+
+    Args:
+        path: JSONL or CSV as every tour of the program: x, y, z, yaw, pitch, and where known t,
+            image, scene_id, tour_id. Where no line says a time, see ``timed``.
+        blocks_per_metre: of the world; an eye is 1.62 player sizes over the feet.
+        at: what x, y, z is in lines that do not say it.
+
+    Raises:
+        InputError: it cannot be read. DamagedFileError: a line is no pose, or there is none.
+        LimitError: it is too large.
+
+    Example:
+        >>> frames = read_stream("tour.jsonl", 1.0)                     # doctest: +SKIP
+    """
+    eye = eye_height_blocks(blocks_per_metre)
+    frames = [_frame(one, eye) for one in read_tour(path, at)]
+    order = sorted(range(len(frames)), key=lambda n: (frames[n].tour_id, frames[n].t_s, n))
+    return [frames[n] for n in order]
+
+
+def _frame(one: TourPose, eye: float) -> StreamFrame:
+    pose = one.pose
+    down = eye if pose.at == "eye" else 0.0
+    stance = Stance(pose.x, pose.y - down, pose.z, pose.yaw_deg, pose.pitch_deg)
+    return StreamFrame(one.t_s, stance, one.scene_id, one.tour_id, one.image)
+
+
+def timed(frames: Sequence[StreamFrame], every_s: float) -> list[StreamFrame]:
+    """Return the frames with times ``every_s`` apart: of files that say the order alone."""
+    return [replace(frame, t_s=number * every_s) for number, frame in enumerate(frames)]
+
+
+def feet_m(frames: Sequence[StreamFrame], blocks_per_metre: float) -> np.ndarray:
+    """Return where the feet were in metres along the block axes, float64 [N, 3]."""
+    return np.array([frame.stance.feet for frame in frames]).reshape(-1, 3) / blocks_per_metre
+
+
+def wrapped_deg(angle_deg: np.ndarray | float) -> np.ndarray:
+    """Return angles from -180 up to 180.
+
+    Example:
+        >>> wrapped_deg(np.array([190.0, -180.0, 540.0])).tolist()
+        [-170.0, -180.0, -180.0]
+    """
+    return (np.asarray(angle_deg, float) + 180.0) % 360.0 - 180.0

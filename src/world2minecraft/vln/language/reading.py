@@ -1,0 +1,72 @@
+"""What an instruction says, found again in its words: turns and landmarks, in order.
+
+It reads what ``grammar`` writes and plain English of people and models: "take a left" is a turn,
+"on your left" is none. What it cannot be sure of it counts, so that a doubt refuses a text rather
+than lets a wrong one pass.
+"""
+
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+
+# A side that is told of a thing, or a "right" that is none.
+_NO_TURN = re.compile(
+    r"\b(?:on|to|at|along|by)\s+(?:your|the|its|his|her)\s+(?:immediate\s+|far\s+)?(?:left|right)\b"
+    r"(?:[\s-]+(?:hand[\s-]+)?side)?|\bright\s+(?:away|now|before|after|in\s+front|next|there|up)\b"
+    r"|\b(?:left|right)[\s-]hand\s+side\b",
+    re.IGNORECASE,
+)
+_TURN = re.compile(r"\b(left|right|u-turn)\b", re.IGNORECASE)
+_AROUND = re.compile(
+    r"\b(?:turn|turning|spin|swing|face)\s+(?:right\s+|all\s+the\s+way\s+|fully\s+)?(?:around|round|"
+    r"back)\b|\bu-turn\b|\babout[\s-]face\b",
+    re.IGNORECASE,
+)
+
+
+class Told(NamedTuple):
+    """What a text tells."""
+
+    turns: tuple[str, ...]  # left, right, around
+    landmarks: tuple[str, ...]  # their names; the same twice in a row counts once
+
+
+def told_in(text: str, names: Iterable[str]) -> Told:
+    """Return the turns and the landmarks of an instruction.
+
+    Args:
+        text: the instruction.
+        names: all that landmarks of the scene are called; longer names are looked for first.
+
+    Example:
+        >>> told_in("Take a left at the sofa, the bed is on your right.", ["bed", "sofa"])
+        Told(turns=('left',), landmarks=('sofa', 'bed'))
+    """
+    landmarks, rest = _landmarks(text, names)
+    return Told(_turns(rest), landmarks)
+
+
+def says_the_same(text: str, other: str, names: Iterable[str]) -> bool:
+    """Whether two texts tell the same turns and landmarks in the same order."""
+    known = list(names)
+    return told_in(text, known) == told_in(other, known)
+
+
+def _landmarks(text: str, names: Iterable[str]) -> tuple[tuple[str, ...], str]:
+    """Return the landmarks and the text without them: a name may hold the word "left"."""
+    ordered = sorted(set(names), key=lambda name: (-len(name), name))
+    if not ordered:
+        return (), text
+    pattern = re.compile(
+        r"\b(" + "|".join(re.escape(name) for name in ordered) + r")\b", re.IGNORECASE
+    )
+    by_lower = {name.lower(): name for name in ordered}
+    found = [by_lower[match.group(1).lower()] for match in pattern.finditer(text)]
+    once = [name for n, name in enumerate(found) if n == 0 or name != found[n - 1]]
+    return tuple(once), pattern.sub("thing", text)
+
+
+def _turns(text: str) -> tuple[str, ...]:
+    plain = _NO_TURN.sub(" ", _AROUND.sub(" u-turn ", text))
+    words = [match.group(1).lower() for match in _TURN.finditer(plain)]
+    return tuple("around" if word == "u-turn" else word for word in words)
