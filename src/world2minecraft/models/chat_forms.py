@@ -32,13 +32,16 @@ class Form(Generic[Value]):
     """What a reply must be.
 
     ``read`` takes the text of a reply and returns the value; it raises UnreadableError.
-    ``words`` say the form to a model that is not held to the schema.
+    ``words`` say the form to a model that is not held to the schema; with ``is_said`` the question
+    has them already. ``rung`` is the first that is tried, 0 the strictest.
     """
 
     name: str
     schema: dict[str, Any]
     words: str
     read: Callable[[str], Value]
+    is_said: bool = False
+    rung: int = 0
 
     def wire(self, rung: str) -> dict[str, Any] | None:
         """Return the ``response_format`` of a rung."""
@@ -90,7 +93,8 @@ def ask_form(
         ``ChatModel.ask``; a reply that is no reply counts as an unreadable one.
     """
     tries: list[Try] = []
-    asked, left, rung = (*turns, Turn("user", (form.words,))), repairs, model.rung
+    asked = turns if form.is_said else (*turns, Turn("user", (form.words,)))
+    left, rung = repairs, max(model.rung, form.rung)
     while True:
         try:
             tried, value = _once(model, asked, form, RUNGS[rung])
@@ -101,7 +105,7 @@ def ask_form(
             rung += 1
             continue
         tries.append(tried)
-        if tried.reply is not None:
+        if tried.reply is not None and rung > form.rung:
             model.rung = max(model.rung, rung)  # This rung is taken, those above were not.
         if value is not None or left == 0:
             return Formed(value, tuple(tries))

@@ -1,0 +1,78 @@
+"""A vision-language model answers items: the views and choices it is shown, the letter it gives."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.errors import DamagedFileError, UnknownNameError
+from world2minecraft.files import read_bytes
+from world2minecraft.models.chat import ChatModel
+from world2minecraft.models.chat_forms import ask_form
+from world2minecraft.models.chat_messages import Picture, Turn
+from world2minecraft.models.chat_wire import BusyServerError, RefusedQuestionError
+from world2minecraft.vln.agents.answer_form import STYLES, answer_form, ending
+from world2minecraft.vln.agents.model import told_of
+from world2minecraft.vln.prompts import question_of
+from world2minecraft.vln.values import Item
+
+MAX_IMAGE_BYTES = 20 << 20
+_MAGIC = {b"\xff\xd8\xff": "image/jpeg", b"\x89PNG": "image/png", b"RIFF": "image/webp"}
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What was said to an item. ``letter`` is empty where ``outcome`` is invalid or failed."""
+
+    letter: str
+    outcome: str  # "answered", "invalid" or "failed"
+    told: dict[str, Any]
+
+
+class ModelAnswerer:
+    """Asks a model each item by the words that exports for trainers use.
+
+    Args:
+        model: whom to ask.
+        folder: of the set; images are read from it and held against their sums.
+        style: one of ``STYLES``.
+    """
+
+    def __init__(self, model: ChatModel, folder: str | Path, style: str = "letter"):
+        if style not in STYLES:
+            raise UnknownNameError("style of question", style, STYLES)
+        self.name, self.model, self.folder, self.style = model.name, model, Path(folder), style
+
+    def answer(self, item: Item) -> Answer:
+        """Ask an item.
+
+        Raises:
+            InputError: an image is missing or not the one of the set. BudgetError, ServerError:
+            the model cannot be asked at all.
+        """
+        question = question_of(item)
+        parts: list[str | Picture] = [
+            self._picture(part, item) if kind == "image" else part for kind, part in question.parts
+        ]
+        if last := ending(self.style):
+            parts.append(f"\n{last}")
+        options = {option.label: option.text for option in item.options}
+        try:
+            turns = (Turn("user", tuple(parts)),)
+            formed = ask_form(self.model, turns, answer_form(options, self.style))
+        except (BusyServerError, RefusedQuestionError) as error:
+            return Answer("", "failed", {"problem": str(error)})
+        told = {"raw": formed.raw, "tries": [told_of(one) for one in formed.tries]}
+        if formed.value is None:
+            return Answer("", "invalid", {**told, "problem": formed.problem})
+        return Answer(formed.value, "answered", told)
+
+    def _picture(self, name: str, item: Item) -> Picture:
+        path = self.folder / name
+        data = read_bytes(path, MAX_IMAGE_BYTES)
+        kinds = [kind for magic, kind in _MAGIC.items() if data.startswith(magic)]
+        if not kinds:
+            raise DamagedFileError(path, "is no JPEG, PNG or WebP")
+        picture = Picture(data, kinds[0])
+        if picture.sha256 != item.sha256.get(name):
+            raise DamagedFileError(path, f"is not the image that item {item.item_id} was made of")
+        return picture

@@ -1,0 +1,45 @@
+"""Agents by name: the baselines, agents of other packages, and any model on a server."""
+
+from collections.abc import Callable
+
+from world2minecraft.errors import UnknownNameError
+from world2minecraft.models.chat import ChatModel
+from world2minecraft.models.chat_endpoints import ENDPOINTS, is_endpoint
+from world2minecraft.registry import Registry
+from world2minecraft.vln.agents.model import HISTORY, ModelAgent
+from world2minecraft.vln.agents.step_form import MOST_MOVES
+from world2minecraft.vln.agents.values import Agent
+from world2minecraft.vln.agents.words import MapKind
+
+# Other packages add a class without parameters through the entry points world2minecraft.agent.
+AGENTS = Registry(
+    "agent",
+    {
+        "oracle": "world2minecraft.vln.agents.guided:OracleAgent",
+        "shortest": "world2minecraft.vln.agents.guided:ShortestAgent",
+        "random": "world2minecraft.vln.agents.simple:RandomAgent",
+        "forward": "world2minecraft.vln.agents.simple:ForwardAgent",
+        "stop": "world2minecraft.vln.agents.simple:StopAgent",
+    },
+)
+BESIDE = ("stop", "random", "oracle")  # Told beside every result: what it is worth.
+
+
+def agent_of(
+    text: str,
+    chat: Callable[[], ChatModel],
+    *,
+    chunk: int = MOST_MOVES,
+    history: int = HISTORY,
+    map_kind: MapKind = "none",
+) -> Agent:
+    """Return an agent by its name, or the model that ``chat`` opens for a server's.
+
+    Raises:
+        UnknownNameError: no agent and no server is called so.
+    """
+    if is_endpoint(text):
+        return ModelAgent(chat(), chunk=chunk, history=history, map_kind=map_kind)
+    if text not in AGENTS.names():
+        raise UnknownNameError("agent", text, [*AGENTS.names(), *ENDPOINTS])
+    return AGENTS.load(text)()

@@ -1,0 +1,141 @@
+"""The agent that is a vision-language model: it looks, says what it does, and does that.
+
+A reply that cannot be read after two repairs is INVALID: a decision without moves, told as such. A
+server that does not answer makes a failed one. Neither is ever replaced by a move of our own.
+"""
+
+from collections.abc import Sequence
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.errors import UsageError
+from world2minecraft.models.chat import ChatModel
+from world2minecraft.models.chat_forms import Try, ask_form
+from world2minecraft.models.chat_messages import Picture
+from world2minecraft.models.chat_wire import BusyServerError, RefusedQuestionError
+from world2minecraft.vln.agents.step_form import MOST_MOVES, step_form
+from world2minecraft.vln.agents.trail import trail_text
+from world2minecraft.vln.agents.values import Decision, Sight, Task
+from world2minecraft.vln.agents.words import MOVE_NAMES, MapKind, Moment, moment_turn, system_turn
+from world2minecraft.vln.values import Move, Stance
+
+JPEG_QUALITY = 85
+HISTORY = 3  # Pictures before the one of now, as the paper shows them.
+MOST_HISTORY = 8
+MOST_PROGRESS = 400  # Characters of its own words that a model is told again.
+MOST_DONE = 16
+
+
+class ModelAgent:
+    """Asks a language model at each step.
+
+    Args:
+        model: whom to ask.
+        chunk: how many moves it may give at once, 1 to 4.
+        history: how many views of before it is shown, 0 to 8.
+        map_kind: ``text`` tells it in words where it was.
+    """
+
+    is_privileged = is_blind = False
+
+    def __init__(
+        self,
+        model: ChatModel,
+        *,
+        chunk: int = MOST_MOVES,
+        history: int = HISTORY,
+        map_kind: MapKind = "none",
+    ):
+        if not 1 <= chunk <= MOST_MOVES:
+            raise UsageError(f"a model gives 1 to {MOST_MOVES} moves at once, not {chunk}")
+        if not 0 <= history <= MOST_HISTORY:
+            raise UsageError(f"a model is shown 0 to {MOST_HISTORY} views of before, not {history}")
+        if map_kind not in ("none", "text"):
+            raise UsageError(f"a map is none or text, not {map_kind!r}")
+        self.name, self.model = model.name, model
+        self.chunk, self.history, self.map_kind = chunk, history, map_kind
+        self._form = step_form(chunk)
+        self._task: Task | None = None
+        self._forget()
+
+    def begin(self, task: Task) -> None:
+        """Take a task and forget the one before."""
+        self._task = task
+        self._forget()
+
+    def decide(self, sight: Sight) -> Decision:
+        """Look, ask, and return what the model does.
+
+        Raises:
+            BudgetError: a cap is reached. ServerError: the key or the address is wrong.
+        """
+        task = self._task
+        if task is None:
+            raise UsageError("an agent begins with a task")
+        self._stances.append(sight.stance)
+        self._done = (self._done + list(sight.done))[-MOST_DONE:]
+        moment = self._moment(task, sight)
+        turns = (system_turn(task, self.chunk), moment_turn(task, moment))
+        self._views = [*self._views, moment.view][-self.history :] if self.history else []
+        try:
+            formed = ask_form(self.model, turns, self._form)
+        except (BusyServerError, RefusedQuestionError) as error:
+            return Decision((), outcome="failed", told={"problem": str(error)})
+        told = {"raw": formed.raw, "tries": [told_of(one) for one in formed.tries]}
+        if formed.value is None:
+            self._refused = formed.problem
+            return Decision((), outcome="invalid", told={**told, "problem": formed.problem})
+        self._refused = ""
+        self._progress = formed.value.progress[:MOST_PROGRESS] or self._progress
+        step = formed.value
+        return Decision(step.moves, step.thought, step.progress, told=told)
+
+    def _moment(self, task: Task, sight: Sight) -> Moment:
+        told_map = ""
+        if self.map_kind == "text":
+            told_map = trail_text(self._stances, task.metres_per_block)
+        return Moment(
+            sight.step, Picture(jpeg(sight.colour)), tuple(self._views), tuple(self._done),
+            self._progress, told_map, self._refused,
+        )  # fmt: skip
+
+    def _forget(self) -> None:
+        self._views: list[Picture] = []
+        self._stances: list[Stance] = []
+        self._done: list[tuple[Move, bool]] = []
+        self._progress = self._refused = ""
+
+
+def jpeg(colour: np.ndarray) -> bytes:
+    """Return a picture, uint8 [H, W, 3], as JPEG."""
+    stream = BytesIO()
+    Image.fromarray(colour).save(stream, "JPEG", quality=JPEG_QUALITY)
+    return stream.getvalue()
+
+
+def moves_text(moves: Sequence[Move]) -> str:
+    """Return moves in the words of the prompts.
+
+    Example:
+        >>> moves_text([Move.LEFT, Move.STOP])
+        'LEFT, STOP'
+    """
+    return ", ".join(MOVE_NAMES[move] for move in moves)
+
+
+def told_of(tried: Try) -> dict[str, Any]:
+    """Return a try for the trace."""
+    reply = tried.reply
+    told: dict[str, Any] = {"rung": tried.rung, "key": tried.key, "problem": tried.problem}
+    if reply is not None:
+        told |= {
+            "raw": reply.text,
+            "tokens": [reply.prompt_tokens, reply.completion_tokens],
+            "latency_s": reply.latency_s,
+            "attempts": reply.attempts,
+            "is_replayed": reply.is_replayed,
+        }
+    return told

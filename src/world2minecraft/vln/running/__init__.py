@@ -1,0 +1,1 @@
+"""Runs: episodes walked and items answered, with traces, films, scores and tables."""
