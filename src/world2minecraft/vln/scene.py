@@ -10,7 +10,6 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import apply, focal_px_of_fov, invert
@@ -27,6 +26,7 @@ from world2minecraft.render.picture import DEFAULT_OUTPUTS, Picture, render_volu
 from world2minecraft.render.scene import BlockScene, prepare_scene
 from world2minecraft.render.views.poses import GamePose
 from world2minecraft.types import BlockVolume, Camera, Layout
+from world2minecraft.vln.floor import Floor, distance_over, floor_of
 from world2minecraft.vln.landmarks import Landmark, landmarks_of
 from world2minecraft.vln.places import SceneRoom, rooms_of_places, scene_rooms
 from world2minecraft.vln.values import Stance
@@ -43,7 +43,6 @@ REACH_M = 1.0  # One stands before a thing where it is no farther than this,
 RING_M = 0.25  # and about as near as one can come.
 MOST_GOALS = 32
 MOST_FIELDS = 64  # Kept of those last used.
-OFF_GRAPH = 4  # Places around a body that its distance is measured over.
 
 
 class VlnScene:
@@ -80,6 +79,16 @@ class VlnScene:
     def eye_blocks(self) -> float:
         """How high the eye is over the feet, blocks."""
         return EYE * self.scale
+
+    @cached_property
+    def corner(self) -> np.ndarray:
+        """The world place of the volume's first cell, int64 [3]."""
+        return np.array(self.volume.corner, np.int64)
+
+    @cached_property
+    def floor(self) -> Floor:
+        """The graph as a table, for places between its own."""
+        return floor_of(self.graph)
 
     @cached_property
     def render_scene(self) -> BlockScene:
@@ -181,16 +190,20 @@ class VlnScene:
     ) -> float:
         """Return how far it is on foot from a place, also one between those of the graph."""
         field = self.field_m(goals)
-        apart, near = self._tree.query(feet, k=min(OFF_GRAPH, len(self.graph)))
-        apart, near = np.atleast_1d(apart), np.atleast_1d(near)
-        beside = (apart <= 1.5 * self.graph.spacing) | (apart == apart.min())
-        return float((apart[beside] * self.metres_per_block + field[near[beside]]).min())
+        over = distance_over(self.floor, field, *(float(value) for value in feet))
+        if np.isfinite(over) or not np.isfinite(field).any():
+            return float(over)
+        nearest = self.graph.nearest(feet)  # Off the floor: on furniture, or in the air.
+        apart = np.linalg.norm(self.graph.feet[nearest] - np.asarray(feet))
+        return float(field[nearest] + apart * self.metres_per_block)
 
     def room_at(self, feet: tuple[float, float, float]) -> int:
         """Return the number of the room that a place is in, -1 for none."""
         return int(self.room_of_places[self.graph.nearest(feet)])
 
-    def to_room_m(self, feet: np.ndarray | Sequence[float]) -> np.ndarray:
+    def to_room_m(
+        self, feet: np.ndarray | Sequence[float] | Sequence[tuple[float, float, float]]
+    ) -> np.ndarray:
         """Return places in metres of the room, float64 [..., 3]."""
         return apply(self.volume.block_to_room, np.asarray(feet, np.float64))
 
@@ -213,10 +226,6 @@ class VlnScene:
         return render_volume(
             self.render_scene, camera, pose, outputs=outputs, light=light, threads=threads
         )
-
-    @cached_property
-    def _tree(self) -> KDTree:
-        return KDTree(self.graph.feet)
 
     def _walkable(self, body: float | None) -> tuple[float, WalkGraph, list[TourRoom]]:
         """Return the largest body that has floor to walk on, its graph and its rooms."""

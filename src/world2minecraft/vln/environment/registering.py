@@ -1,0 +1,19 @@
+"""Tells gymnasium of the environment; the environment itself is imported when one is made."""
+
+from world2minecraft.errors import MissingExtraError
+
+ENV_ID = "World2Minecraft-VLN-v0"
+
+
+def register_environments() -> None:
+    """Register the environment, once; older gymnasiums call this through its entry point.
+
+    Raises:
+        MissingExtraError: gymnasium is not installed.
+    """
+    try:
+        import gymnasium  # noqa: PLC0415  # An extra.
+    except ImportError as error:
+        raise MissingExtraError("the environment", "vln") from error
+    if ENV_ID not in gymnasium.registry:
+        gymnasium.register(ENV_ID, "world2minecraft.vln.environment.env:VlnEnv")

@@ -1,0 +1,116 @@
+"""The oracle: from where one stands to a goal by discrete moves, as short as they allow.
+
+Its moves are searched with the very steps that the walker makes, so what it says can be walked:
+``expert`` walks it once more before it answers. Files that hold its moves name ``ORACLE_VERSION``.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.vln.moves import (
+    body_size,
+    forward_blocks,
+    heading,
+    moved,
+    named_set,
+    wrapped_yaw,
+)
+from world2minecraft.vln.scene import VlnScene
+from world2minecraft.vln.search import searched
+from world2minecraft.vln.values import Move, MoveSet, Stance
+
+ORACLE_VERSION = "w2m-oracle-1"
+GOAL_M = 0.25  # It stops so near to a goal: half of the least radius of success,
+GOAL_STEPS = 0.75  # or so many steps, where steps are long.
+TURN_M = 0.01  # What a turn counts: of ways of one length the straighter is taken.
+FINENESS = (3.0, 12.0)  # Places told apart along a step; the second where the first finds none.
+MOST_NODES = 400_000
+
+
+@dataclass(frozen=True)
+class Way:
+    """The oracle's way: moves, STOP last, and where each but STOP comes to, the start first."""
+
+    moves: tuple[Move, ...]
+    stances: tuple[Stance, ...]
+    length_m: float
+
+
+def expert(
+    scene: VlnScene,
+    stance: Stance,
+    goals: Sequence[tuple[float, float, float]],
+    move_set: str | MoveSet = "vlnce",
+) -> Way | None:
+    """Return the oracle's way to the nearest goal; None where moves of this set do not lead there.
+
+    Args:
+        scene: where one walks.
+        stance: where one stands, on the floor.
+        goals: feet in world blocks.
+        move_set: the moves, or their name.
+
+    Raises:
+        UnknownNameError: no set of moves has this name.
+
+    Example:
+        >>> way = expert(scene, scene.start, scene.goals_at(scene.landmark("piano")))
+        ... # doctest: +SKIP
+        >>> way.moves[-1]                                                 # doctest: +SKIP
+        <Move.STOP: 0>
+    """
+    how = named_set(move_set)
+    field = scene.field_m(goals)
+    if not np.isfinite(scene.distance_m(stance.feet, goals)):
+        return None
+    step = forward_blocks(scene, how)
+    count = max(1, round(360 / how.turn_deg))
+    turned = [wrapped_yaw(stance.yaw_deg + n * how.turn_deg) for n in range(1, count)]
+    ways = np.array([heading(yaw) for yaw in (stance.yaw_deg, *turned)]) * step
+    step_m = step * scene.metres_per_block
+    near_m = max(GOAL_M, GOAL_STEPS * step_m)
+    for fine in FINENESS:
+        headings, found = searched(
+            scene.solid, scene.corner, scene.floor, field, np.array(stance.feet), ways,
+            body_size(scene), step_m, near_m, TURN_M, fine, MOST_NODES,
+        )  # fmt: skip
+        if found:
+            return _walked(scene, stance, _moves(headings.tolist(), count), how)
+    return None
+
+
+def next_move(
+    scene: VlnScene,
+    stance: Stance,
+    goals: Sequence[tuple[float, float, float]],
+    move_set: str | MoveSet = "vlnce",
+) -> Move:
+    """Return what the oracle would do now; STOP where it knows no way."""
+    way = expert(scene, stance, goals, move_set)
+    return way.moves[0] if way else Move.STOP
+
+
+def _moves(headings: list[int], count: int) -> list[Move]:
+    """Return the moves of steps along headings, of which 0 is where one looks."""
+    moves, now = [], 0
+    for way in headings:
+        right = (way - now) % count
+        left = count - right
+        moves += [Move.RIGHT] * right if right <= left else [Move.LEFT] * left
+        moves.append(Move.FORWARD)
+        now = way
+    return [*moves, Move.STOP]
+
+
+def _walked(scene: VlnScene, stance: Stance, moves: list[Move], how: MoveSet) -> Way | None:
+    """Return the way of moves; None where something is in the way after all."""
+    stances, length = [stance], 0.0
+    for move in moves[:-1]:
+        stance, collided = moved(scene, stance, move, how)
+        if collided:
+            return None
+        length += float(np.linalg.norm(np.subtract(stance.feet, stances[-1].feet)))
+        stances.append(stance)
+    return Way(tuple(moves), tuple(stances), length * scene.metres_per_block)
