@@ -2,13 +2,16 @@
 
 import hashlib
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
+from world2minecraft.vln.records import write_episodes, write_items, write_trajectories
 from world2minecraft.vln.values import (
     LETTERS,
+    Episode,
     Instruction,
     Item,
     Keyframe,
@@ -68,7 +71,7 @@ def next_view(
 ) -> Item:
     """Three past pictures and four choices, the right one lettered by the step."""
     right = LETTERS[step % 4]
-    others = iter([0, step + 2, 7])
+    others = iter([0, step + 2, 1])
     numbers = [step + 1 if letter == right else next(others) for letter in LETTERS[:4]]
     options = tuple(
         Option(
@@ -130,8 +133,56 @@ def next_action(
     )
 
 
-def write_pictures(folder: Path, scene: str, frames: int = 8, **size: int) -> None:
+def write_pictures(folder: Path, scene: str, frames: int = 9, **size: int) -> None:
     for number in range(frames):
         path = folder / name_of(scene, number)
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(picture(seed_of(scene, number), **size))
+
+
+SCENES = (
+    ("kitchen", "train", "base"),
+    ("villa", "train", "extend"),
+    ("attic", "val_unseen", "base"),
+)
+
+
+def small_set(folder: Path, **size: int) -> Path:
+    """A set of three scenes: 39 items, a trajectory and an episode each."""
+    items, trajectories, episodes = [], [], []
+    for scene, split, composition in SCENES:
+        write_pictures(folder, scene, **size)
+        views = [next_view(scene, step, split, composition) for step in range(2, 7)]
+        actions = [next_action(scene, step, split, composition) for step in range(8)]
+        items += [with_sums(item, **size) for item in (*views, *actions)]
+        trajectories.append(a_trajectory(scene, split))
+        episodes.append(an_episode(scene, split))
+    write_items(folder / "items.jsonl", items)
+    write_trajectories(folder / "trajectories.jsonl", trajectories)
+    write_episodes(folder / "episodes.jsonl", episodes)
+    return folder
+
+
+def with_sums(item: Item, **size: int) -> Item:
+    """An item with the sums of pictures of another size."""
+    sums = {name: sha_of(item.scene_id, int(name[-7:-4]), **size) for name in item.sha256}
+    return replace(item, sha256=sums)
+
+
+def an_episode(scene: str, split: str = "train") -> Episode:
+    """Seven steps east, as the trajectory goes, told by the same words."""
+    way = tuple(Stance(2.0 + number, 64.0, 3.0, -90.0) for number in range(8))
+    return Episode(
+        f"{scene}-e0",
+        f"worlds/{scene}",
+        scene,
+        way[0],
+        ((9.0, 64.0, 3.0),),
+        "piano",
+        WORDS,
+        moves=(Move.FORWARD,) * 7 + (Move.STOP,),
+        reference=way,
+        trajectory_id=f"{scene}-t0",
+        split=split,
+        oracle_version="follower-1",
+    )

@@ -1,0 +1,44 @@
+"""The reward of an answer, by EasyR1's rules and for TRL: nine parts right, one part form.
+
+This file stands alone: exports put it beside the data, and trainers import it from there.
+"""
+
+import re
+from typing import Any
+
+REWARD_NAME = "minecraft_vln"
+REWARD_TYPE = "batch"
+FORMAT_WEIGHT = 0.1
+
+_FORM = re.compile(r"\s*<think>.*?</think>\s*<answer>\s*\(?[A-H]\)?\.?\s*</answer>\s*", re.DOTALL)
+_LETTER = re.compile(r"\(?([A-Ha-h])\)?(?:[.:)]|\s|$)")
+
+
+def answered(response: str) -> str:
+    """Return the letter that a response ends with in ``<answer>``, or nothing."""
+    end = response.rfind("</answer>")
+    start = response.rfind("<answer>", 0, max(end, 0))
+    letter = _LETTER.match(response[start + len("<answer>") : end].strip()) if start >= 0 else None
+    return letter.group(1).upper() if letter else ""
+
+
+def score(
+    response: str, ground_truth: str, format_weight: float = FORMAT_WEIGHT
+) -> dict[str, float]:
+    """Return ``overall``, which trains, with ``format`` and ``accuracy``, each 0 to 1."""
+    accuracy = float(answered(response) == ground_truth.strip().upper())
+    form = float(_FORM.fullmatch(response) is not None)
+    overall = (1 - format_weight) * accuracy + format_weight * form
+    return {"overall": overall, "format": form, "accuracy": accuracy}
+
+
+def compute_score(reward_inputs: Any, format_weight: float = FORMAT_WEIGHT) -> Any:
+    """Score a batch, or the one response that an older EasyR1 gives at a time.
+
+    Args:
+        reward_inputs: a list of {"response", "response_length", "ground_truth"}, or one of them.
+        format_weight: the share of the form.
+    """
+    if isinstance(reward_inputs, dict):
+        return compute_score([reward_inputs], format_weight)[0]
+    return [score(one["response"], one["ground_truth"], format_weight) for one in reward_inputs]
