@@ -42,6 +42,7 @@ def reconstruct(
     parameters: Parameters | None = None,
     *,
     start: str | None = None,
+    until: str | None = None,
     labels: Path | None = None,
     progress: Progress = silent,
 ) -> Scan:
@@ -52,6 +53,7 @@ def reconstruct(
         out: the folder of the results; DESIGN lists its files.
         parameters: what decides the result, beside the capture.
         start: the stage to begin at; None goes on where a run that was cut off stopped.
+        until: the last stage to run; all of them where it is None.
         labels: a folder of 2D label images, one a view.
         progress: told of each step.
 
@@ -87,6 +89,14 @@ def reconstruct(
                 scan = replace(scan, notes=(*scan.notes, *told_of_plan))
             write_evidence(run.path("evidence.npz"), evidence)
             write_scan(run.path("scan.json"), scan, read_registration(run.path("scan.json")))
+    run_later_stages(run, chosen, until, progress)
+    return scan
+
+
+def run_later_stages(
+    run: RunFolder, chosen: Parameters, until: str | None = None, progress: Progress = silent
+) -> None:
+    """Run what is not yet finished of the stages after fusion, ``until`` one of them."""
     for stage, step in LATER_STEPS.items():
         if run.needs(stage):
             progress(stage, 0, 1)
@@ -95,7 +105,8 @@ def reconstruct(
                 if stage == "label" and chosen.plan:
                     add_plan_openings(run.folder, Path(chosen.plan))
             progress(stage, 1, 1)
-    return scan
+        if stage == until:
+            break
 
 
 def registered_before(scan: Scan, out: Path) -> Scan:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from world2minecraft.cli.occupy import run
+from world2minecraft.cli import run as w2m
 from world2minecraft.dataset.formats.cameras import NYU_CAMERA
 from world2minecraft.dataset.formats.depth_codes import depth_png
 from world2minecraft.dataset.frame_completion import (
@@ -139,9 +139,12 @@ def test_the_verb_writes_the_files_own_axes(depth_m, tmp_path, monkeypatch, caps
     (tmp_path / "depth.png").write_bytes(depth_png(depth_m, "nyu"))
     Image.fromarray(np.full((480, 640, 3), 90, np.uint8)).save(tmp_path / "colour.png")
     out = tmp_path / "pred.npz"
-    run(tmp_path / "depth.png", header(tmp_path), out, tmp_path / "colour.png", "auto", 518.8579)
+    words = ["occupy", str(tmp_path / "depth.png"), "--grid", str(header(tmp_path))]
+    assert w2m([*words, "--out", str(out), "--colour", str(tmp_path / "colour.png")]) == 0
     with np.load(out) as held:
         labels, observed = held["labels"], held["observed"]
+        assert held["axes"] == "xzy"
+        assert held["origin_m"] == pytest.approx(PLACE.origin_m, abs=1e-6)
     assert labels.shape == (60, 36, 60)
     assert labels.dtype == np.uint8
     straight = complete_frame(depth_m, PLACE, model=Empty())  # type: ignore[arg-type]

@@ -18,6 +18,7 @@ w2m evaluate occupancy net.onnx NYU --protocol monoscene        an exported netw
 w2m evaluate occupancy PREDICTED NYU --protocol ssc --protocol monoscene
 w2m evaluate occupancy PRED.npz NYU0003_0000.bin                one frame
 w2m evaluate occupancy saved OCC --protocol embodied            EmbodiedOcc's or GPOcc's own files
+w2m evaluate occupancy scenes OCC --protocol embodied           ... or SCENE.npy, grids of scenes
 w2m evaluate occupancy RUN DATA --json scores.json --latex rows.tex
 """
 
@@ -185,10 +186,28 @@ class _Asked:
         from world2minecraft.learn.scoring import keys_to_score, said_by_files
 
         saved = SavedPredictions(self.said, self.order, self.classes)
+        if (of_scenes := self._of_scenes(saved, progress)) is not None:
+            return of_scenes
         keys = keys_to_score(saved, self.found, self.split)
         keys = [keys[n] for n in evenly(list(range(len(keys))), self.limit or len(keys))]
         grid = grid_like(saved.labels(keys[0]), self.said)
         return self._scored(said_by_files(saved, self.found, keys, progress), grid.voxel_m)
+
+    def _of_scenes(self, saved: Any, progress: "Progress") -> dict[str, Any] | None:
+        """Return scores of grids of whole scenes; None where none of the files is a scene's."""
+        from world2minecraft.errors import UsageError
+        from world2minecraft.learn.scoring import saved_scene_scores, scenes_to_score
+
+        if self.found.format != "embodied":
+            return None
+        from world2minecraft.dataset.importers.embodied import open_scenes
+
+        scenes = open_scenes(self.found.path)
+        if not (names := scenes_to_score(saved, scenes, self.split)):
+            return None
+        if self.protocols not in ((), ("embodied",)):
+            raise UsageError(f"{self.said} holds whole scenes, which --protocol embodied scores")
+        return saved_scene_scores(saved, scenes, names, seed=self.seed, progress=progress)
 
 
 def _split_of(asked: str, held: Any) -> str | None:

@@ -28,7 +28,7 @@ VERBS: dict[str, str] = {
     "rooms generate": "Generate a furnished room or a house, with exact truth.",
     "rooms scan": "Scan a generated room or house with a virtual depth camera.",
     "evaluate reconstruction": "Score a reconstruction against a scanned room's truth.",
-    "occupy": "Name and complete the cells that one depth picture shows.",
+    "occupy": "Say what each cell is: of a picture's grid, or of a captured room.",
     "train": "Train an occupancy network on any data sets.",
     "export": "Write a trained network as ONNX, which runs without torch.",
     "evaluate occupancy": "Score a network or saved predictions by the published protocols.",

@@ -3,6 +3,7 @@
 A folder of ``KEY.npz``, ``KEY.npy`` or ``KEY.pkl``, or one ``.npz`` with an array a key. A file
 of a single array, or one named ``labels``, is a frame's: uint8 labels, or scores of 12 or 13
 channels, first or last. 13 channels are EmbodiedOcc's and GPOcc's: 0 is ignored, 12 is empty.
+Grids of whole scenes are read in the same forms, by the names of scenes.
 """
 
 import math
@@ -73,17 +74,38 @@ class SavedPredictions:
         Raises:
             InputError: there are none of this key. DamagedFileError: they cannot be understood.
         """
+        return self._understood(*self._array(key), self._order)
+
+    def scene_labels(self, key: str, shape: tuple[int, ...]) -> np.ndarray:
+        """Return the labels of a whole scene, uint8 ``shape``, 0 to 11 or 255.
+
+        Scenes are as long and as low as they are, so their axes are x, y, z unless ``order`` says
+        otherwise. One value a cell in a row, as a network's list of cells has them, is put back.
+
+        Raises:
+            InputError: there are none of this key. DamagedFileError: they have other cells.
+        """
+        values, path = self._array(key)
+        values = _of_scene(values, shape)
+        labels = self._understood(values, path, self._order or "xyz")
+        if labels.shape != shape:
+            raise DamagedFileError(
+                path, f"has {_sides(labels.shape)} cells of {key}, the truth {_sides(shape)}"
+            )
+        return labels
+
+    def _array(self, key: str) -> tuple[np.ndarray, Path]:
         if self.is_single:
-            return self._understood(_frame_array(self.path), self.path)
+            return _frame_array(self.path), self.path
         if self._members:
             if key not in self._members:
                 raise InputError(self.path, f"holds no array {key}")
-            return self._understood(read_npz(self.path, (key,))[key], self.path)
+            return read_npz(self.path, (key,))[key], self.path
         if key not in self._files:
             raise InputError(self.path, f"holds no {key}.npz, .npy or .pkl")
-        return self._understood(_frame_array(self._files[key]), self._files[key])
+        return _frame_array(self._files[key]), self._files[key]
 
-    def _understood(self, values: np.ndarray, path: Path) -> np.ndarray:
+    def _understood(self, values: np.ndarray, path: Path, order: str = "") -> np.ndarray:
         classes = self._classes
         if values.ndim == 5 and values.shape[0] == 1:
             values = values[0]
@@ -104,7 +126,19 @@ class SavedPredictions:
                 f"has the class {int(labels[labels != UNKNOWN].max())}; of 13 classes with 12 "
                 "for empty say --classes embodied",
             )
-        return np.ascontiguousarray(labels.transpose(ORDERS[self._order or _order_of(labels)]))
+        return np.ascontiguousarray(labels.transpose(ORDERS[order or _order_of(labels)]))
+
+
+def _of_scene(values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """Return labels [X, Y, Z] or scores [C, X, Y, Z], where values are some form of these."""
+    if values.ndim in (2, 3, 5) and values.shape[0] == 1 != shape[0]:
+        values = values[0]  # A batch of one.
+    cells = math.prod(shape)
+    if values.ndim == 2 and values.shape[1] == cells:
+        values = values.T
+    if values.ndim in (1, 2) and values.shape[0] == cells:
+        values = values.reshape(*shape, *values.shape[1:])
+    return np.moveaxis(values, -1, 0) if values.ndim == 4 and values.shape[:3] == shape else values
 
 
 def of_embodied(labels: np.ndarray, path: Path) -> np.ndarray:
@@ -121,10 +155,15 @@ def grid_like(labels: np.ndarray, path: Path) -> Grid:
     for grid in GRIDS.values():
         if grid.shape == labels.shape:
             return grid
-    sides = "x".join(str(side) for side in labels.shape)
     raise DamagedFileError(
-        path, f"has {sides} cells; 60x60x36 or 30x30x18 as x, y, z are scored (see --order)"
+        path,
+        f"has {_sides(labels.shape)} cells; 60x60x36 or 30x30x18 as x, y, z are scored (see "
+        "--order)",
     )
+
+
+def _sides(shape: tuple[int, ...]) -> str:
+    return "x".join(map(str, shape))
 
 
 def _order_of(labels: np.ndarray) -> str:

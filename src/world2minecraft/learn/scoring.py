@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from world2minecraft.dataset.importers.embodied import SceneSet
 from world2minecraft.dataset.importers.source import ImportedSet
 from world2minecraft.errors import InputError, UsageError
 from world2minecraft.learn.config import Grid
@@ -18,7 +19,13 @@ from world2minecraft.learn.data.frames import known_cells
 from world2minecraft.learn.predictions import SavedPredictions, grid_like
 from world2minecraft.learn.scenes import SceneFrame, scene_scores
 from world2minecraft.metrics.intervals import FrameScore, summarise
-from world2minecraft.metrics.protocols import PROTOCOLS, KnownCells, count_frame, protocol_named
+from world2minecraft.metrics.protocols import (
+    PROTOCOLS,
+    KnownCells,
+    count_frame,
+    count_scene,
+    protocol_named,
+)
 from world2minecraft.progress import Progress, silent
 
 SCENES = "embodied scenes"  # The scene level of ``embodied``, beside its frames.
@@ -84,12 +91,54 @@ def protocol_scores(
         if reason:
             left_out[SCENES] = reason
         else:
-            words = {
-                "counts": "of each scene those that any of its frames has in view; frames vote",
-                "reads": PROTOCOLS["embodied"].unknown,
-            }
-            result[SCENES] = summarise(by_scene, seed=seed) | words
+            result[SCENES] = _of_scenes(by_scene, "; frames vote", seed)
     return {"protocols": result, "left_out": left_out}
+
+
+def _of_scenes(counts: list[FrameScore], how: str, seed: int) -> dict[str, Any]:
+    words = {
+        "counts": f"of each scene those that any of its frames has in view{how}",
+        "reads": PROTOCOLS["embodied"].unknown,
+    }
+    return summarise(counts, seed=seed) | words
+
+
+def saved_scene_scores(
+    saved: SavedPredictions,
+    scenes: SceneSet,
+    names: Sequence[str],
+    *,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> dict[str, Any]:
+    """Score saved grids of whole scenes, as EmbodiedOcc's memory leaves them.
+
+    Args:
+        saved: a grid for each scene.
+        scenes: the truth.
+        names: of the scenes to score.
+        seed: of the intervals.
+        progress: told the stage ``score``.
+
+    Returns:
+        What ``protocol_scores`` returns, of ``embodied scenes`` alone.
+
+    Raises:
+        InputError: a grid or a scene is missing, or they have other cells.
+    """
+    counts = []
+    for done, name in enumerate(names, 1):
+        truth = scenes.read(name)
+        labels = saved.scene_labels(name, truth.labels.shape)
+        counts.append(FrameScore(name, count_scene(labels, truth.labels, [truth.seen])))
+        progress("score", done, len(names))
+    return {"protocols": {SCENES: _of_scenes(counts, "", seed)}, "left_out": {}}
+
+
+def scenes_to_score(saved: SavedPredictions, scenes: SceneSet, split: str | None) -> list[str]:
+    """Return the scenes of a split that grids were saved of; none where frames were saved."""
+    known = {saved.path.stem} if saved.is_single else set(saved.keys())
+    return [name for name, of in scenes.splits.items() if name in known and split in (None, of)]
 
 
 def said_by_network(

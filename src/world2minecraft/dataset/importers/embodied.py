@@ -5,7 +5,7 @@ it, as the loaders of the format have them.
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -84,6 +84,51 @@ def read_scene(path: Path) -> ScenePackage:
     images = stored["valid_img_paths"]
     names = tuple(str(name) for name in images) if isinstance(images, list) else ()
     return ScenePackage(labels, seen.astype(bool), origin_m, USUAL_VOXEL_M, names)
+
+
+@dataclass(frozen=True)
+class SceneSet:
+    """The scenes of a folder, by name, each with its split and its frames' packages."""
+
+    path: Path
+    splits: dict[str, str]  # scene to train or test
+    frames: dict[str, tuple[Path, ...]]
+
+    def read(self, scene: str) -> ScenePackage:
+        """Read a scene. What is ``seen`` is what its frames say, as published scores have it.
+
+        Raises:
+            InputError: it is missing. DamagedFileError: it, or a frame's mask, is none.
+        """
+        package = read_scene(self.path / "global_occ_package" / f"{scene}.pkl")
+        seen = np.zeros(package.labels.shape, bool)
+        for file in self.frames[scene]:
+            mask = np.asarray(read_pickle(file, MAX_SCENE_BYTES).get("mask_in_global"))
+            if mask.shape != seen.shape or mask.dtype.kind not in "bu":
+                raise DamagedFileError(
+                    file, f"has a mask_in_global of {mask.shape}, its scene {seen.shape} cells"
+                )
+            seen |= mask.astype(bool)
+        return replace(package, seen=seen)
+
+
+def open_scenes(path: Path) -> SceneSet:
+    """List the scenes that have a package and frames. Raises InputError where there are none."""
+    packages = _packages(path)
+    frames: dict[str, list[Path]] = {}
+    splits: dict[str, str] = {}
+    for split in ("train", "test"):
+        for file in sorted((packages / "streme_occ_new_package" / split).glob("*_new.pkl")):
+            if match := _FRAME.fullmatch(file.stem):
+                splits.setdefault(match[1], split)
+                frames.setdefault(match[1], []).append(file)
+    there = {one.stem for one in (packages / "global_occ_package").glob("*.pkl")}
+    names = sorted(there & set(splits))
+    if not names:
+        raise InputError(packages, "holds no scene with a global_occ_package and frames")
+    return SceneSet(
+        packages, {name: splits[name] for name in names}, {n: tuple(frames[n]) for n in names}
+    )
 
 
 def _packages(path: Path) -> Path:
