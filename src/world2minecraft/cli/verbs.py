@@ -53,6 +53,8 @@ VERBS: dict[str, str] = {
     "dataset verify": "Check every byte of a data set.",
     "dataset tour": "Plan which pictures of a world are taken, or take those of screenshots.",
     "dataset sheet": "Draw many pictures of a data set or a tour on one page.",
+    "vln build": "Make navigation questions of walks through scenes.",
+    "vln stats": "Tell what a navigation set holds, and what guessing scores.",
     "vln export": "Write navigation data as trainers and simulators read it.",
     "doctor": "Check that this machine can run the program.",
 }

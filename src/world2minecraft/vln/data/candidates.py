@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from world2minecraft.vln.data.cleaning import segments_of
-from world2minecraft.vln.data.discretise import Walk, Walker, discretise
+from world2minecraft.vln.data.discretise import Guide, Walk, Walker, discretise
 from world2minecraft.vln.data.keyframes import Mark, is_about_turn, marks_of
 from world2minecraft.vln.data.pictures import vln_camera
 from world2minecraft.vln.data.stream import StreamFrame
@@ -49,8 +49,16 @@ class Refusals:
 class Maker:
     """Makes candidates of the streams of one scene."""
 
-    def __init__(self, scene: VlnScene, move_set: MoveSet, walker: Walker, seed: int = 0):
-        self._scene, self._move_set, self._walker, self._seed = scene, move_set, walker, seed
+    def __init__(
+        self,
+        scene: VlnScene,
+        move_set: MoveSet,
+        walker: Walker,
+        guide: Guide | None = None,
+        seed: int = 0,
+    ):
+        self._scene, self._move_set, self._seed = scene, move_set, seed
+        self._walker, self._guide = walker, guide
         self._landmarks = standing(scene)
         self._camera = vln_camera(*LOOK_PX)
         self.refusals = Refusals()
@@ -80,7 +88,9 @@ class Maker:
         self, segment: Sequence[StreamFrame], number: int, target: str
     ) -> Candidate | str:
         scene, tour_id = self._scene, segment[0].tour_id
-        walk = discretise(segment, self._move_set, scene.blocks_per_metre, self._walker)
+        walk = discretise(
+            segment, self._move_set, scene.blocks_per_metre, self._walker, self._guide
+        )
         if walk.refusal:
             return walk.refusal
         step_m = self._move_set.forward_m or scene.metres_per_block

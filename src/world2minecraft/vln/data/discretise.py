@@ -17,9 +17,12 @@ from world2minecraft.vln.values import Move, MoveSet, Stance
 Walker = Callable[[Stance, Move], tuple[Stance, bool]]
 """Where a move leads, and whether it met something."""
 
+Guide = Callable[[Stance, tuple[float, float, float]], Sequence[Move]]
+"""Moves from a stance to feet in world blocks; none where it knows no way."""
+
 VERSION = "corners-1"  # Of how moves are made; a record says it, so that it can be made again.
 SLACK_M = 0.1  # Of the end, beside half a step.
-PASSING_M = 0.25  # A corner that is passed so near needs no turn,
+CLOSENESS_M = (EPSILON_M, 0.1)  # A corner that is passed so near needs no turn,
 MEETING_M = 0.15  # nor does an end that is met so near.
 MOST_MOVES = 500
 
@@ -38,28 +41,45 @@ def discretise(
     move_set: MoveSet,
     blocks_per_metre: float,
     walker: Walker,
-    epsilon_m: float = EPSILON_M,
+    guide: Guide | None = None,
 ) -> Walk:
     """Return a segment as moves, STOP last, or with the reason why it is none.
 
     It ends within half a step and 0.1 m of the recorded end and within half a turn of its heading.
+    Where moves along the corners meet something, corners are followed closer; where that fails
+    too, and a guide knows the world, it says another way to the same end.
 
     Args:
         segment: a walk of ``segments_of``.
         move_set: how far a move goes; where ``forward_m`` is 0, a block.
         blocks_per_metre: of the world.
         walker: the world's physics.
-        epsilon_m: what the walk's corners are kept by.
+        guide: moves from a stance to a place.
     """
-    step_m = move_set.forward_m or 1 / blocks_per_metre
     path = feet_m(segment, blocks_per_metre)[:, [0, 2]]
-    corners = path[corners_of(path, epsilon_m)]
-    follower = _Follower(segment[0].stance, step_m, move_set.turn_deg, blocks_per_metre, walker)
-    for number, corner in enumerate(corners[1:], 2):
-        if not follower.go_to(corner, is_last=number == len(corners)):
-            return Walk(refusal=follower.refusal)
-    follower.face(segment[-1].stance.yaw_deg)
-    refusal = follower.refusal or _off(follower, path[-1], segment[-1].stance.yaw_deg)
+    refusal = ""
+    for closeness_m in CLOSENESS_M:
+        follower = _Follower(segment[0].stance, move_set, blocks_per_metre, walker)
+        corners = path[corners_of(path, closeness_m)]
+        for number, corner in enumerate(corners[1:], 2):
+            is_last = number == len(corners)
+            follower.go_to(corner, min(closeness_m, MEETING_M) if is_last else closeness_m, is_last)
+        walk = _finished(follower, segment, path[-1])
+        if not walk.refusal:
+            return walk
+        refusal = refusal or walk.refusal
+    if guide is None:
+        return Walk(refusal=refusal)
+    follower = _Follower(segment[0].stance, move_set, blocks_per_metre, walker)
+    follower.make(guide(follower.stance, segment[-1].stance.feet))
+    walk = _finished(follower, segment, path[-1])
+    return walk if not walk.refusal else Walk(refusal=refusal)
+
+
+def _finished(follower: "_Follower", segment: Sequence[StreamFrame], end_m: np.ndarray) -> Walk:
+    yaw_deg = segment[-1].stance.yaw_deg
+    follower.face(yaw_deg)
+    refusal = follower.refusal or _off(follower, end_m, yaw_deg)
     if refusal:
         return Walk(refusal=refusal)
     return Walk((*follower.moves, Move.STOP), tuple(follower.stances))
@@ -80,14 +100,14 @@ class _Follower:
     def __init__(
         self,
         start: Stance,
-        step_m: float,
-        turn_deg: float,
+        move_set: MoveSet,
         blocks_per_metre: float,
         walker: Walker,
     ):
         level = Stance(start.x, start.y, start.z, start.yaw_deg)
         self.stances, self.moves, self.refusal = [level], [], ""
-        self.step_m, self.turn_deg = step_m, turn_deg
+        self.step_m = move_set.forward_m or 1 / blocks_per_metre
+        self.turn_deg = move_set.turn_deg
         self._blocks_per_metre, self._walker = blocks_per_metre, walker
 
     @property
@@ -98,20 +118,25 @@ class _Follower:
     def place_m(self) -> np.ndarray:
         return np.array([self.stance.x, self.stance.z]) / self._blocks_per_metre
 
-    def go_to(self, corner_m: np.ndarray, is_last: bool) -> bool:
-        """Walk until no step would come nearer; whether that was possible."""
+    def go_to(self, corner_m: np.ndarray, passing_m: float, is_last: bool) -> None:
+        """Walk until no step would come nearer."""
         near_m = self.step_m * (0.5 if is_last else 1.0)
         while not self.refusal:
             ahead = corner_m - self.place_m
             if np.linalg.norm(ahead) <= near_m:
-                return True
-            self._aim(ahead, MEETING_M if is_last else PASSING_M)
+                return
+            self._aim(ahead, passing_m)
             yaw = np.radians(self.stance.yaw_deg)
             forward = self.step_m * np.array([-np.sin(yaw), np.cos(yaw)])
             if np.linalg.norm(ahead - forward) >= np.linalg.norm(ahead):
-                return True
+                return
             self._make(Move.FORWARD)
-        return False
+
+    def make(self, moves: Sequence[Move]) -> None:
+        """Make moves of another, but for STOP."""
+        for move in moves:
+            if move != Move.STOP:
+                self._make(move)
 
     def _aim(self, ahead_m: np.ndarray, passing_m: float) -> None:
         """Turn to what lies ahead, unless the present heading passes it as near as need be."""

@@ -1,0 +1,118 @@
+"""``w2m vln build``: navigation questions of walks through scenes, with one command."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from world2minecraft.vln.data.building import Built
+
+EXAMPLES = """\
+w2m vln build OUT --out SET                              of one reconstruction
+w2m vln build runs/* houses/* --out SET --paper-size     3,542 items, as the paper counts
+w2m vln build runs/* houses/* --out SET --composition base
+w2m vln build houses/* --out SET --trajectories 10 --moves rxr
+"""
+
+Scenes = Annotated[
+    list[Path], typer.Argument(help="Run folders, generated houses, worlds, schematics.")
+]
+Out = Annotated[Path, typer.Option("--out", help="The folder of the set.")]
+Composition = Annotated[
+    str,
+    typer.Option("--composition", help="base (reconstructions), extend (all else), combined."),
+]
+Trajectories = Annotated[
+    int | None, typer.Option("--trajectories", help="Of each scene; 24 of base, 100 of extend.")
+]
+Views = Annotated[int, typer.Option("--views", help="Next-View items of a trajectory.", min=0)]
+PaperSize = Annotated[
+    bool, typer.Option("--paper-size", help="No more items than the paper has, part by part.")
+]
+EveryKeyframe = Annotated[
+    bool,
+    typer.Option("--every-keyframe", help="Ask at every keyframe; then blind guesses win."),
+]
+Moves = Annotated[str, typer.Option("--moves", help="vlnce, rxr, block or macro.")]
+Size = Annotated[str, typer.Option("--size", help="Of pictures, width x height.")]
+Seed = Annotated[int, typer.Option("--seed", help="Another seed, another set.", min=0)]
+
+
+def run(
+    scenes: Scenes,
+    out: Out,
+    composition: Composition = "combined",
+    trajectories: Trajectories = None,
+    views: Views = 3,
+    paper_size: PaperSize = False,
+    every_keyframe: EveryKeyframe = False,
+    moves: Moves = "vlnce",
+    size: Size = "640x360",
+    seed: Seed = 0,
+) -> None:
+    """Walk through scenes, tell each walk in English, and ask what is seen and done next.
+
+    A scene is toured from thing to thing; each leg becomes moves that the game's physics can make.
+    Scenes are split by their names: one in five of each kind is for scoring alone. The same words
+    and seed give the same bytes.
+
+    Args:
+        scenes: their paths.
+        out: the folder to write.
+        composition: which scenes go in.
+        trajectories: of each scene.
+        views: Next-View items of a trajectory, at most.
+        paper_size: cut to the paper's counts.
+        every_keyframe: no balance of actions.
+        moves: the set of moves.
+        size: of pictures.
+        seed: of all chances.
+
+    Raises:
+        UsageError: an option cannot be, or no scene gives an item. InputError: a scene cannot be
+        read. OutputError: the folder cannot be written.
+    """
+    from world2minecraft.cli.outcome import compiling_note
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.errors import UnknownNameError
+    from world2minecraft.run_folder import check_writable
+    from world2minecraft.vln.data.building import BuildRule, build_set
+    from world2minecraft.vln.data.quotas import PAPER_SIZE
+    from world2minecraft.vln.data.scene_work import WorkRule
+    from world2minecraft.vln.values import MOVE_SETS
+
+    if moves not in MOVE_SETS:
+        raise UnknownNameError("set of moves", moves, MOVE_SETS)
+    work = WorkRule(
+        views=views, move_set=moves, balanced=not every_keyframe, size_px=_size(size), seed=seed
+    )
+    rule = BuildRule(composition, trajectories, PAPER_SIZE if paper_size else None, work)
+    check_writable(out)
+    compiling_note()
+    with shown() as progress:
+        built = build_set(scenes, out, rule, progress)
+    _say(out, built)
+
+
+def _size(text: str) -> tuple[int, int]:
+    from world2minecraft.errors import UsageError
+
+    parts = text.lower().split("x")
+    if len(parts) != 2 or not all(part.isdecimal() and 16 <= int(part) <= 4096 for part in parts):
+        raise UsageError(f"--size is width x height, such as 640x360, not {text!r}")
+    return int(parts[0]), int(parts[1])
+
+
+def _say(out: Path, built: "Built") -> None:
+    walks = sum(len(work.trajectories) for work in built.works)
+    refused = sum((sum(work.refused.values()) for work in built.works), 0)
+    print(f"\n{len(built.items):,} items of {walks:,} walks in {len(built.works)} scenes.")
+    print(f"  refused  {refused:,} walks: that met something, or showed too little")
+    if built.left_out:
+        print(f"  left     {len(built.left_out)} scenes are not of the composition")
+    if not built.leaks.is_clean:
+        shared = len(built.leaks.images)
+        print(f"  LEAK     {shared} pictures of train are in what is scored on: see dataset.json")
+    print(f"  next     w2m vln stats {out}      lengths, balance, and what blind guessing scores")
+    print(f"  then     w2m vln export {out} --to llamafactory --out TRAIN")

@@ -1,0 +1,228 @@
+"""What one scene gives a set: trajectories with pictures, questions about them, episodes."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.types import Camera
+from world2minecraft.vln.data.album import Album, Pictured
+from world2minecraft.vln.data.candidates import Candidate, Maker, Refusals
+from world2minecraft.vln.data.discretise import VERSION, Guide, Walker
+from world2minecraft.vln.data.next_action import action_steps
+from world2minecraft.vln.data.next_view import GRADES, ViewQuestion, view_question, view_steps
+from world2minecraft.vln.data.pictures import Shot, shot_of, vln_camera
+from world2minecraft.vln.data.splits import split_of_tour
+from world2minecraft.vln.data.touring import Tourist
+from world2minecraft.vln.data.validity import fault_of_pictures
+from world2minecraft.vln.moves import moved
+from world2minecraft.vln.oracle import ORACLE_VERSION, expert
+from world2minecraft.vln.scene import VlnScene
+from world2minecraft.vln.values import (
+    LEVELS,
+    MOVE_SETS,
+    Episode,
+    Instruction,
+    Keyframe,
+    Move,
+    MoveSet,
+    Stance,
+    Trajectory,
+)
+
+MADE_BY = f"{VERSION}+{ORACLE_VERSION}"
+MOST_TOURS = 60  # A scene that gives too little in so many gives no more.
+
+
+@dataclass(frozen=True)
+class WorkRule:
+    """How a scene is worked. ``levels`` are the shares of goal, route and landmark."""
+
+    trajectories: int = 24
+    views: int = 3  # Next-View questions of a trajectory, at most
+    move_set: str = "vlnce"
+    levels: tuple[float, float, float] = (0.15, 0.25, 0.6)
+    balanced: bool = True  # one Next-Action question of each action, see ``next_action``
+    size_px: tuple[int, int] = (640, 360)
+    seed: int = 0
+
+
+@dataclass
+class SceneWork:
+    """What came of a scene. Questions and pictures are by the trajectory's id."""
+
+    scene_id: str
+    composition: str
+    metres_per_block: float
+    trajectories: list[Trajectory] = field(default_factory=list)
+    spoken: dict[str, Instruction] = field(default_factory=dict)  # the one that items ask by
+    pictures: dict[str, list[Pictured]] = field(default_factory=dict)
+    views: list[ViewQuestion] = field(default_factory=list)
+    actions: dict[str, list[int]] = field(default_factory=dict)
+    episodes: list[Episode] = field(default_factory=list)
+    refused: Counter[str] = field(default_factory=Counter)
+    tours: int = 0
+
+
+def scene_walker(scene: VlnScene, move_set: MoveSet) -> Walker:
+    """Return the physics of a scene as discretising wants it."""
+    return partial(moved, scene, move_set=move_set)
+
+
+def scene_guide(scene: VlnScene, move_set: MoveSet) -> Guide:
+    """Return the oracle as discretising wants it."""
+
+    def moves(stance: Stance, end: tuple[float, float, float]) -> tuple[Move, ...]:
+        way = expert(scene, stance, (end,), move_set)
+        return way.moves if way is not None else ()
+
+    return moves
+
+
+def work_scene(
+    scene: VlnScene, folder: Path, composition: str, scene_split: str, rule: WorkRule
+) -> SceneWork:
+    """Walk a scene until it has given as many trajectories as the rule asks for.
+
+    Args:
+        scene: the world.
+        folder: of the set; pictures go below it.
+        composition: base or extend.
+        scene_split: train or val_unseen.
+        rule: how much, and how.
+
+    Raises:
+        OutputError: a picture cannot be written.
+    """
+    move_set = MOVE_SETS[rule.move_set]
+    walker = scene_walker(scene, move_set)
+    maker, tourist = (
+        Maker(scene, move_set, walker, scene_guide(scene, move_set), rule.seed),
+        Tourist(scene),
+    )
+    work = SceneWork(scene.scene_id, composition, scene.metres_per_block)
+    crew = _Crew(scene, folder, scene_split, rule, walker, work)
+    while tourist.has_goals and work.tours < MOST_TOURS:
+        tour_id = f"{scene.scene_id}_t{work.tours:02d}"
+        rng = np.random.default_rng([rule.seed, *tour_id.encode()])
+        tour = tourist.tour(tour_id, rng)
+        work.tours += 1
+        for candidate in maker.candidates(tour.frames, tour.target_at):
+            if len(work.trajectories) == rule.trajectories:
+                break
+            crew.take_in(candidate, rng)
+        if len(work.trajectories) == rule.trajectories:
+            break
+    _count(work, maker.refusals)
+    return work
+
+
+def _count(work: SceneWork, refusals: Refusals) -> None:
+    work.refused += refusals.counts
+
+
+class _Crew:
+    """Takes the pictures of candidates and makes trajectories of those that show something."""
+
+    def __init__(
+        self,
+        scene: VlnScene,
+        folder: Path,
+        scene_split: str,
+        rule: WorkRule,
+        walker: Walker,
+        work: SceneWork,
+    ):
+        self._scene, self._split, self._rule = scene, scene_split, rule
+        self._walker, self._work = walker, work
+        camera = vln_camera(*rule.size_px)
+        self._album = Album(folder, lambda stances: _taken(scene, camera, stances))
+
+    def take_in(self, candidate: Candidate, rng: np.random.Generator) -> None:
+        """Add a candidate with its questions, or count why it is none."""
+        shots = self._album.take([mark.stance for mark in candidate.marks])
+        fault = fault_of_pictures([one.mean for one in shots], [one.dhash for one in shots])
+        if fault:
+            self._work.refused[fault] += 1
+            return
+        split = split_of_tour(candidate.tour_id, self._split, self._rule.seed)
+        pictures = self._written(candidate, shots)
+        trajectory = _trajectory(self._scene, candidate, pictures, split)
+        spoken = _spoken(candidate.instructions, self._rule.levels, rng)
+        work, name = self._work, candidate.trajectory_id
+        work.trajectories.append(trajectory)
+        work.pictures[name], work.spoken[name] = pictures, spoken
+        balanced = self._rule.balanced
+        work.actions[name] = action_steps(candidate.marks, candidate.clear, rng, balanced)
+        work.views += self._views(candidate, pictures, rng)
+        work.episodes.append(_episode(self._scene, candidate, spoken, split, self._rule))
+
+    def _written(self, candidate: Candidate, shots: Sequence[Shot]) -> list[Pictured]:
+        folder = f"images/{self._scene.scene_id}/{candidate.trajectory_id}"
+        return [
+            self._album.write(f"{folder}/{n:03d}.jpg", mark.stance, shot)
+            for n, (mark, shot) in enumerate(zip(candidate.marks, shots, strict=True))
+        ]
+
+    def _views(
+        self, candidate: Candidate, pictures: Sequence[Pictured], rng: np.random.Generator
+    ) -> list[ViewQuestion]:
+        steps = view_steps(candidate.clear, len(candidate.marks))
+        chosen = sorted(rng.permutation(len(steps))[: self._rule.views])
+        grades = list(GRADES)
+        return [
+            view_question(
+                candidate.trajectory_id, candidate.marks, pictures, steps[n],
+                grades[rng.integers(len(grades))], self._album, self._walker,
+                self._scene.metres_per_block, rng,
+            )
+            for n in chosen
+        ]  # fmt: skip
+
+
+def _taken(scene: VlnScene, camera: Camera, stances: Sequence[Stance]) -> list[Shot]:
+    return [
+        shot_of(np.asarray(scene.picture(stance, camera, outputs=("colour",)).colour))
+        for stance in stances
+    ]
+
+
+def _trajectory(
+    scene: VlnScene, candidate: Candidate, pictures: Sequence[Pictured], split: str
+) -> Trajectory:
+    keyframes = tuple(
+        Keyframe(one.image, mark.stance, mark.action, mark.chunk, one.sha256)
+        for mark, one in zip(candidate.marks, pictures, strict=True)
+    )
+    return Trajectory(
+        candidate.trajectory_id, scene.scene_id, keyframes, candidate.instructions,
+        round(candidate.path_m, 4), split, scene.metres_per_block,
+    )  # fmt: skip
+
+
+def _spoken(
+    instructions: Sequence[Instruction],
+    levels: tuple[float, float, float],
+    rng: np.random.Generator,
+) -> Instruction:
+    """Return the instruction that a trajectory's items ask by: of a level drawn by its share."""
+    weights = np.array([levels[LEVELS.index(one.level)] for one in instructions]) + 1e-9
+    return instructions[int(rng.choice(len(instructions), p=weights / weights.sum()))]
+
+
+def _episode(
+    scene: VlnScene, candidate: Candidate, spoken: Instruction, split: str, rule: WorkRule
+) -> Episode:
+    """Return the episode: to the end of the way, or anywhere before what alone is named."""
+    end = candidate.walk.stances[-1].feet
+    goals, name = (end,), candidate.way.stop
+    if spoken.level == "goal":
+        goals = (end, *scene.goals_at(scene.landmark(name)))
+    return Episode(
+        candidate.trajectory_id, scene.path, scene.scene_id, candidate.walk.stances[0], goals,
+        name, spoken, rule.move_set, candidate.walk.moves, candidate.walk.stances,
+        candidate.trajectory_id, split, oracle_version=MADE_BY,
+    )  # fmt: skip
