@@ -185,6 +185,16 @@ def test_the_oracle_says_the_way_again_from_any_of_its_places(flat):
     assert flat.distance_m(stance.feet, goals) <= 0.25
 
 
+def test_the_oracle_looks_at_what_it_went_to(flat):
+    piano = flat.landmark("piano")
+    middle = (15.5, 66.0, 8.0)
+    way = expert(flat, flat.start, flat.goals_at(piano), facing=middle)
+    assert way is not None and len(way.stances) == len(way.moves)
+    last = way.stances[-1]
+    wanted = math.degrees(math.atan2(-(middle[0] - last.x), middle[2] - last.z))
+    assert abs(wrapped_yaw(wanted - last.yaw_deg)) <= 7.5 + 1e-6
+
+
 def test_where_no_way_leads_the_oracle_says_so(flat):
     roof = [tuple(flat.graph.feet[flat.graph.feet[:, 1].argmax()].tolist())]
     assert expert(flat, flat.start, roof) is None

@@ -5,10 +5,13 @@ read and written by ``vln.records``.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.coordinates import apply, invert
 from world2minecraft.errors import UsageError
+from world2minecraft.vln.landmarks import Landmark
 from world2minecraft.vln.moves import named_set
 from world2minecraft.vln.oracle import ORACLE_VERSION, Way, expert
 from world2minecraft.vln.scene import VlnScene
@@ -20,11 +23,13 @@ HUNG_M = 1.2  # What hangs so high over the floor is nothing to walk to.
 TRIES = 40  # Of places for one episode.
 
 
+@dataclass(frozen=True)
 class Target:
-    """What one can be sent to: how it is called, and where one stands before it."""
+    """What one can be sent to: its name, where one stands before it, and where it is itself."""
 
-    def __init__(self, name: str, goals: tuple[tuple[float, float, float], ...]):
-        self.name, self.goals = name, goals
+    name: str
+    goals: tuple[tuple[float, float, float], ...]  # feet, world blocks
+    point: tuple[float, float, float] | None = None  # world blocks
 
 
 def targets_of(scene: VlnScene) -> tuple[Target, ...]:
@@ -38,7 +43,7 @@ def targets_of(scene: VlnScene) -> tuple[Target, ...]:
         goals = scene.goals_at(landmark) if landmark.is_told else ()
         floors = scene.to_room_m(np.array(goals))[:, 2] if goals else np.zeros(0)
         if len(floors) and landmark.low_m[2] - floors.min() <= HUNG_M:
-            things.append(Target(landmark.name, goals))
+            things.append(target_of(scene, landmark, goals))
     rooms = [Target(room.name, (room.center,)) for room in scene.rooms]
     if not things and len(rooms) < 2:
         raise UsageError(
@@ -46,6 +51,14 @@ def targets_of(scene: VlnScene) -> tuple[Target, ...]:
             "with goals, or another world"
         )
     return tuple(things or rooms)
+
+
+def target_of(
+    scene: VlnScene, landmark: Landmark, goals: tuple[tuple[float, float, float], ...]
+) -> Target:
+    """Return a landmark as a target."""
+    x, y, z = apply(invert(scene.volume.block_to_room), landmark.center_m).tolist()
+    return Target(landmark.name, goals, (x, y, z))
 
 
 def random_episodes(
@@ -113,7 +126,7 @@ def random_episode(
         x, y, z = scene.graph.feet[scene.main_places[int(rng.choice(fit))]].tolist()
         yaw_deg = float(rng.integers(round(360 / turn_deg))) * turn_deg - 180.0
         stance = Stance(x, y, z, yaw_deg)
-        way = expert(scene, stance, target.goals, move_set)
+        way = expert(scene, stance, target.goals, move_set, facing=target.point)
         if way is not None:
             return episode_of(scene, way, target, episode_id, move_set, split)
     raise UsageError(
@@ -126,7 +139,8 @@ def episode_of(
     scene: VlnScene, way: Way, target: Target, episode_id: str, move_set: str, split: str = "train"
 ) -> Episode:
     """Return the episode of the oracle's way to a target."""
-    words = Instruction(f"Go to the {target.name}.", level="goal", landmarks=(target.name,))
+    called = target.name if target.name[-1:].isdigit() else f"the {target.name}"  # "Go to room 2."
+    words = Instruction(f"Go to {called}.", level="goal", landmarks=(target.name,))
     return Episode(
         episode_id=episode_id,
         scene=scene.path,

@@ -4,6 +4,7 @@ Its moves are searched with the very steps that the walker makes, so what it say
 ``expert`` walks it once more before it answers. Files that hold its moves name ``ORACLE_VERSION``.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -43,6 +44,8 @@ def expert(
     stance: Stance,
     goals: Sequence[tuple[float, float, float]],
     move_set: str | MoveSet = "vlnce",
+    *,
+    facing: tuple[float, float, float] | None = None,
 ) -> Way | None:
     """Return the oracle's way to the nearest goal; None where moves of this set do not lead there.
 
@@ -51,6 +54,7 @@ def expert(
         stance: where one stands, on the floor.
         goals: feet in world blocks.
         move_set: the moves, or their name.
+        facing: a place in world blocks to look at in the end, as nearly as turns allow.
 
     Raises:
         UnknownNameError: no set of moves has this name.
@@ -77,7 +81,8 @@ def expert(
             body_size(scene), step_m, near_m, TURN_M, fine, MOST_NODES,
         )  # fmt: skip
         if found:
-            return _walked(scene, stance, _moves(headings.tolist(), count), how)
+            way = _walked(scene, stance, _moves(headings.tolist(), count), how)
+            return _faced(scene, way, facing, how) if way and facing else way
     return None
 
 
@@ -114,3 +119,15 @@ def _walked(scene: VlnScene, stance: Stance, moves: list[Move], how: MoveSet) ->
         length += float(np.linalg.norm(np.subtract(stance.feet, stances[-1].feet)))
         stances.append(stance)
     return Way(tuple(moves), tuple(stances), length * scene.metres_per_block)
+
+
+def _faced(scene: VlnScene, way: Way, facing: tuple[float, float, float], how: MoveSet) -> Way:
+    """Return a way with turns at its end towards a place."""
+    last, moves, stances = way.stances[-1], list(way.moves[:-1]), list(way.stances)
+    x, z = facing[0] - last.x, facing[2] - last.z
+    off_deg = wrapped_yaw(math.degrees(math.atan2(-x, z)) - last.yaw_deg)
+    turn = Move.RIGHT if off_deg > 0 else Move.LEFT
+    for _ in range(round(abs(off_deg) / how.turn_deg)):
+        moves.append(turn)
+        stances.append(moved(scene, stances[-1], turn, how)[0])
+    return Way((*moves, Move.STOP), tuple(stances), way.length_m)

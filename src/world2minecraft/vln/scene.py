@@ -58,7 +58,7 @@ class VlnScene:
         self.volume: BlockVolume = doors_opened(source.volume())
         self.solid: Solid = solid_of(self.volume)
         self.body, self.graph, self._found = self._walkable(body)
-        self._fields: OrderedDict[tuple[int, ...], np.ndarray] = OrderedDict()
+        self._fields: OrderedDict[tuple[tuple[float, ...], ...], np.ndarray] = OrderedDict()
 
     @property
     def blocks_per_metre(self) -> float:
@@ -175,11 +175,12 @@ class VlnScene:
 
         Infinite where no way leads. The last fields are kept: one serves a whole episode.
         """
-        key = tuple(sorted({self.graph.nearest(goal) for goal in goals}))
+        key = tuple(map(tuple, goals))
         if key in self._fields:
             self._fields.move_to_end(key)
             return self._fields[key]
-        field = distances_m(self.graph, np.array(key), backward=True)
+        places = np.array(sorted({self.graph.nearest(goal) for goal in goals}))
+        field = distances_m(self.graph, places, backward=True)
         self._fields[key] = field
         if len(self._fields) > MOST_FIELDS:
             self._fields.popitem(last=False)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.errors import UnknownNameError, UsageError
-from world2minecraft.vln.episodes import Target, random_episode, targets_of
+from world2minecraft.vln.episodes import Target, random_episode, target_of, targets_of
 from world2minecraft.vln.records import read_episodes
 from world2minecraft.vln.scene import VlnScene
 from world2minecraft.vln.values import Episode
@@ -90,7 +90,7 @@ class Drawing:
         goals = self.scene.goals_at(landmark)
         if not goals:
             raise UsageError(f"no floor is before the {landmark.name}; name another goal")
-        return Target(landmark.name, goals)
+        return target_of(self.scene, landmark, goals)
 
     def _asked(self, wanted: Any) -> Episode:
         if self.given is None:

@@ -12,6 +12,7 @@ from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.vln.environment.acting import Acting, Continuous, Discrete
 from world2minecraft.vln.environment.drawing import Drawing
 from world2minecraft.vln.environment.senses import USUAL, Eyes, Senses
+from world2minecraft.vln.environment.window import Window
 from world2minecraft.vln.episodes import score
 from world2minecraft.vln.moves import named_set
 from world2minecraft.vln.scene import VlnScene, open_scene
@@ -39,7 +40,7 @@ class VlnEnv(gymnasium.Env):
         max_steps: then the episode is truncated; 500 moves or 5,000 ticks where None.
         success_m: STOP nearer to the goal, on foot, is a success: of the reward and of SPL.
         span_m: the shortest and the longest way of drawn episodes.
-        render_mode: "rgb_array", or None.
+        render_mode: "rgb_array", or "human": each step is shown at ``window.link`` in the browser.
         body, box, blocks_per_metre: as ``open_scene`` takes them.
 
     ``reset(options={"goal": "piano"})`` draws an episode to a thing; ``{"episode": 3}``, a number
@@ -49,7 +50,7 @@ class VlnEnv(gymnasium.Env):
         UsageError: an option cannot be. InputError: the world cannot be read.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 8}  # noqa: RUF012  # Gymnasium's.
+    metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 8}  # noqa: RUF012
 
     def __init__(
         self,
@@ -87,6 +88,7 @@ class VlnEnv(gymnasium.Env):
         self.observation_space, self.action_space = self.senses.space, self.acting.space
         self.max_steps, self.success_m = max_steps or MOST_STEPS[actions], success_m
         self.render_mode = render_mode
+        self.window: Window | None = None
         self.episode: Episode | None = None
         self.path: list[Stance] = []
         self.steps = self.collisions = 0
@@ -139,14 +141,25 @@ class VlnEnv(gymnasium.Env):
         return self._look(), reward, stopped, truncated, info
 
     def render(self) -> np.ndarray | None:
-        """Return what the agent sees, uint8 [H, W, 3]; None without a render mode.
+        """Return what the agent sees, uint8 [H, W, 3]; None where it is shown, or not asked for.
 
         Raises:
             gymnasium.error.ResetNeeded: no episode has begun.
         """
         if self.render_mode is None or not self._playing:
             return None
-        return self.senses.rgb(self.acting.stance)
+        frame = self.senses.rgb(self.acting.stance)
+        if self.render_mode == "rgb_array":
+            return frame
+        self.window = self.window or Window(frame.shape[1])
+        self.window.show(frame)
+        return None
+
+    def close(self) -> None:
+        """Close the window, where there is one."""
+        if self.window:
+            self.window.close()
+            self.window = None
 
     @property
     def _playing(self) -> Episode:
@@ -155,6 +168,8 @@ class VlnEnv(gymnasium.Env):
         return self.episode
 
     def _look(self) -> dict[str, Any]:
+        if self.render_mode == "human":
+            self.render()
         return self.senses.look(self.acting.stance, self._playing.instruction.text)
 
     def _info(self, collided: bool) -> dict[str, Any]:

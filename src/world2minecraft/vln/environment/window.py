@@ -1,0 +1,139 @@
+"""A window to watch and to play an environment: a page of this machine's browser.
+
+The page shows the frames as they come (a stream of JPEGs, as web cameras send them) and sends back
+the keys that are pressed. Only this machine can open it, and only with the link's token. No
+display server and no GL is needed.
+"""
+
+import io
+import queue
+import secrets
+import threading
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+import numpy as np
+from PIL import Image
+
+LOOPBACK = "127.0.0.1"
+MOST_WAITING = 64  # Keys; what nobody reads is dropped.
+IDLE_S = 5.0  # A page that saw no frame for so long gets the last again.
+SCALE = 3  # Of a frame on the page.
+_PAGE = """<!doctype html><meta charset="utf-8"><title>World2Minecraft</title>
+<style>body{{margin:2em auto;max-width:60em;font:16px sans-serif;background:#16181d;color:#eee;
+text-align:center}}img{{image-rendering:pixelated;width:{width}px;max-width:100%}}</style>
+<p id="text">Arrow keys or W, A, D walk and turn; space says that you are there.</p>
+<img src="/frames?token={token}" alt="what the agent sees">
+<script>addEventListener("keydown", e => {{ if (e.key.startsWith("Arrow") || e.key === " ")
+e.preventDefault(); fetch("/key?token={token}&key=" + encodeURIComponent(e.key), {{method: "POST"}})
+}})</script>"""
+
+
+class Window:
+    """A page that shows frames; ``link`` opens it, ``keys`` holds what was pressed in it."""
+
+    def __init__(self, width_px: int = 224):
+        self.keys: queue.Queue[str] = queue.Queue(MOST_WAITING)
+        self._token, self._width_px = secrets.token_urlsafe(16), width_px * SCALE
+        self._frame, self._number, self._changed = b"", 0, threading.Condition()
+        self._is_open = True
+        self._server = ThreadingHTTPServer((LOOPBACK, 0), _handler_of(self))
+        self._server.daemon_threads = True
+        threading.Thread(target=self._server.serve_forever, daemon=True).start()
+
+    @property
+    def link(self) -> str:
+        """What a browser opens."""
+        return f"http://{LOOPBACK}:{self._server.server_address[1]}/?token={self._token}"
+
+    def show(self, frame: np.ndarray) -> None:
+        """Show a frame, uint8 [H, W, 3], on all pages that are open."""
+        stream = io.BytesIO()
+        Image.fromarray(frame).save(stream, "JPEG", quality=88)
+        with self._changed:
+            self._frame, self._number = stream.getvalue(), self._number + 1
+            self._changed.notify_all()
+
+    def close(self) -> None:
+        """Stop serving; pages keep the last frame."""
+        with self._changed:
+            self._is_open = False
+            self._changed.notify_all()
+        self._server.shutdown()
+        self._server.server_close()
+
+    def page(self) -> bytes:
+        """Return the page."""
+        return _PAGE.format(token=self._token, width=self._width_px).encode()
+
+    def knows(self, token: str) -> bool:
+        """Whether a token is that of the link."""
+        return secrets.compare_digest(token.encode(), self._token.encode())
+
+    def after(self, number: int) -> tuple[bytes, int]:
+        """Wait for a frame later than one of a number; return the last, empty where none comes."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._number > number or not self._is_open, IDLE_S)
+            return (self._frame if self._is_open else b""), self._number
+
+
+def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
+    """Return the class that answers for a window."""
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:  # The library's name.
+            asked = self._asked()
+            if asked is None:
+                return
+            if asked[0] == "/":
+                self._send("text/html; charset=utf-8", window.page())
+            elif asked[0] == "/frames":
+                self._stream()
+            else:
+                self.send_error(404)
+
+        def do_POST(self) -> None:
+            asked = self._asked()
+            if asked is None:
+                return
+            key = asked[1].get("key", [""])[0][:16]
+            if asked[0] == "/key" and key and not window.keys.full():
+                window.keys.put_nowait(key)
+            self._send("text/plain", b"")
+
+        def log_message(self, format: str, *args: Any) -> None:
+            """Say nothing: it would print the token."""
+
+        def _asked(self) -> tuple[str, dict[str, list[str]]] | None:
+            parts = urlsplit(self.path)
+            words = parse_qs(parts.query)
+            if window.knows(words.get("token", [""])[0]):
+                return parts.path, words
+            self.send_error(403, "the link's token is missing")
+            return None
+
+        def _send(self, kind: str, body: bytes) -> None:
+            self.send_response(200)
+            self.send_header("Content-Type", kind)
+            self.send_header("Content-Length", str(len(body)))
+            self.send_header("Referrer-Policy", "no-referrer")
+            self.end_headers()
+            self.wfile.write(body)
+
+        def _stream(self) -> None:
+            self.send_response(200)
+            self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
+            self.end_headers()
+            number = 0
+            try:
+                while True:
+                    frame, number = window.after(number)
+                    if not frame:
+                        return
+                    head = f"--frame\r\nContent-Type: image/jpeg\r\nContent-Length: {len(frame)}"
+                    self.wfile.write(head.encode() + b"\r\n\r\n" + frame + b"\r\n")
+            except OSError:
+                return  # The page was closed.
+
+    return Handler
