@@ -183,6 +183,24 @@ def test_a_recorded_reply_is_not_asked_for_again(tmp_path):
         replayed.ask((Turn("user", ("Goodbye",)),))
 
 
+def test_failures_are_replayed_but_asked_again_by_a_run_that_goes_on(tmp_path):
+    path = tmp_path / "replies.jsonl"
+    with scripted([NO_SCHEMA, MEGABYTE, Answer(503, b"")]) as server:
+        model = model_at(server, store=ReplyStore(path), attempts=1)
+        kinds = (RefusedQuestionError, UselessReplyError, BusyServerError)
+        for sample, kind in enumerate(kinds):
+            with pytest.raises(kind):
+                model.ask(HELLO, sample=sample)
+    replayed = open_chat("openai:scripted", store=ReplyStore(path, "replay"))
+    for sample, kind in enumerate(kinds):
+        with pytest.raises(kind):
+            replayed.ask(HELLO, sample=sample)
+    with scripted(["fine"]) as server:
+        model = model_at(server, store=ReplyStore(path))
+        assert [model.ask(HELLO, sample=n)[1].text for n in range(3)] == ["fine"] * 3
+    assert open_chat("openai:scripted", store=ReplyStore(path, "replay")).ask(HELLO)
+
+
 def test_a_line_cut_by_a_crash_is_dropped_and_written_again(tmp_path):
     path = tmp_path / "replies.jsonl"
     with scripted(["one", "two"]) as server:

@@ -56,6 +56,9 @@ VERBS: dict[str, str] = {
     "vln build": "Make navigation questions of walks through scenes.",
     "vln stats": "Tell what a navigation set holds, and what guessing scores.",
     "vln export": "Write navigation data as trainers and simulators read it.",
+    "vln run": "Let an agent walk by an instruction: live, scored and on film.",
+    "vln evaluate": "Ask a model the items of a navigation set.",
+    "vln table": "Print the results of navigation runs side by side.",
     "doctor": "Check that this machine can run the program.",
 }
 

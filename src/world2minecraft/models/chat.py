@@ -79,7 +79,12 @@ class ChatModel:
             return question.key, found
         if self._wire is None:
             raise UsageError("a model without a server answers from a record alone; give one")
-        reply = self._paid(self._wire, question)
+        try:
+            reply = self._paid(self._wire, question)
+        except ServerError as error:
+            if self._store is not None:
+                self._store.put_failure(question, error)
+            raise
         if self._store is not None:
             self._store.put(question, reply)
         return question.key, reply

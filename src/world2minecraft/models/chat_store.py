@@ -1,7 +1,8 @@
 """Replies on disk: a line a question, so that a run goes on where it stopped and can be replayed.
 
 A line is ``{"key", "question", "reply"}``; pictures are their sums and no key of a server is in
-it. A line that was cut by a crash is dropped, any other damage is an error.
+it. Where there was no reply it has a ``failure`` instead, so that a replay fails as the run did;
+a run that goes on asks again. A line that was cut by a crash is dropped, other damage is an error.
 """
 
 import json
@@ -10,11 +11,27 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import DamagedFileError, InputError, OutputError, UsageError
+from world2minecraft.errors import (
+    DamagedFileError,
+    InputError,
+    OutputError,
+    ServerError,
+    UsageError,
+)
 from world2minecraft.files import read_bytes
 from world2minecraft.models.chat_messages import Question, Reply
+from world2minecraft.models.chat_wire import (
+    BusyServerError,
+    RefusedQuestionError,
+    UselessReplyError,
+)
 
 MODES = ("record", "replay")
+FAILURES: dict[str, type[ServerError]] = {
+    "busy": BusyServerError,
+    "refused": RefusedQuestionError,
+    "useless": UselessReplyError,
+}
 MAX_STORE_BYTES = 1 << 30
 TYPES = {"text": str, "prompt_tokens": int, "completion_tokens": int, "finish": str}
 
@@ -36,6 +53,7 @@ class ReplyStore:
             raise UsageError(f"replies are used to {' or to '.join(MODES)}, not to {mode!r}")
         self.path, self.mode = Path(path), mode
         self._replies: dict[str, Reply] = {}
+        self._failures: dict[str, tuple[str, str]] = {}
         self._lock = threading.Lock()
         if self.path.exists():
             self._read()
@@ -49,10 +67,14 @@ class ReplyStore:
         """Return the reply to a question, None where it was not asked yet.
 
         Raises:
-            InputError: it was not asked, and this store only replays.
+            InputError: it was not asked, and this store only replays. ServerError: it was, and
+            failed then.
         """
         reply = self._replies.get(question.key)
         if reply is None and self.mode == "replay":
+            if question.key in self._failures:
+                kind, text = self._failures[question.key]
+                raise FAILURES[kind](text)
             raise InputError(
                 self.path,
                 f"has no reply to question {question.key[:12]}; a replay needs the same scene, "
@@ -63,14 +85,23 @@ class ReplyStore:
     def put(self, question: Question, reply: Reply) -> None:
         """Add a reply to the file. Raises OutputError."""
         kept = {name: value for name, value in asdict(reply).items() if name != "is_replayed"}
-        line = {"key": question.key, "question": question.told(), "reply": kept}
-        text = json.dumps(line, sort_keys=True) + "\n"
+        self._replies[question.key] = Reply(**kept, is_replayed=True)
+        self._add({"key": question.key, "question": question.told(), "reply": kept})
+
+    def put_failure(self, question: Question, error: ServerError) -> None:
+        """Add that a question failed in a way of ``FAILURES``. Raises OutputError."""
+        for kind, own in FAILURES.items():
+            if isinstance(error, own):
+                failure = {"kind": kind, "text": str(error)}
+                told = {"key": question.key, "question": question.told(), "failure": failure}
+                self._add(told)
+
+    def _add(self, line: dict[str, Any]) -> None:
         with self._lock:
-            self._replies[question.key] = Reply(**kept, is_replayed=True)
             try:
                 self.path.parent.mkdir(parents=True, exist_ok=True)
                 with self.path.open("a", encoding="utf-8") as stream:
-                    stream.write(text)
+                    stream.write(json.dumps(line, sort_keys=True) + "\n")
             except OSError as error:
                 reason = f"cannot be written: {error.strerror or error}"
                 raise OutputError(self.path, reason) from error
@@ -82,8 +113,7 @@ class ReplyStore:
             self._drop_after(len(whole) + 1 if whole else 0)
         for number, line in enumerate(whole.splitlines(), start=1):
             if line.strip():
-                key, reply = self._checked(line, number)
-                self._replies[key] = reply
+                self._take(line, number)
 
     def _drop_after(self, size: int) -> None:
         try:
@@ -92,15 +122,25 @@ class ReplyStore:
         except OSError as error:
             raise OutputError(self.path, f"cannot be written: {error.strerror or error}") from error
 
-    def _checked(self, line: bytes, number: int) -> tuple[str, Reply]:
+    def _take(self, line: bytes, number: int) -> None:
         try:
             record: Any = json.loads(line)
-            kept = record["reply"]
             if not isinstance(record["key"], str):
                 raise TypeError("the key is no text")
-            for name, kind in TYPES.items():
-                if type(kept[name]) is not kind:
-                    raise TypeError(f"{name} is no {kind.__name__}")
-            return record["key"], Reply(**{**kept, "is_replayed": True})
+            if "failure" in record:
+                kind, text = record["failure"]["kind"], record["failure"]["text"]
+                if kind not in FAILURES or not isinstance(text, str):
+                    raise TypeError("the failure is of no kind")
+                self._failures[record["key"]] = (kind, text)
+            else:
+                self._replies[record["key"]] = _checked(record["reply"])
         except (ValueError, TypeError, KeyError, RecursionError) as error:
             raise DamagedFileError(self.path, f"line {number} is no reply ({error})") from error
+
+
+def _checked(kept: Any) -> Reply:
+    """Return a reply of JSON. Raises TypeError, KeyError."""
+    for name, kind in TYPES.items():
+        if type(kept[name]) is not kind:
+            raise TypeError(f"{name} is no {kind.__name__}")
+    return Reply(**{**kept, "is_replayed": True})

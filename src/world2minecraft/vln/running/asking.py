@@ -1,7 +1,10 @@
 """An episode of a sentence: "Go to the piano", told in a scene, with the goal that it names."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from world2minecraft.errors import InputError, UsageError
 from world2minecraft.vln.landmarks import Landmark
@@ -31,7 +34,7 @@ def episode_of(scene: VlnScene, wish: Wish) -> Episode:
     """
     if len(wish.instruction) > MAX_INSTRUCTION:
         raise UsageError(f"an instruction has at most {MAX_INSTRUCTION:,} characters")
-    target = scene.landmark(wish.goal) if wish.goal else named_in(scene, wish.instruction)
+    target = named_in(scene, wish.goal or wish.instruction)
     goals = scene.goals_at(target)
     if not goals:
         raise InputError(scene.path, f"nobody can stand before the {target.name}")
@@ -55,26 +58,47 @@ def episode_of(scene: VlnScene, wish: Wish) -> Episode:
 def named_in(scene: VlnScene, sentence: str) -> Landmark:
     """Return the thing of a scene that a sentence names last; that is where it ends.
 
+    The last word of what a thing is called will do, such as piano for an upright piano.
+
     Raises:
         UsageError: it names none, or what it names is several things.
     """
-    names = {one.name.lower() for one in scene.landmarks}
-    names |= {one.noun.lower() for one in scene.landmarks}
     text = " ".join(sentence.lower().split())
+    named = _phrases(scene.landmarks)
     spans = [
-        (found.end(), -found.start(), name)
-        for name in names
-        for found in re.finditer(rf"(?<!\w){re.escape(name)}(?!\w)", text)
+        (found.end(), -found.start(), phrase)
+        for phrase in named
+        for found in re.finditer(rf"(?<!\w){re.escape(phrase)}(?!\w)", text)
     ]
     if not spans:
         some = ", ".join(sorted(one.name for one in scene.landmarks)[:12]) or "nothing"
+        raise UsageError(f"nothing of {scene.scene_id} is named by {text[:60]!r}; it has {some}")
+    phrase = max(spans)[2]
+    if len(named[phrase]) > 1:
+        some = ", ".join(repr(one.name) for one in named[phrase][:6])
         raise UsageError(
-            f"the instruction names no thing of {scene.scene_id}; give --goal NAME. It has {some}"
+            f"{len(named[phrase])} things are called {phrase!r}; say one of {some}, or --goal NAME"
         )
-    return scene.landmark(max(spans)[2])
+    return named[phrase][0]
+
+
+def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
+    """Return what phrases mean: names before nouns, whole nouns before their last words."""
+    names: dict[str, list[Landmark]] = {}
+    nouns: dict[str, list[Landmark]] = {}
+    ends: dict[str, list[Landmark]] = {}
+    for one in landmarks:
+        names.setdefault(one.name.lower(), []).append(one)
+        nouns.setdefault(one.noun.lower(), []).append(one)
+        words = one.noun.lower().split()
+        for n in range(1, len(words)):
+            ends.setdefault(" ".join(words[n:]), []).append(one)
+    return {**ends, **nouns, **names}
 
 
 def _standing(scene: VlnScene, wished: Stance) -> Stance:
-    """Return the place of the floor nearest to a wished one, looking the wished way."""
-    x, y, z = map(float, scene.graph.feet[scene.graph.nearest(wished.feet)])
+    """Return the place of the rooms' floor nearest to a wished one, looking the wished way."""
+    floor = scene.graph.feet[scene.main_places]
+    away = ((floor - np.array(wished.feet)) ** 2).sum(axis=1)
+    x, y, z = map(float, floor[away.argmin()])
     return Stance(x, y, z, wished.yaw_deg, wished.pitch_deg)

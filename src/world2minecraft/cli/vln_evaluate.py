@@ -1,0 +1,118 @@
+"""``w2m vln evaluate``: a model answers the items of a set, by task and composition."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from world2minecraft.cli import vln_options as option
+
+if TYPE_CHECKING:
+    from world2minecraft.vln.values import Item
+
+EXAMPLES = """\
+w2m vln evaluate SET --agent http://localhost:8000/v1    a server of your own: vLLM, LLaMA-Factory
+w2m vln evaluate SET --agent gemini --max-usd 5 --jobs 4
+w2m vln evaluate SET --agent http://localhost:8000/v1 --training rft --style think
+w2m vln evaluate SET --agent openai:gpt-4o --split val_unseen --task next_action --count 100
+"""
+
+Set = Annotated[Path, typer.Argument(help="A set of w2m vln build.", show_default=False)]
+AgentName = Annotated[
+    str,
+    typer.Option(
+        "--agent", help="gemini, openai, qwen, local, each with :MODEL if wanted; or the address "
+        "of a server, http://HOST/v1.", show_default=False,
+    ),
+]  # fmt: skip
+Out = Annotated[
+    Path | None, typer.Option("--out", help="Where the run is kept.", show_default="vln_AGENT")
+]
+Split = Annotated[
+    str, typer.Option("--split", help="train, val_seen, val_unseen, test (both val) or all.")
+]
+TaskName = Annotated[str, typer.Option("--task", help="next_view, next_action or both.")]
+Composition = Annotated[str, typer.Option("--composition", help="base, extend or combined.")]
+Count = Annotated[
+    int | None, typer.Option("--count", help="Ask so many items, drawn by --seed.", min=1)
+]
+Seed = Annotated[int, typer.Option("--seed", help="Of the items that are drawn.")]
+Style = Annotated[
+    str,
+    typer.Option(
+        "--style", help="letter: as models trained on the exports answer; think: as those "
+        "trained by reward; json: held to a schema.",
+    ),
+]  # fmt: skip
+Training = Annotated[
+    str,
+    typer.Option("--training", help="How the model was trained, for tables: none, sft, rft."),
+]
+Jobs = Annotated[int, typer.Option("--jobs", help="Questions at a time.", min=1)]
+
+
+def run(
+    folder: Set,
+    agent: AgentName,
+    out: Out = None,
+    split: Split = "test",
+    task: TaskName = "both",
+    composition: Composition = "combined",
+    count: Count = None,
+    seed: Seed = 0,
+    style: Style = "letter",
+    training: Training = "none",
+    jobs: Jobs = 1,
+    model: option.Model = "",
+    key_env: option.KeyEnv = "",
+    max_usd: option.MaxUsd = None,
+    max_calls: option.MaxCalls = None,
+    prices: option.Prices = None,
+    timeout: option.Timeout = 60.0,
+    temperature: option.Temperature = 0.0,
+    replay: option.Replay = None,
+) -> None:
+    """Ask a model the items of a set, and tell its accuracy with intervals.
+
+    Items are asked by the very words that trainers get. A reply that holds no letter is asked
+    again twice and then counts as wrong; each reply is kept in OUT/answers.jsonl. The same command
+    goes on where it was stopped.
+
+    Raises:
+        UsageError: a name or an option is wrong. InputError: the set cannot be read.
+        ServerError: the model cannot be asked. BudgetError: a cap is reached.
+    """
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.errors import UnknownNameError
+    from world2minecraft.vln.agents.answering import ModelAnswerer
+    from world2minecraft.vln.records import read_items
+    from world2minecraft.vln.running.evaluating import TRAININGS, evaluate, write_result
+    from world2minecraft.vln.running.picking import picked_items
+
+    if training not in TRAININGS:
+        raise UnknownNameError("training", training, TRAININGS)
+    target = out or Path(f"vln_{''.join(c if c.isalnum() else '_' for c in agent)[:40]}")
+    items = picked_items(
+        read_items(folder), split=split, task=task, composition=composition, count=count, seed=seed
+    )
+    chat = option.opened_chat(
+        agent, target, model, key_env, max_usd, max_calls, prices, timeout, temperature, replay
+    )
+    place = folder if folder.is_dir() else folder.parent
+    answerer = ModelAnswerer(chat, place, style)
+    with shown() as progress:
+        found = evaluate(items, answerer, jobs=jobs, progress=progress)
+    facts = {"agent": chat.name, "training": training, "style": style, "split": split}
+    write_result(target, found, facts)
+    _say(target, items, chat)
+
+
+def _say(target: Path, items: "list[Item]", chat: Any) -> None:
+    from world2minecraft.vln.running.tables import answers_table, read_result, text_of
+
+    print()
+    print(text_of(answers_table([read_result(target)])))
+    print("percent right, with the interval (Wilson, 95 %); 3! are three replies without a letter")
+    print(f"asked: {option.cost_line(chat)}")
+    print(f"\n  read   {target / 'answers.jsonl'}: each of {len(items):,} replies")
+    print(f"  next   w2m vln table {target} OTHER_RUN")

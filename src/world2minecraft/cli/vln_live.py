@@ -1,0 +1,151 @@
+"""A walk in the terminal, as it goes on: what the agent sees, thinks and does.
+
+On a terminal the view is drawn in half blocks of colour; elsewhere there is a line a decision.
+"""
+
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, TextIO
+
+if TYPE_CHECKING:
+    from world2minecraft.vln.agents.values import Decision, Sight
+    from world2minecraft.vln.running.walking import Walk
+    from world2minecraft.vln.values import Episode, Move, Stance
+
+VIEW_COLUMNS, VIEW_ROWS = 64, 24
+ROWS_KEPT = 8
+UPPER = "\u2580"  # The upper half of a cell; its lower half is the background.
+
+
+class LinesLive:
+    """A line a decision; an observer."""
+
+    def __init__(self, stream: TextIO):
+        self._stream = stream
+
+    def began(self, episode: "Episode", agent: str) -> None:
+        """Say what is to be done."""
+        self._say(f"{agent}: {episode.instruction.text}")
+
+    def decided(
+        self, sight: "Sight", decision: "Decision", made: "Sequence[tuple[Move, bool]]"
+    ) -> None:
+        """Say what was decided."""
+        thought = f"   {decision.thought}" if decision.thought else ""
+        self._say(f"  {sight.step:>4}  {told_moves(decision, made)}{thought}")
+
+    def stood(
+        self, stance: "Stance", step: int, decision: "Decision | None", move: "Move | None"
+    ) -> None:
+        """Say nothing: decisions tell it."""
+
+    def ended(self, walk: "Walk") -> None:
+        """Say how it went."""
+        from world2minecraft.vln.running.film import end_text
+
+        self._say(f"  {end_text(walk)}")
+
+    def _say(self, text: str) -> None:
+        print(safe(text), file=self._stream, flush=True)
+
+
+class ScreenLive(LinesLive):
+    """The view in half blocks, and the last decisions beside it; an observer."""
+
+    def __init__(self, display: Any):
+        self._display = display
+        self._rows: list[tuple[str, str, str]] = []
+        self._head, self._foot = "", ""
+        self._view: Any = None
+
+    def began(self, episode: "Episode", agent: str) -> None:
+        """Begin with an empty table."""
+        self._head, self._foot, self._rows = f"{agent}: {episode.instruction.text}", "", []
+        self._draw()
+
+    def decided(
+        self, sight: "Sight", decision: "Decision", made: "Sequence[tuple[Move, bool]]"
+    ) -> None:
+        """Show the view and add a row."""
+        if sight.colour.shape[0] > 1:
+            self._view = half_blocks(sight.colour)
+        row = (str(sight.step), told_moves(decision, made), decision.thought)
+        self._rows = [*self._rows, row][-ROWS_KEPT:]
+        self._draw()
+
+    def ended(self, walk: "Walk") -> None:
+        """Show how it went."""
+        from world2minecraft.vln.running.film import end_text
+
+        self._foot = end_text(walk)
+        self._draw()
+
+    def _draw(self) -> None:
+        from rich.console import Group
+        from rich.table import Table
+        from rich.text import Text
+
+        table = Table(box=None, expand=True)
+        for name, ratio in (("step", 1), ("does", 4), ("thinks", 10)):
+            table.add_column(name, ratio=ratio, overflow="fold")
+        for row in self._rows:
+            table.add_row(*(Text(safe(cell)[:300]) for cell in row))
+        parts = [Text(safe(self._head), style="bold"), self._view, table, Text(self._foot)]
+        self._display.update(Group(*(part for part in parts if part is not None)), refresh=True)
+
+
+@contextmanager
+def live(stream: TextIO | None = None) -> Iterator[LinesLive]:
+    """Give an observer that shows walks on stderr or ``stream`` while the block runs."""
+    target = sys.stderr if stream is None else stream
+    if not target.isatty():
+        yield LinesLive(target)
+        return
+    from rich.console import Console
+    from rich.live import Live
+
+    with Live(console=Console(file=target), auto_refresh=False) as display:
+        yield ScreenLive(display)
+
+
+def half_blocks(colour: Any) -> Any:
+    """Return a picture, uint8 [H, W, 3], as text of coloured half blocks."""
+    import numpy as np
+    from PIL import Image
+    from rich.style import Style
+    from rich.text import Text
+
+    size = (VIEW_COLUMNS, 2 * VIEW_ROWS)
+    small = np.asarray(Image.fromarray(colour).resize(size, Image.Resampling.BOX))
+    text = Text()
+    for row in range(VIEW_ROWS):
+        for upper, lower in zip(small[2 * row], small[2 * row + 1], strict=True):
+            text.append(UPPER, Style(color=_hex(upper), bgcolor=_hex(lower)))
+        text.append("\n")
+    return text
+
+
+def told_moves(decision: "Decision", made: "Sequence[tuple[Move, bool]]") -> str:
+    """Return what a decision did, in a few words."""
+    from world2minecraft.vln.agents.words import MOVE_NAMES
+
+    if decision.outcome != "moves":
+        return f"{decision.outcome.upper()}: {decision.told.get('problem', '')}"
+    words = [MOVE_NAMES[move] + (" (blocked)" if collided else "") for move, collided in made]
+    return " ".join(words)
+
+
+def safe(text: str) -> str:
+    """Return a text in one line that no terminal takes for a command.
+
+    Example:
+        >>> safe("go" + chr(27) + "[2J on")
+        'go [2J on'
+    """
+    return "".join(mark if mark.isprintable() else " " for mark in text)
+
+
+def _hex(rgb: Any) -> str:
+    red, green, blue = (int(value) for value in rgb)
+    return f"#{red:02x}{green:02x}{blue:02x}"

@@ -1,0 +1,244 @@
+"""``w2m vln run``: an agent walks by an instruction, live in the terminal and on film."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from world2minecraft.cli import vln_options as option
+
+if TYPE_CHECKING:
+    from world2minecraft.vln.values import Episode, Stance
+
+EXAMPLES = """\
+w2m vln run OUT "Go to the table"                        the oracle shows the way, no network needed
+w2m vln run OUT "Go to the piano" --agent gemini --max-usd 0.20
+w2m vln run OUT "Find the bed" --agent openai:gpt-4.1 --map text --chunk 2
+w2m vln run OUT "Go to the piano" --agent http://localhost:8000/v1 --model qwen2.5-vl
+w2m vln run SET --agent random --count 50 --no-video     the episodes of a set
+w2m vln run OUT "Go to the piano" --agent gemini --replay RUN/replies.jsonl
+"""
+
+Scene = Annotated[
+    Path,
+    typer.Argument(
+        help="A run's folder, a generated house, a world or schematic; or a set or an "
+        "episodes.jsonl, whose episodes are walked.", show_default=False,
+    ),
+]  # fmt: skip
+Sentence = Annotated[
+    str, typer.Argument(metavar="[INSTRUCTION]", help='What to do: "Go to the piano".')
+]
+AgentName = Annotated[
+    str,
+    typer.Option(
+        "--agent", help="oracle, shortest, random, forward, stop; gemini, openai, qwen, local, "
+        "each with :MODEL if wanted; or the address of a server, http://HOST/v1.",
+    ),
+]  # fmt: skip
+Out = Annotated[
+    Path | None, typer.Option("--out", help="Where the run is kept.", show_default="vln_AGENT")
+]
+Goal = Annotated[
+    str, typer.Option("--goal", help="The goal's name, where the words do not say it.")
+]
+Start = Annotated[
+    str,
+    typer.Option("--start", metavar="X,Y,Z[,YAW]", help="Where to begin: feet in world blocks."),
+]
+Moves = Annotated[
+    str, typer.Option("--moves", help="vlnce (0.25 m, 15 degrees), rxr (30 degrees) or block.")
+]
+MaxSteps = Annotated[int, typer.Option("--max-steps", help="Moves that an agent has.", min=1)]
+Chunk = Annotated[int, typer.Option("--chunk", help="Moves that a model gives at once, 1 to 4.")]
+History = Annotated[int, typer.Option("--history", help="Views of before that a model sees.")]
+Map = Annotated[str, typer.Option("--map", help="none, or text: where it was, in words.")]
+Count = Annotated[int | None, typer.Option("--count", help="Walk so many episodes.", min=1)]
+Seed = Annotated[int, typer.Option("--seed", help="Of agents that draw.")]
+Video = Annotated[bool, typer.Option("--video/--no-video", help="Write walk.mp4 of each walk.")]
+
+
+def run(
+    scene: Scene,
+    instruction: Sentence = "",
+    agent: AgentName = "oracle",
+    out: Out = None,
+    goal: Goal = "",
+    start: Start = "",
+    moves: Moves = "vlnce",
+    max_steps: MaxSteps = 120,
+    chunk: Chunk = 4,
+    history: History = 3,
+    map_kind: Map = "none",
+    count: Count = None,
+    seed: Seed = 0,
+    video: Video = True,
+    model: option.Model = "",
+    key_env: option.KeyEnv = "",
+    max_usd: option.MaxUsd = None,
+    max_calls: option.MaxCalls = None,
+    prices: option.Prices = None,
+    timeout: option.Timeout = 60.0,
+    temperature: option.Temperature = 0.0,
+    replay: option.Replay = None,
+) -> None:
+    """Let an agent walk by an instruction, and score it beside Stop, Random and the oracle.
+
+    The goal is the thing that the instruction names last. The same command goes on where it was
+    stopped: what a model said is in OUT/replies.jsonl and not asked again.
+
+    Raises:
+        UsageError: a name or an option is wrong. InputError: the scene or the goal cannot be had.
+        ServerError: a model cannot be asked. BudgetError: a cap is reached.
+    """
+    from world2minecraft.vln.agents import agent_of
+    from world2minecraft.vln.running.asking import Wish
+
+    folder = out or Path(f"vln_{''.join(c if c.isalnum() else '_' for c in agent)[:40]}")
+    chats: list[Any] = []
+
+    def chat() -> Any:
+        chats.append(
+            option.opened_chat(
+                agent, folder, model, key_env, max_usd, max_calls, prices, timeout, temperature,
+                replay,
+            )
+        )  # fmt: skip
+        return chats[0]
+
+    walker = agent_of(agent, chat, chunk=chunk, history=history, map_kind=_map(map_kind))
+    wish = Wish(instruction, goal, _stance(start), moves, max_steps)
+    episodes, grounds = _episodes(scene, wish, count)
+    told = _walk(folder, episodes, grounds, walker, seed, video, chats)
+    _say(folder, told, episodes, video, chats)
+
+
+class _Grounds:
+    """Opens each scene once, and keeps its plan."""
+
+    def __init__(self) -> None:
+        self._scenes: dict[str, Any] = {}
+        self._grounds: dict[tuple[str, str], Any] = {}
+        self._plans: dict[str, Any] = {}
+
+    def scene(self, path: str) -> Any:
+        from world2minecraft.vln.scene import open_scene
+
+        if path not in self._scenes:
+            self._scenes[path] = open_scene(path)
+        return self._scenes[path]
+
+    def __call__(self, episode: "Episode") -> Any:
+        from world2minecraft.vln.running.scene_ground import SceneGround
+
+        key = (episode.scene, episode.move_set)
+        if key not in self._grounds:
+            self._grounds[key] = SceneGround(self.scene(episode.scene), episode.move_set)
+        return self._grounds[key]
+
+    def plan(self, episode: "Episode") -> Any:
+        from world2minecraft.vln.running.film import SIDE_PX
+        from world2minecraft.vln.running.plan import PlanMap
+
+        if episode.scene not in self._plans:
+            self._plans[episode.scene] = PlanMap(self.scene(episode.scene).volume, SIDE_PX)
+        return self._plans[episode.scene]
+
+
+def _episodes(scene: Path, wish: Any, count: int | None) -> "tuple[list[Episode], _Grounds]":
+    from world2minecraft.errors import UsageError
+    from world2minecraft.vln.records import EPISODES, read_episodes
+    from world2minecraft.vln.running.asking import episode_of
+
+    grounds = _Grounds()
+    if scene.suffix == ".jsonl" or (scene / EPISODES).is_file():
+        if wish.instruction or wish.goal:
+            raise UsageError("episodes bring their own instructions; leave the sentence out")
+        found = read_episodes(scene)[:count]
+        if not found:
+            raise UsageError(f"{scene} has no episode")
+        return found, grounds
+    if not wish.instruction:
+        raise UsageError('say what to do, such as w2m vln run OUT "Go to the table"')
+    return [episode_of(grounds.scene(str(scene)), wish)], grounds
+
+
+def _walk(
+    folder: Path, episodes: "list[Episode]", grounds: _Grounds, walker: Any, seed: int,
+    video: bool, chats: list[Any],
+) -> dict[str, Any]:  # fmt: skip
+    from world2minecraft.cli.outcome import compiling_note
+    from world2minecraft.cli.vln_live import live
+    from world2minecraft.vln.records import write_episodes
+    from world2minecraft.vln.running.course import run_course, write_course
+    from world2minecraft.vln.running.film import FILM_FILE, Film
+    from world2minecraft.vln.running.trace import TraceWriter
+
+    compiling_note()
+    films: list[Film] = []
+
+    def watching(episode: "Episode", ground: Any) -> list[Any]:
+        place = folder / _place(episode, episodes)
+        found: list[Any] = [shown, TraceWriter(place)]
+        if video:
+            films[:] = [Film(place / FILM_FILE, ground, grounds.plan(episode))]
+        return [*found, *films]
+
+    with live() as shown:
+        try:
+            walks, beside = run_course(episodes, grounds, walker, observers=watching, seed=seed)
+        except BaseException:
+            for film in films:
+                film.drop()
+            raise
+    write_episodes(folder / "episodes.jsonl", episodes)
+    facts: dict[str, Any] = {"move_sets": sorted({one.move_set for one in episodes}), "seed": seed}
+    if chats:
+        facts |= {"model": chats[0].name, "cost": chats[0].ledger.told()}
+    return write_course(folder, walks, beside, facts)
+
+
+def _place(episode: "Episode", episodes: "list[Episode]") -> str:
+    """Return the folder of an episode: the run's own for a single one, else by its number."""
+    return "." if len(episodes) == 1 else f"episodes/{episodes.index(episode):05d}"
+
+
+def _say(
+    folder: Path, told: dict[str, Any], episodes: "list[Episode]", video: bool, chats: list[Any]
+) -> None:
+    from world2minecraft.vln.running.tables import text_of, walks_table
+
+    print()
+    print(text_of(walks_table([told])))
+    if chats:
+        print(f"asked: {option.cost_line(chats[0])}")
+    place = folder / _place(episodes[0], episodes)
+    if video:
+        print(f"\n  look   {place / 'walk.mp4'}")
+    print(f"  read   {place / 'trace.jsonl'}: each view, thought and move")
+    print(f"  next   w2m vln table {folder}")
+
+
+def _map(text: str) -> Any:
+    from world2minecraft.errors import UsageError
+
+    if text not in ("none", "text"):
+        raise UsageError(f"--map is none or text, not {text!r}")
+    return text
+
+
+def _stance(text: str) -> "Stance | None":
+    from math import isfinite
+
+    from world2minecraft.errors import UsageError
+    from world2minecraft.vln.values import Stance
+
+    if not text:
+        return None
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (3, 4) or not all(isfinite(one) for one in numbers):
+        raise UsageError(f"--start is X,Y,Z or X,Y,Z,YAW, not {text!r}")
+    return Stance(*numbers)

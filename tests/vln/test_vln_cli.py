@@ -1,0 +1,152 @@
+"""``w2m vln run``, ``evaluate`` and ``table`` from end to end, in a small flat."""
+
+import io
+import json
+
+import numpy as np
+import pytest
+from tests.models.scripted_server import NO_SCHEMA, scripted
+from vln_sets import next_action, next_view, write_pictures
+
+from world2minecraft import cli
+from world2minecraft.cli.vln_live import LinesLive, half_blocks, safe
+from world2minecraft.errors import UsageError
+from world2minecraft.vln.records import read_episodes, write_items
+from world2minecraft.vln.running.asking import named_in
+from world2minecraft.vln.running.picking import picked_items
+from world2minecraft.vln.running.trace import read_trace
+from world2minecraft.vln.values import Stance
+
+
+def test_the_oracle_finds_the_piano_on_film(flat_path, tmp_path, capsys):
+    out = tmp_path / "run"
+    code = cli.run(["vln", "run", str(flat_path), "Go to the piano", "--out", str(out)])
+    told = capsys.readouterr()
+    assert code == 0 and f"w2m vln table {out}" in told.out
+    result = json.loads((out / "result.json").read_text())
+    assert result["summary"]["success_0.5m"]["share"] == 1 and result["summary"]["spl"] >= 0.95
+    assert set(result["beside"]) == {"stop", "random", "oracle"}
+    assert result["beside"]["oracle"]["spl"] == result["summary"]["spl"]
+    assert result["beside"]["stop"]["success_0.5m"]["share"] == 0
+    assert (out / "walk.mp4").read_bytes()[4:8] == b"ftyp"
+    assert read_trace(out / "trace.jsonl")[-1]["end"] == "stopped"
+    assert "oracle: Go to the piano" in told.err
+    (episode,) = read_episodes(out)
+    assert episode.goal_name == "upright piano"
+    assert cli.run(["vln", "table", str(out)]) == 0
+    assert capsys.readouterr().out.splitlines()[1].startswith("oracle")
+
+
+def test_a_model_is_recorded_and_replayed(flat_path, tmp_path, capsys):
+    """A server that takes no schema, talks, and then stops: the same again without it."""
+
+    def said(asked, number):
+        if "response_format" in asked:
+            return NO_SCHEMA
+        return ["Hm, let me see.", "Actions: LEFT, FORWARD", "Actions: STOP"][min(number - 2, 2)]
+
+    words = ["vln", "run", str(flat_path), "Go to the piano", "--no-video", "--model", "tiny"]
+    with scripted(said) as server:
+        first = tmp_path / "first"
+        assert cli.run([*words, "--agent", server.url, "--out", str(first)]) == 0
+        asked = len(server.requests)
+        assert "5 questions and 0 from the record" in capsys.readouterr().out
+        assert asked == 5  # Two refused forms, a bad reply, its repair, and STOP.
+    result = json.loads((first / "result.json").read_text())
+    assert result["agent"] == "tiny" and result["summary"]["invalid"] == 0
+    again = tmp_path / "again"
+    replay = ["--agent", "local", "--replay", str(first / "replies.jsonl"), "--out", str(again)]
+    assert cli.run([*words, *replay]) == 0
+    assert "0 questions and 3 from the record" in capsys.readouterr().out
+    same = ("episodes.jsonl", "views/0001.jpg")
+    assert all((first / name).read_bytes() == (again / name).read_bytes() for name in same)
+    replayed = json.loads((again / "result.json").read_text())
+    assert replayed["episodes"] == result["episodes"]
+    assert replayed["cost"]["calls"] == 0
+    other = [*words[:3], "Go to the red table", *words[4:], *replay]
+    assert cli.run(other) == 3
+    assert "has no reply to question" in capsys.readouterr().err
+
+
+def test_the_words_say_where_to_go(flat):
+    for words in ("Walk past the red table to the PIANO.", "upright piano"):
+        assert named_in(flat, words).name == "upright piano"
+    assert named_in(flat, "Leave the piano and go to the table").noun == "table"
+    with pytest.raises(UsageError, match="nothing of flat is named by 'go home, pianos!'; it has"):
+        named_in(flat, "Go home, pianos!")
+    with pytest.raises(UsageError, match="2 things are called 'chair'; say one of 'chair beside"):
+        named_in(flat, "Go to the chair")
+
+
+GOLDEN = [
+    (["SCENE"], 2, 'error: say what to do, such as w2m vln run OUT "Go to the table"'),
+    (["SCENE", "Go to the piano", "--agent", "orcale"], 2, "did you mean 'oracle'?"),
+    (["SCENE", "Go to the piano", "--start", "1,2"], 2, "--start is X,Y,Z or X,Y,Z,YAW, not '1,2'"),
+    (["SCENE", "Go to the piano", "--map", "globe"], 2, "--map is none or text, not 'globe'"),
+    (["SCENE", "Go to the piano", "--moves", "leap"], 2, "set of moves"),
+    (["SCENE", "Go to the piano", "--agent", "gemini"], 2, "export GEMINI_API_KEY="),
+    (["nowhere", "Go to the piano"], 3, "nowhere"),
+]
+
+
+@pytest.mark.parametrize(("words", "code", "text"), GOLDEN)
+def test_what_is_wrong_is_told_in_a_line(
+    words, code, text, flat_path, tmp_path, capsys, monkeypatch
+):
+    monkeypatch.delenv("GEMINI_API_KEY", raising=False)
+    words = [str(flat_path) if word == "SCENE" else word for word in words]
+    assert cli.run(["vln", "run", *words, "--out", str(tmp_path / "run")]) == code
+    told = capsys.readouterr().err
+    assert text in told and told.count("\n") == 1
+
+
+def test_a_set_is_evaluated_and_told(tmp_path, capsys):
+    items = [next_view("flat", step, "val_unseen") for step in (2, 3)]
+    items += [next_action("flat", 7, "val_seen"), next_action("flat", 0, "train")]
+    write_items(tmp_path / "items.jsonl", items)
+    write_pictures(tmp_path, "flat")
+    out = tmp_path / "run"
+    with scripted(["A", "D", "D"]) as server:
+        words = ["--agent", server.url, "--model", "tiny", "--out", str(out), "--training", "sft"]
+        assert cli.run(["vln", "evaluate", str(tmp_path), *words]) == 0
+        assert len(server.requests) == 3
+        told = capsys.readouterr().out
+        assert "50.0 [9, 91] n=2" not in told.splitlines()[0] and "tiny" in told
+        assert cli.run(["vln", "evaluate", str(tmp_path), *words]) == 0  # From the record.
+        assert len(server.requests) == 3
+        assert "0 questions and 3 from the record" in capsys.readouterr().out
+    result = json.loads((out / "result.json").read_text())
+    rights = [item.answer == said for item, said in zip(items, "ADD", strict=False)]
+    assert list(result["right"].values()) == [rights[i] for i in (2, 0, 1)]  # Sorted by name.
+    assert cli.run(["vln", "table", str(out), str(out), "--markdown"]) == 0
+    assert "| tiny | sft |" in capsys.readouterr().out
+
+
+def test_items_are_picked(tmp_path):
+    items = [next_action("flat", step, "val_seen") for step in range(8)]
+    assert picked_items(items) == items
+    drawn = picked_items(items, count=3, seed=1)
+    assert len(drawn) == 3 and drawn == picked_items(items, count=3, seed=1)
+    assert drawn == [item for item in items if item in drawn]
+    with pytest.raises(UsageError, match="none of 8 items is of split train"):
+        picked_items(items, split="train")
+    with pytest.raises(UsageError, match="no split is named 'tets'; did you mean 'test'"):
+        picked_items(items, split="tets")
+
+
+def test_the_terminal_shows_no_commands_of_others():
+    stream = io.StringIO()
+    shown = LinesLive(stream)
+    shown._say("a\x1b[2Jb\nc\u202ed")
+    assert stream.getvalue() == "a [2Jb c d\n"
+    assert safe("  12  LEFT") == "  12  LEFT"
+    blocks = half_blocks(np.full((48, 64, 3), 200, np.uint8))
+    assert blocks.plain.count("\u2580") == 64 * 24
+
+
+def test_the_nearest_floor_is_where_one_begins(flat, flat_path, tmp_path):
+    from world2minecraft.vln.running.asking import Wish, episode_of
+
+    wish = Wish("Go to the piano", start=Stance(3.1, 70.0, 3.2, 45.0))
+    episode = episode_of(flat, wish)
+    assert episode.start.yaw_deg == 45.0 and episode.start.y == pytest.approx(65.0)
