@@ -182,8 +182,8 @@ def test_the_grpo_recipe_trains_on_few_rows_and_says_so(grpo):
         "says 8"
     ) in grpo.notes
     assert (
-        "mcvln_next_view_combined_train: the loader drops what fills no batch, 2 rows an epoch, "
-        "others each time"
+        "mcvln_next_view_combined_train: the loader drops what fills no batch, 2 of 10 rows an "
+        "epoch, others each time"
     ) in grpo.notes
     assert (
         "mcvln_next_view_base_train: has no recipe, because 5 rows do not fill one batch on 8 "

@@ -89,7 +89,7 @@ def _parquet_rows(path: Path) -> Iterable[dict[str, Any]]:
         import pyarrow as pa  # noqa: PLC0415
         import pyarrow.parquet as pq  # noqa: PLC0415
     except ImportError as error:
-        raise MissingExtraError("reading parquet", "data") from error
+        raise MissingExtraError("reading parquet", "vln") from error
     try:
         with pq.ParquetFile(path) as table:
             for batch in table.iter_batches(batch_size=64):

@@ -79,7 +79,7 @@ def _parquet(part: Part, pictures: Pictures, rule: HandoffRule) -> bytes:
         import pyarrow as pa  # noqa: PLC0415
         import pyarrow.parquet as pq  # noqa: PLC0415
     except ImportError as error:
-        raise MissingExtraError("writing parquet", "data") from error
+        raise MissingExtraError("writing parquet", "vln") from error
     embedded = rule.image_style == "embedded"
     kind = pa.struct({"bytes": pa.binary(), "path": pa.string()}) if embedded else pa.string()
     schema = pa.schema(
@@ -145,8 +145,8 @@ def _notes(part: Part, val: Part | None, plan: GrpoPlan) -> tuple[str, ...]:
         )
     if plan.left_out:
         notes.append(
-            f"{part.name}: the loader drops what fills no batch, {plan.left_out} rows an epoch, "
-            "others each time"
+            f"{part.name}: the loader drops what fills no batch, {plan.left_out} of "
+            f"{len(part.items)} rows an epoch, others each time"
         )
     if val is None:
         notes.append(f"{part.name}: the set holds nothing out; the recipe does not validate")

@@ -105,7 +105,7 @@ def _claim(root: Path, choices: dict) -> None:
 
 
 def _readme(format: str, written: list[Written]) -> str:
-    lines = ["| rows | | steps | longest row, tokens | command |", "|---|---|---|---|---|"]
+    lines = ["| file | rows | steps | longest row, tokens | command |", "|---|---|---|---|---|"]
     for one in written:
         command = f"`{one.command}`" if one.command else ""
         steps, tokens = (f"{n:,}" if n else "" for n in (one.steps, one.tokens))

@@ -82,6 +82,17 @@ def row_of(item: Item) -> dict[str, Any]:
     }
 
 
+def rows_left_out(part: Part, rule: HandoffRule) -> tuple[str, ...]:
+    """Return a note where ``max_samples`` leaves rows of a part out."""
+    left_out = len(part.items) - rule.max_samples
+    if not rule.max_samples or left_out <= 0:
+        return ()
+    return (
+        f"{part.name}: max_samples {rule.max_samples} leaves {left_out} rows out, the same in "
+        "every epoch, as in the paper; --max-samples 0 takes all",
+    )
+
+
 def _tokens(item: Item, pictures: Pictures, rule: HandoffRule) -> int:
     return row_tokens(item, question_of(item), pictures, rule.max_pixels, LETTER_ALONE)
 
@@ -127,14 +138,4 @@ def _write_recipe(root: Path, part: Part, rule: HandoffRule) -> Written:
     )
     write_text(root / file, text)
     command = f"llamafactory-cli train {file}"
-    return Written(part.name, rows, command, steps, notes=_notes(part, used))
-
-
-def _notes(part: Part, used: int) -> tuple[str, ...]:
-    left_out = len(part.items) - used
-    if not left_out:
-        return ()
-    return (
-        f"{part.name}: max_samples {used} leaves {left_out} rows out, the same in every epoch, as "
-        "in the paper; --max-samples 0 takes all",
-    )
+    return Written(part.name, rows, command, steps, notes=rows_left_out(part, rule))

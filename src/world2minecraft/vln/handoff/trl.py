@@ -18,7 +18,7 @@ from typing import Any
 from world2minecraft.files import write_text
 from world2minecraft.vln.handoff.contracts import check_trl
 from world2minecraft.vln.handoff.easyr1 import GPUS, RESPONSE_TOKENS
-from world2minecraft.vln.handoff.llamafactory import CUTOFF
+from world2minecraft.vln.handoff.llamafactory import CUTOFF, rows_left_out
 from world2minecraft.vln.handoff.parts import TRAIN, Part
 from world2minecraft.vln.handoff.pictures import Pictures
 from world2minecraft.vln.handoff.recipes import rendered, verbatim
@@ -60,7 +60,8 @@ def write_trl(
         is_train = part.split == TRAIN
         steps = sft_steps(len(part.items), rule.max_samples, 1) if is_train else 0
         command = f"python sft.py {part.name}.jsonl" if is_train else ""
-        written.append(Written(part.name, len(part.items), command, steps, tokens))
+        notes = rows_left_out(part, rule) if is_train else ()
+        written.append(Written(part.name, len(part.items), command, steps, tokens, notes))
     _write_scripts(root, next((p for p in parts if p.split == TRAIN), parts[0]), rule)
     check_trl(root)
     return written
