@@ -122,6 +122,31 @@ def test_a_set_is_evaluated_and_told(tmp_path, capsys):
     assert "| tiny | sft |" in capsys.readouterr().out
 
 
+def test_baselines_are_evaluated_by_name(tmp_path, capsys):
+    items = [next_view("flat", step, "val_unseen") for step in (2, 3)]
+    items += [next_action("flat", step, "val_seen") for step in (0, 7)]
+    items += [next_action("flat", step, "train") for step in (1, 2)]
+    write_items(tmp_path / "items.jsonl", items)
+    write_pictures(tmp_path, "flat")
+    shares = {}
+    for name, total in (("oracle", 4), ("majority", 4), ("repeat", 2), ("nearest", 2)):
+        out = tmp_path / name
+        words = ["vln", "evaluate", str(tmp_path), "--agent", name, "--out", str(out)]
+        assert cli.run(words) == 0, name
+        result = json.loads((out / "result.json").read_text())
+        assert (len(result["right"]), result["training"]) == (total, "baseline")
+        shares[name] = sum(result["right"].values()) / total
+    assert shares["oracle"] == 1
+    assert result["accuracy"].keys() == {"next_view"}
+    capsys.readouterr()
+    wrong = ["vln", "evaluate", str(tmp_path), "--agent", "majorty"]
+    assert cli.run(wrong) == 2
+    assert "no agent is named 'majorty'; did you mean 'majority'?" in capsys.readouterr().err
+    wrong = ["vln", "evaluate", str(tmp_path), "--agent", "repeat", "--task", "next_view"]
+    assert cli.run(wrong) == 2
+    assert "knows nothing of this task" in capsys.readouterr().err
+
+
 def test_items_are_picked(tmp_path):
     items = [next_action("flat", step, "val_seen") for step in range(8)]
     assert picked_items(items) == items

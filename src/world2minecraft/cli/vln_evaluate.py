@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 w2m vln evaluate SET --agent http://localhost:8000/v1    a server of your own: vLLM, LLaMA-Factory
 w2m vln evaluate SET --agent gemini --max-usd 5 --jobs 4
+w2m vln evaluate SET --agent majority                    a baseline: no network needed
 w2m vln evaluate SET --agent http://localhost:8000/v1 --training rft --style think
 w2m vln evaluate SET --agent openai:gpt-4o --split val_unseen --task next_action --count 100
 """
@@ -22,7 +23,8 @@ AgentName = Annotated[
     str,
     typer.Option(
         "--agent", help="gemini, openai, qwen, local, each with :MODEL if wanted; or the address "
-        "of a server, http://HOST/v1.", show_default=False,
+        "of a server, http://HOST/v1; or a baseline: uniform, majority, blind, repeat, nearest, "
+        "alike, odd, oracle.", show_default=False,
     ),
 ]  # fmt: skip
 Out = Annotated[
@@ -84,6 +86,7 @@ def run(
     """
     from world2minecraft.cli.progress import shown
     from world2minecraft.errors import UnknownNameError
+    from world2minecraft.models.chat_endpoints import is_endpoint
     from world2minecraft.vln.agents.answering import ModelAnswerer
     from world2minecraft.vln.records import read_items
     from world2minecraft.vln.running.evaluating import TRAININGS, evaluate, write_result
@@ -92,19 +95,43 @@ def run(
     if training not in TRAININGS:
         raise UnknownNameError("training", training, TRAININGS)
     target = out or Path(f"vln_{''.join(c if c.isalnum() else '_' for c in agent)[:40]}")
+    every = read_items(folder)
     items = picked_items(
-        read_items(folder), split=split, task=task, composition=composition, count=count, seed=seed
-    )
-    chat = option.opened_chat(
-        agent, target, model, key_env, max_usd, max_calls, prices, timeout, temperature, replay
+        every, split=split, task=task, composition=composition, count=count, seed=seed
     )
     place = folder if folder.is_dir() else folder.parent
-    answerer = ModelAnswerer(chat, place, style)
+    chat = None
+    if is_endpoint(agent):
+        chat = option.opened_chat(
+            agent, target, model, key_env, max_usd, max_calls, prices, timeout, temperature, replay
+        )
+        answerer: Any = ModelAnswerer(chat, place, style)
+    else:
+        answerer, items = _baseline(agent, every, items, place)
+        training = "baseline"
     with shown() as progress:
         found = evaluate(items, answerer, jobs=jobs, progress=progress)
-    facts = {"agent": chat.name, "training": training, "style": style, "split": split}
+    facts = {"agent": answerer.name, "training": training, "style": style, "split": split}
     write_result(target, found, facts)
     _say(target, items, chat)
+
+
+def _baseline(
+    name: str, every: "list[Item]", items: "list[Item]", place: Path
+) -> "tuple[Any, list[Item]]":
+    """Return a baseline and the items that it knows the task of."""
+    from world2minecraft.errors import UnknownNameError, UsageError
+    from world2minecraft.models.chat_endpoints import ENDPOINTS
+    from world2minecraft.vln.agents.answering import LetterAnswerer
+    from world2minecraft.vln.data.baselines import NAMES, baseline_letters
+
+    if name not in NAMES:
+        raise UnknownNameError("agent", name, [*NAMES, *ENDPOINTS])
+    letters = baseline_letters(name, every, items, place)
+    known = [item for item in items if item.item_id in letters]
+    if not known:
+        raise UsageError(f"the baseline {name} knows nothing of this task; give --task both")
+    return LetterAnswerer(name, letters), known
 
 
 def _say(target: Path, items: "list[Item]", chat: Any) -> None:
@@ -113,6 +140,7 @@ def _say(target: Path, items: "list[Item]", chat: Any) -> None:
     print()
     print(text_of(answers_table([read_result(target)])))
     print("percent right, with the interval (Wilson, 95 %); 3! are three replies without a letter")
-    print(f"asked: {option.cost_line(chat)}")
+    if chat is not None:
+        print(f"asked: {option.cost_line(chat)}")
     print(f"\n  read   {target / 'answers.jsonl'}: each of {len(items):,} replies")
     print(f"  next   w2m vln table {target} OTHER_RUN")

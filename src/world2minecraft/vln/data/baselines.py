@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.errors import DamagedFileError, InputError, LimitError, UnknownNameError
 from world2minecraft.vln.scores import Rate, rate
 from world2minecraft.vln.values import TASKS, Item
 
@@ -21,6 +21,7 @@ FLAG_POINTS = 0.10
 SMALL_PX = (32, 18)  # Pictures are compared so small.
 MOST_PX = 64_000_000
 BLIND = ("majority", "blind")  # These see no picture.
+NAMES = ("uniform", "majority", "blind", "repeat", "nearest", "alike", "odd", "oracle")
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,32 @@ def baselines(items: Sequence[Item], folder: str | Path) -> list[BaselineRow]:
             hits = sum(a == item.answer for a, item in zip(answers, held, strict=True))
             rows.append(BaselineRow(name, task, rate(hits, len(held)), chance))
     return rows
+
+
+def baseline_letters(
+    name: str, items: Sequence[Item], asked: Sequence[Item], folder: str | Path
+) -> dict[str, str]:
+    """Return the letter that a baseline gives to each item asked, by the item's id.
+
+    Args:
+        name: one of ``NAMES``; some know one task alone, and the other's items are left out.
+        items: of the set; those of train are what it may learn from.
+        asked: the items to answer.
+        folder: of the set, for its pictures.
+
+    Raises:
+        UnknownNameError: no baseline has this name. InputError: a picture cannot be read.
+    """
+    if name not in NAMES:
+        raise UnknownNameError("baseline", name, NAMES)
+    letters: dict[str, str] = {}
+    for task in TASKS:
+        train = [item for item in items if item.task == task and item.split == "train"]
+        held = [item for item in asked if item.task == task]
+        found = _answers(task, train, held, Path(folder)) if held else {}
+        own = found.get(name, [])
+        letters |= {item.item_id: letter for item, letter in zip(held, own, strict=False)}
+    return letters
 
 
 def _answers(
