@@ -151,6 +151,17 @@ def test_environments_run_side_by_side(flat_path):
     vector.close()
 
 
+def test_processes_side_by_side_are_told_their_instructions(flat_path):
+    vector = gymnasium.make_vec(
+        f"world2minecraft.vln.environment:{ENV_ID}", num_envs=2, vectorization_mode="async",
+        vector_kwargs={"shared_memory": False}, scene=flat_path, observations=["instruction"],
+    )  # fmt: skip
+    seen, info = vector.reset(seed=0)
+    assert seen["instruction"] == tuple(info["instruction"])
+    assert all(text.startswith("Go to the ") for text in seen["instruction"])
+    vector.close()
+
+
 def test_a_longer_list_of_episodes_begins_with_the_shorter(flat):
     assert random_episodes(flat, 4, seed=9)[:2] == random_episodes(flat, 2, seed=9)
     assert random_episodes(flat, 2, seed=8) != random_episodes(flat, 2, seed=9)

@@ -177,6 +177,7 @@ class VlnEnv(gymnasium.Env):
             "episode_id": self._playing.episode_id,
             "scene_id": self.scene.scene_id,
             "goal": self._playing.goal_name,
+            "instruction": self._playing.instruction.text,
             "distance_m": float(self._distance_m),
             "collided": bool(collided),
             "collisions": self.collisions,
