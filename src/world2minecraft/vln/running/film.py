@@ -118,7 +118,7 @@ def with_end(frame: Image.Image, text: str) -> Image.Image:
     ended = frame.copy()
     draw = ImageDraw.Draw(ended)
     top = SIZE_PX[1] - 40
-    draw.rectangle((0, top, VIEW_PX[0], SIZE_PX[1]), INK)
+    draw.rectangle((0, top, VIEW_PX[0] - 1, SIZE_PX[1]), INK)
     draw.text((12, top + 9), plain(text), PAPER, ImageFont.load_default(18))
     return ended
 
