@@ -10,6 +10,7 @@ from world2minecraft.vln.data.stream import wrapped_deg
 from world2minecraft.vln.values import Stance
 
 NEAR_M, NEAR_DEG = 0.5, 20.0  # Two stances so alike show the same.
+LEAST_DETAIL = 20.0  # Looked at: with less a picture shows a wall and little else.
 LEAST_HASH = 6  # Bits of 64 by which a wrong choice differs from the right one.
 
 
@@ -21,6 +22,7 @@ class Pictured:
     stance: Stance
     sha256: str
     dhash: int
+    detail: float
 
 
 class Album:
@@ -32,7 +34,7 @@ class Album:
     def write(self, name: str, stance: Stance, shot: Shot) -> Pictured:
         """Write a picture. Raises OutputError."""
         write_bytes(self._folder / name, shot.jpeg)
-        return Pictured(name, stance, shot.sha256, shot.dhash)
+        return Pictured(name, stance, shot.sha256, shot.dhash, shot.detail)
 
 
 def are_apart(one: Stance, other: Stance, metres_per_block: float) -> bool:
@@ -45,3 +47,8 @@ def are_apart(one: Stance, other: Stance, metres_per_block: float) -> bool:
 def look_apart(one: Pictured | Shot, other: Pictured | Shot) -> bool:
     """Return whether two pictures differ enough to choose between them."""
     return hash_distance(one.dhash, other.dhash) >= LEAST_HASH
+
+
+def shows_something(one: Pictured | Shot) -> bool:
+    """Return whether a picture is more than a bare wall."""
+    return one.detail >= LEAST_DETAIL

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.vln.data.album import Album, Pictured, are_apart, look_apart
+from world2minecraft.vln.data.album import Album, Pictured, are_apart, look_apart, shows_something
 from world2minecraft.vln.data.discretise import Walker
 from world2minecraft.vln.data.keyframes import MOST_FORWARD_M, Mark
 from world2minecraft.vln.data.stream import wrapped_deg
@@ -26,7 +26,8 @@ GRADES = {
     "hard": ("temporal", "turned", "other_move"),
 }
 TURNS_DEG = (-180.0, -60.0, -30.0, 30.0, 60.0)
-TURN_MOVES = 3  # Of another move: as far as a usual turn.
+GRADE_SHARES = (0.2, 0.4, 0.4)  # In an easy one the picture most like the present is mostly right.
+TURN_MOVES = 2  # Of another move: so little that it looks as near as the right one.
 CHOICES = 4
 
 
@@ -40,14 +41,17 @@ class ViewQuestion:
     own: dict[str, Pictured]  # wrong pictures made for it, by kind
 
 
-def view_steps(clear: Sequence[int], count: int) -> list[int]:
+def view_steps(clear: Sequence[int], pictures: Sequence[Pictured]) -> list[int]:
     """Return the steps that have three pictures up to them and one after, of those that are clear.
+
+    Where one looks at a bare wall, or would next, nothing is asked.
 
     Args:
         clear: keyframes whose next action an instruction tells.
-        count: how many keyframes there are.
+        pictures: of the keyframes.
     """
-    return [step for step in clear if HISTORY - 1 <= step < count - 1]
+    fit = [step for step in clear if HISTORY - 1 <= step < len(pictures) - 1]
+    return [step for step in fit if all(map(shows_something, pictures[step : step + 2]))]
 
 
 def view_question(
@@ -84,7 +88,8 @@ def view_question(
             if not are_apart(stance, right.stance, metres_per_block):
                 continue
             (shot,) = album.take([stance])
-            if look_apart(shot, right) and all(look_apart(shot, one) for one in own.values()):
+            apart = all(look_apart(shot, one) for one in (right, *own.values()))
+            if apart and shows_something(shot):
                 name = right.image.removesuffix(".jpg")
                 own[kind] = album.write(f"{name}_{kind}.jpg", stance, shot)
                 break
@@ -145,7 +150,8 @@ def view_item(
         oracle_version: of what made the moves.
     """
     step, right = question.step, pictures[question.step + 1]
-    later = [pictures[n] for n in (step + 2, step + 3, step - 1) if 0 <= n < len(pictures)]
+    near = [n for n in (step + 2, step + 3, step - 1) if 0 <= n < len(pictures)]
+    later = [pictures[near[n]] for n in rng.permutation(len(near))]
     supply = {
         "temporal": iter(later),
         "elsewhere": iter(elsewhere),
@@ -203,5 +209,7 @@ def _differs(
     metres_per_block: float,
 ) -> bool:
     if same_scene and not are_apart(one.stance, right.stance, metres_per_block):
+        return False
+    if not shows_something(one):
         return False
     return look_apart(one, right) and all(look_apart(one, other) for other in chosen)

@@ -12,6 +12,7 @@ from world2minecraft.types import Camera
 
 SIZE, FOV_DEG = (640, 360), 70.0  # The game's view; 299 tokens of Qwen2.5-VL.
 QUALITY = 90
+COARSE_PX = (32, 18)  # So small, textures are even and only things vary.
 
 
 def vln_camera(width_px: int = SIZE[0], height_px: int = SIZE[1]) -> Camera:
@@ -27,6 +28,7 @@ class Shot:
     sha256: str
     mean: float  # of its grey, 0 to 255
     dhash: int  # 64 bits
+    detail: float  # how much its grey varies over the picture, a standard deviation
 
 
 def shot_of(colour: np.ndarray) -> Shot:
@@ -37,7 +39,9 @@ def shot_of(colour: np.ndarray) -> Shot:
     data = buffer.getvalue()
     grey = image.convert("L")
     mean = float(np.asarray(grey, np.float64).mean())
-    return Shot(data, hashlib.sha256(data).hexdigest(), mean, dhash(grey))
+    coarse = np.asarray(grey.resize(COARSE_PX, Image.Resampling.BOX), np.float64)
+    sum_ = hashlib.sha256(data).hexdigest()
+    return Shot(data, sum_, mean, dhash(grey), float(coarse.std()))
 
 
 def dhash(image: Image.Image) -> int:

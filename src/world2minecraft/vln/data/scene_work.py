@@ -13,7 +13,13 @@ from world2minecraft.vln.data.album import Album, Pictured
 from world2minecraft.vln.data.candidates import Candidate, Maker, Refusals
 from world2minecraft.vln.data.discretise import VERSION, Guide, Walker
 from world2minecraft.vln.data.next_action import action_steps
-from world2minecraft.vln.data.next_view import GRADES, ViewQuestion, view_question, view_steps
+from world2minecraft.vln.data.next_view import (
+    GRADE_SHARES,
+    GRADES,
+    ViewQuestion,
+    view_question,
+    view_steps,
+)
 from world2minecraft.vln.data.pictures import Shot, shot_of, vln_camera
 from world2minecraft.vln.data.splits import split_of_tour
 from world2minecraft.vln.data.touring import Tourist
@@ -157,7 +163,7 @@ class _Crew:
         work.pictures[name], work.spoken[name] = pictures, spoken
         balanced = self._rule.balanced
         work.actions[name] = action_steps(candidate.marks, candidate.clear, rng, balanced)
-        work.views += self._views(candidate, pictures, rng)
+        work.views += self._views(candidate, pictures, spoken, rng)
         work.episodes.append(_episode(self._scene, candidate, spoken, split, self._rule))
 
     def _written(self, candidate: Candidate, shots: Sequence[Shot]) -> list[Pictured]:
@@ -168,15 +174,21 @@ class _Crew:
         ]
 
     def _views(
-        self, candidate: Candidate, pictures: Sequence[Pictured], rng: np.random.Generator
+        self,
+        candidate: Candidate,
+        pictures: Sequence[Pictured],
+        spoken: Instruction,
+        rng: np.random.Generator,
     ) -> list[ViewQuestion]:
-        steps = view_steps(candidate.clear, len(candidate.marks))
+        """Return questions; no hard ones where only the goal is told, as many ways lead there."""
+        steps = view_steps(candidate.clear, pictures)
         chosen = sorted(rng.permutation(len(steps))[: self._rule.views])
-        grades = list(GRADES)
+        grades, shares = list(GRADES), np.array(GRADE_SHARES)
+        shares = shares * [1, 1, spoken.level != "goal"]
         return [
             view_question(
                 candidate.trajectory_id, candidate.marks, pictures, steps[n],
-                grades[rng.integers(len(grades))], self._album, self._walker,
+                str(rng.choice(grades, p=shares / shares.sum())), self._album, self._walker,
                 self._scene.metres_per_block, rng,
             )
             for n in chosen

@@ -20,6 +20,8 @@ from world2minecraft.walk.paths import elbow_room_m, shortest_path
 EVERY_S = 0.2
 SPEED_M_S, TURN_DEG_S = 1.0, 90.0
 PAUSE_S = 2.4  # Longer than what cuts a stream.
+ASIDE_DEG = (50.0, 125.0)  # From the way, where one looks before leaving,
+SPOKEN_DEG = 35.0  # and a turn at the end that counts.
 AHEAD_M = 0.6  # One looks to where one will be.
 ELBOW_M, NARROW_COST = 0.5, 3.0  # One keeps so far from walls; at a wall a metre counts four.
 STOPS = 8  # Of a tour.
@@ -68,29 +70,46 @@ class Tourist:
             path = shortest_path(self._graph, here, goal, self._weights)
             if path is None or path.length_m < LEAST_LEG_M:
                 continue
-            self._walk(frames, path.feet, landmark)
+            way = self._straightened(path.feet)
+            facing = self._facing(way[-1], landmark)
+            self._look_aside(frames, way, facing, rng)
+            self._walk(frames, way, facing)
             targets[frames[-1].t_s] = landmark.name
             self._pause(frames)
             here = goal
         return Tour(tuple(frames), targets)
 
-    def _walk(self, frames: list[StreamFrame], feet: np.ndarray, landmark: Landmark) -> None:
+    def _look_aside(
+        self, frames: list[StreamFrame], way: np.ndarray, facing: float, rng: np.random.Generator
+    ) -> None:
+        """Turn beside the way before leaving, so that legs begin with a turn, and turn both ways.
+
+        To the side from which one starts by the turn that the end does not have.
+        """
+        ahead = _yaw_of(way[1] - way[0])
+        last = float(wrapped_deg(facing - _yaw_of(way[-1] - way[-2])))
+        side = -np.sign(last) if abs(last) >= SPOKEN_DEG else float(rng.choice([-1, 1]))
+        angle = float(rng.uniform(*ASIDE_DEG))
+        self._turn(frames, float(wrapped_deg(ahead - side * angle)))
+        self._pause(frames)
+
+    def _walk(self, frames: list[StreamFrame], corners: np.ndarray, facing: float) -> None:
         """Add the frames of a way and of turning to the thing at its end."""
-        step = SPEED_M_S * EVERY_S * self._graph.blocks_per_metre
-        way = _sampled(self._straightened(feet), step)
+        way = _sampled(corners, SPEED_M_S * EVERY_S * self._graph.blocks_per_metre)
         ahead = max(1, round(AHEAD_M / (SPEED_M_S * EVERY_S)))
         for n in range(1, len(way)):
-            toward = way[min(n + ahead, len(way) - 1)] - way[n - 1]
-            yaw = float(np.degrees(np.arctan2(-toward[0], toward[2])))
+            yaw = _yaw_of(way[min(n + ahead, len(way) - 1)] - way[n - 1])
             if n == 1:
                 self._turn(frames, yaw)
             self._add(frames, way[n], yaw)
-        near = np.clip(self._scene.to_room_m(way[-1]), landmark.low_m, landmark.high_m)
-        point = apply(
-            invert(self._scene.volume.block_to_room), (near + landmark.center_m)[None] / 2
-        )[0]
-        toward = point - way[-1]
-        self._turn(frames, float(np.degrees(np.arctan2(-toward[0], toward[2]))))
+        self._turn(frames, facing)
+
+    def _facing(self, feet: np.ndarray, landmark: Landmark) -> float:
+        """Return the yaw of one who looks at a thing from a place."""
+        near = np.clip(self._scene.to_room_m(feet), landmark.low_m, landmark.high_m)
+        room_to_block = invert(self._scene.volume.block_to_room)
+        point = apply(room_to_block, (near + landmark.center_m)[None] / 2)[0]
+        return _yaw_of(point - feet)
 
     def _straightened(self, feet: np.ndarray) -> np.ndarray:
         """Return the corners of a way that is straight wherever there is room for that."""
@@ -132,6 +151,10 @@ class Tourist:
         x, y, z = (float(value) for value in feet)
         stance = Stance(x, y, z, float(wrapped_deg(yaw_deg)))
         return StreamFrame(t_s, stance, self._scene.scene_id, tour_id)
+
+
+def _yaw_of(direction: np.ndarray) -> float:
+    return float(np.degrees(np.arctan2(-direction[0], direction[2])))
 
 
 def _goals(scene: VlnScene) -> list[tuple[Landmark, list[int]]]:
