@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.vln.floor import LEVEL, REACH, distance_over
 from world2minecraft.vln.landmarks import colour_name
 from world2minecraft.vln.scene import camera_of, open_scene
 from world2minecraft.vln.values import Stance
@@ -73,6 +76,17 @@ def test_distances_between_places_join_the_field(flat):
     assert straight == pytest.approx(2.0, abs=0.3)
     walked = [flat.distance_m((x, 65.0, 3.0), goal) for x in np.linspace(11, 15, 41)]
     assert (np.diff(walked) < 0.05).all() and walked[0] > walked[-1]
+
+
+@given(x=st.floats(-1, 20), y=st.sampled_from([64.0, 65.0, 65.25, 66.0]), z=st.floats(-1, 11))
+def test_the_table_of_the_floor_finds_what_a_look_at_all_places_does(flat, x, y, z):
+    field = flat.field_m(flat.goals_at(flat.landmark("table")))
+    apart = flat.graph.feet - [x, y, z]
+    level = np.abs(apart[:, 1]) <= LEVEL * flat.scale
+    near = level & (np.hypot(apart[:, 0], apart[:, 2]) <= REACH * flat.graph.spacing)
+    ways = np.linalg.norm(apart, axis=1) * flat.metres_per_block + field
+    slow = ways[near].min(initial=np.inf)
+    assert distance_over(flat.floor, field, x, y, z) == pytest.approx(slow)
 
 
 def test_a_picture_shows_what_is_ahead(flat):
