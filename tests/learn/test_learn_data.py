@@ -129,7 +129,8 @@ def test_a_run_that_goes_on_draws_what_it_would_have_drawn(tmp_path):
 def test_a_batch_holds_what_networks_take(tmp_path):
     frames = StreamedFrames(toy_set(placed(tmp_path), 3), RULE)
     batches = list(ordered_batches(frames, [2, 0, 1], toy_config(tmp_path)))
-    inputs, target = batches[0]
+    inputs, target, more = batches[0]
+    assert not more  # Validation is of single frames.
     assert inputs.image.shape == (2, 3, 30, 40) and inputs.image.dtype == torch.float32
     assert inputs.image.min() >= 0 and inputs.image.max() <= 1
     assert inputs.grid_shape == (30, 30, 18) and inputs.voxel_m == 0.16

@@ -48,4 +48,5 @@ def toy_config(*folders, **changes):
         "precision": "32",
     }  # fmt: skip
     sources = tuple(DataSource(str(folder)) for folder in folders)
-    return RunConfig("toy", sources, **(settings | changes))
+    network = changes.pop("network", "toy")
+    return RunConfig(network, sources, **(settings | changes))

@@ -178,7 +178,14 @@ class _Asked:
         frames = self._frames(config.cells, config.image, progress)
         rows = self._rows(frames)
         said = said_labels(network, frames, rows, config, progress=progress)
-        return self._scored(said_by_network(frames, rows, said), config.cells.voxel_m)
+        scores = self._scored(said_by_network(frames, rows, said), config.cells.voxel_m)
+        if not self.protocols or "embodied" in self.protocols:
+            from world2minecraft.learn.memory import add_memory_scores
+
+            add_memory_scores(
+                scores, network, self.found, frames, rows, config, seed=self.seed, progress=progress
+            )
+        return scores
 
     def _of_files(self, progress: "Progress") -> dict[str, Any]:
         from world2minecraft.learn.data.splits import evenly

@@ -28,6 +28,7 @@ GRIDS = {"0.16": Grid((30, 30, 18), 0.16), "0.08": Grid((60, 60, 36), 0.08)}
 SCHEDULES = ("cosine", "step", "constant")
 PRECISIONS = ("auto", "bf16", "32")
 DEPTHS = ("taught", "given", "none")
+OWN_FRAMES = {"embodied": 3}  # A guess: most cells of a room are in view of so many. Others: 1.
 CLASS_WEIGHTS = ("frequency", "monoscene", "even")
 
 
@@ -72,6 +73,7 @@ class RunConfig:
     grid: str = "0.16"
     image: tuple[int, int] = (320, 240)  # Width, height: half of NYUv2's, a guess for 0.16 m.
     depth: str = "taught"  # To a depth branch; "given" shows it to the network too.
+    frames: int = 0  # Of a scene, at most, in one sample; 0 is the network's own: ``OWN_FRAMES``.
     steps: int = 2000  # The benchmark's.
     batch: int = 4  # MonoScene's.
     learning_rate: float = 5e-4  # A guess for small networks from nothing; MonoScene's is 1e-4.
@@ -116,6 +118,11 @@ class RunConfig:
         """The grid that ``grid`` names."""
         return GRIDS[self.grid]
 
+    @property
+    def fused(self) -> int:
+        """How many frames of a scene a sample has at most."""
+        return self.frames or OWN_FRAMES.get(self.network, 1)
+
     def with_preset(self, name: str) -> "RunConfig":
         """Return the run with a preset's settings. Raises UnknownNameError."""
         _one_of("preset", name, PRESETS)
@@ -124,6 +131,7 @@ class RunConfig:
 
 _RANGES: dict[str, tuple[float, float]] = {
     "image": (16, 4096),
+    "frames": (0, 16),
     "steps": (1, 10**8),
     "batch": (1, 4096),
     "learning_rate": (1e-9, 10),

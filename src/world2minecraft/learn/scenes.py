@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.coordinates import apply, turn_grid
 from world2minecraft.metrics.intervals import FrameScore
-from world2minecraft.metrics.protocols import KnownCells, count_scene
+from world2minecraft.metrics.protocols import KnownCells, ProtocolCounts, count_scene
 
 SLACK_CELLS = 0.02  # So far a box's corner may be off the lattice.
 SLACK_DEG = 0.01
@@ -50,22 +50,41 @@ def scene_scores(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[list[Fra
         by_scene.setdefault(frame.scene_id, []).append(frame)
     found = []
     for scene_id in sorted(by_scene):
-        places = [_placed(frame, voxel_m) for frame in by_scene[scene_id]]
-        if any(place is None for place in places):
-            return [], f"a box of {scene_id} is not along the room's axes"
-        corners = np.array([place[1] for place in places if place is not None])
-        steps = (corners - corners[0]) / voxel_m
-        if np.abs(steps - np.round(steps)).max() > SLACK_CELLS:
-            return [], (
-                f"the boxes of {scene_id} share no lattice of {voxel_m:g} m cells; score at 0.08 m"
-            )
-        cells = np.round(steps - steps.min(axis=0)).astype(int)
-        grids = [place[0] for place in places if place is not None]
-        shape = tuple((cells + [grid[0].shape for grid in grids]).max(axis=0).tolist())
-        if np.prod(shape, dtype=float) > MOST_CELLS:
-            return [], f"{scene_id} spans {'x'.join(map(str, shape))} cells, which is no home"
-        found.append(FrameScore(scene_id, _voted(grids, cells, shape)))
+        lattice, reason = lattice_of(by_scene[scene_id], voxel_m)
+        if lattice is None:
+            return [], reason
+        found.append(FrameScore(scene_id, _voted(lattice)))
     return found, ""
+
+
+class Lattice(NamedTuple):
+    """The boxes of a scene's frames, along the room's axes, on the cells that they share."""
+
+    grids: list[tuple[np.ndarray, np.ndarray, np.ndarray]]  # said, truth and mask of each box
+    cells: np.ndarray  # int [N, 3], where each box begins
+    shape: tuple[int, ...]
+    origin_m: np.ndarray  # float64 [3], minimum corner in the room
+
+
+def lattice_of(frames: Sequence[SceneFrame], voxel_m: float) -> tuple[Lattice | None, str]:
+    """Return the boxes of one scene's frames on their lattice, or None and why there is none."""
+    scene_id = frames[0].scene_id
+    places = [_placed(frame, voxel_m) for frame in frames]
+    if any(place is None for place in places):
+        return None, f"a box of {scene_id} is not along the room's axes"
+    corners = np.array([place[1] for place in places if place is not None])
+    steps = (corners - corners[0]) / voxel_m
+    if np.abs(steps - np.round(steps)).max() > SLACK_CELLS:
+        return None, (
+            f"the boxes of {scene_id} share no lattice of {voxel_m:g} m cells; score at 0.08 m"
+        )
+    least = steps.min(axis=0)
+    cells = np.round(steps - least).astype(int)
+    grids = [place[0] for place in places if place is not None]
+    shape = tuple((cells + [grid[0].shape for grid in grids]).max(axis=0).tolist())
+    if np.prod(shape, dtype=float) > MOST_CELLS:
+        return None, f"{scene_id} spans {'x'.join(map(str, shape))} cells, which is no home"
+    return Lattice(grids, cells, shape, corners[0] + least * voxel_m), ""
 
 
 def _placed(
@@ -84,15 +103,11 @@ def _placed(
     return (said, truth, mask), corner_m
 
 
-def _voted(
-    grids: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]],
-    cells: np.ndarray,
-    shape: tuple[int, ...],
-):
-    votes = np.zeros((*shape, CLASS_COUNT), np.uint8)
-    truth = np.full(shape, UNKNOWN, np.uint8)
-    seen = np.zeros(shape, bool)
-    for (said, true, mask), first in zip(grids, cells, strict=True):
+def _voted(lattice: Lattice) -> ProtocolCounts:
+    votes = np.zeros((*lattice.shape, CLASS_COUNT), np.uint8)
+    truth = np.full(lattice.shape, UNKNOWN, np.uint8)
+    seen = np.zeros(lattice.shape, bool)
+    for (said, true, mask), first in zip(lattice.grids, lattice.cells, strict=True):
         box = tuple(slice(at, at + side) for at, side in zip(first, said.shape, strict=True))
         truth[box] = np.where(true == UNKNOWN, truth[box], true)
         seen[box] |= mask

@@ -29,6 +29,7 @@ from world2minecraft.metrics.protocols import (
 from world2minecraft.progress import Progress, silent
 
 SCENES = "embodied scenes"  # The scene level of ``embodied``, beside its frames.
+MEMORY = "embodied memory"  # The same of a network that fuses frames by itself.
 
 
 class SaidOfFrame(NamedTuple):
@@ -91,11 +92,12 @@ def protocol_scores(
         if reason:
             left_out[SCENES] = reason
         else:
-            result[SCENES] = _of_scenes(by_scene, "; frames vote", seed)
+            result[SCENES] = of_scenes(by_scene, "; frames vote", seed)
     return {"protocols": result, "left_out": left_out}
 
 
-def _of_scenes(counts: list[FrameScore], how: str, seed: int) -> dict[str, Any]:
+def of_scenes(counts: list[FrameScore], how: str, seed: int) -> dict[str, Any]:
+    """Return what ``summarise`` does of scenes, with what was counted in words."""
     words = {
         "counts": f"of each scene those that any of its frames has in view{how}",
         "reads": PROTOCOLS["embodied"].unknown,
@@ -132,7 +134,7 @@ def saved_scene_scores(
         labels = saved.scene_labels(name, truth.labels.shape)
         counts.append(FrameScore(name, count_scene(labels, truth.labels, [truth.seen])))
         progress("score", done, len(names))
-    return {"protocols": {SCENES: _of_scenes(counts, "", seed)}, "left_out": {}}
+    return {"protocols": {SCENES: of_scenes(counts, "", seed)}, "left_out": {}}
 
 
 def scenes_to_score(saved: SavedPredictions, scenes: SceneSet, split: str | None) -> list[str]:

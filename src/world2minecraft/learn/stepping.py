@@ -61,7 +61,8 @@ class Steps(lightning.LightningModule):
         self, batch: Any, device: torch.device, dataloader_idx: int
     ) -> Any:
         """Move a batch; Lightning knows no frozen dataclasses."""
-        return Batch(batch.inputs.to(device), batch.target.to(device))
+        more = tuple(one.to(device) for one in batch.more)
+        return Batch(batch.inputs.to(device), batch.target.to(device), more)
 
     def on_train_batch_start(self, batch: Batch, batch_idx: int) -> None:
         """Set the rate and the seed of the step."""
@@ -72,7 +73,8 @@ class Steps(lightning.LightningModule):
 
     def training_step(self, batch: Batch, batch_idx: int) -> Tensor:
         """Return the loss of a step."""
-        output = self.network(batch.inputs)
+        more = (batch.more,) if batch.more else ()
+        output = self.network(batch.inputs, *more)
         with torch.autocast(self.device.type, enabled=False):
             losses = occupancy_losses(whole(output), batch.target, batch.inputs, self.weights)
         total = torch.stack(list(losses.values())).sum()

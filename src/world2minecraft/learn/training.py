@@ -27,16 +27,18 @@ import torch
 from torch import nn
 
 from world2minecraft import __version__
-from world2minecraft.errors import ConflictError
+from world2minecraft.dataset.importers import open_occupancy
+from world2minecraft.errors import ConflictError, UsageError
 from world2minecraft.files import write_json
 from world2minecraft.learn.checkpoints import load_checkpoint, load_weights, read_facts
-from world2minecraft.learn.config import RunConfig, read_config, write_config
+from world2minecraft.learn.config import OWN_FRAMES, RunConfig, read_config, write_config
 from world2minecraft.learn.data.batches import drawn_batches
 from world2minecraft.learn.data.classes import class_weights
 from world2minecraft.learn.data.mixing import plan_draws
 from world2minecraft.learn.data.opening import CachePlace, RunData, open_run_data
 from world2minecraft.learn.data.splits import evenly
 from world2minecraft.learn.keeping import CHECKPOINT, WEIGHTS, Keeper, RunState
+from world2minecraft.learn.memory import add_memory_scores
 from world2minecraft.learn.networks import make_network
 from world2minecraft.learn.scoring import protocol_scores, said_by_network
 from world2minecraft.learn.stepping import Steps
@@ -142,6 +144,8 @@ def _fit(
     if state.step >= config.steps or state.stopped:
         return state
     network = network_of(config)
+    if config.frames > 1 and config.network not in OWN_FRAMES:
+        raise UsageError(f"{config.network} looks at one frame; frames is for embodied")
     weights = torch.from_numpy(class_weights(data.counts, config.class_weights))
     steps = Steps(network, config, weights)
     steps.first_step = state.step
@@ -201,6 +205,8 @@ def score_run(
     said = said_labels(network, data.target, rows, config, progress=progress)
     frames = said_by_network(data.target, rows, said)
     scores = protocol_scores(frames, config.cells.voxel_m)
+    found = open_occupancy(config.data[0].path)
+    add_memory_scores(scores, network, found, data.target, rows, config, progress=progress)
     scores |= {
         "data": config.data[0].path,
         "split": "test" if data.split.test else "validation",

@@ -6,6 +6,7 @@ rotation: camera and grid are mirrored both. Where the grid lies in the room is 
 network is told, and a mirrored frame is of no room.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -65,6 +66,13 @@ def augmented(
     frame: Frame, voxel_m: float, flip: float, jitter: float, rng: np.random.Generator
 ) -> Frame:
     """Return a frame mirrored with chance ``flip``, its colours changed by ``jitter``."""
+    return augmented_together([frame], voxel_m, flip, jitter, rng)[0]
+
+
+def augmented_together(
+    frames: Sequence[Frame], voxel_m: float, flip: float, jitter: float, rng: np.random.Generator
+) -> list[Frame]:
+    """Return frames of one grid, all mirrored or none, each in colours of its own."""
     turn_over = rng.random() < flip
-    changed = replace(frame, image=jittered(frame.image, jitter, rng))
-    return flipped(changed, voxel_m) if turn_over else changed
+    changed = [replace(one, image=jittered(one.image, jitter, rng)) for one in frames]
+    return [flipped(one, voxel_m) for one in changed] if turn_over else changed

@@ -9,17 +9,19 @@ from torch.utils.data import DataLoader, Dataset
 
 from world2minecraft.learn.batch import OccInput, OccTarget
 from world2minecraft.learn.config import Grid, RunConfig
-from world2minecraft.learn.data.augment import augmented
+from world2minecraft.learn.data.augment import augmented_together
 from world2minecraft.learn.data.cache import Frames
 from world2minecraft.learn.data.frames import Frame
 from world2minecraft.learn.data.mixing import Draws, draw_rng
+from world2minecraft.learn.data.sequences import Companions, count_of
 
 
 class Batch(NamedTuple):
-    """What a step takes."""
+    """What a step takes; ``more`` are further frames of the same scenes, in the same grids."""
 
     inputs: OccInput
     target: OccTarget
+    more: tuple[OccInput, ...] = ()
 
 
 class TrainingPart(NamedTuple):
@@ -30,23 +32,33 @@ class TrainingPart(NamedTuple):
 
 
 class DrawnFrames(Dataset):
-    """The frames of a run's draws from one on, each changed as its draw says."""
+    """The frames of a run's draws from one on, each changed as its draw says.
+
+    Each is a list: the frame, then those of its scene that are seen with it, if any.
+    """
 
     def __init__(
         self, parts: Sequence[TrainingPart], draws: Draws, config: RunConfig, first: int = 0
     ):
         self._parts, self._draws, self._config, self._first = parts, draws, config, first
+        fuses, voxel_m = config.fused > 1, config.cells.voxel_m
+        self._companions = [Companions(*part, voxel_m) for part in parts] if fuses else []
 
     def __len__(self) -> int:
         return len(self._draws.source) - self._first
 
-    def __getitem__(self, index: int) -> Frame:
+    def __getitem__(self, index: int) -> list[Frame]:
         draw, config = self._first + index, self._config
-        part = self._parts[self._draws.source[draw]]
-        frame = part.frames[part.rows[self._draws.row[draw]]]
-        return augmented(
-            frame, config.cells.voxel_m, config.flip, config.jitter, draw_rng(config.seed, draw)
-        )
+        source = self._draws.source[draw]
+        part = self._parts[source]
+        row = part.rows[self._draws.row[draw]]
+        frames = [part.frames[row]]
+        if self._companions:
+            count = count_of(config.seed, draw // config.batch, config.fused) - 1
+            rng = np.random.default_rng([config.seed, 2**22, draw])
+            frames += self._companions[source].beside(row, frames[0], count, rng) if count else []
+        rng = draw_rng(config.seed, draw)
+        return augmented_together(frames, config.cells.voxel_m, config.flip, config.jitter, rng)
 
 
 class RowFrames(Dataset):
@@ -58,8 +70,8 @@ class RowFrames(Dataset):
     def __len__(self) -> int:
         return len(self._rows)
 
-    def __getitem__(self, index: int) -> Frame:
-        return self._frames[self._rows[index]]
+    def __getitem__(self, index: int) -> list[Frame]:
+        return [self._frames[self._rows[index]]]
 
 
 class Stacked:
@@ -68,11 +80,21 @@ class Stacked:
     def __init__(self, grid: Grid, depth: str):
         self._grid, self._depth = grid, depth
 
-    def __call__(self, frames: list[Frame]) -> Batch:
+    def __call__(self, samples: list[list[Frame]]) -> Batch:
         """Return the frames one upon the other."""
+        frames, *beside = (list(column) for column in zip(*samples, strict=True))
+        target = OccTarget(
+            labels=_stacked(frames, "labels").long(),
+            in_frustum=_stacked(frames, "in_frustum"),
+            depth_m=_stacked(frames, "depth_m") if self._depth != "none" else None,
+        )
+        more = tuple(self._inputs(others) for others in beside)
+        return Batch(self._inputs(frames), target, more)
+
+    def _inputs(self, frames: list[Frame]) -> OccInput:
         shape, voxel_m = self._grid
         image = torch.from_numpy(np.stack([frame.image for frame in frames]))
-        inputs = OccInput(
+        return OccInput(
             image=image.permute(0, 3, 1, 2).float().div_(255).contiguous(),
             intrinsics=_stacked(frames, "intrinsics"),
             camera_to_grid=_stacked(frames, "camera_to_grid"),
@@ -80,12 +102,6 @@ class Stacked:
             voxel_m=voxel_m,
             depth_m=_stacked(frames, "depth_m") if self._depth == "given" else None,
         )
-        target = OccTarget(
-            labels=_stacked(frames, "labels").long(),
-            in_frustum=_stacked(frames, "in_frustum"),
-            depth_m=_stacked(frames, "depth_m") if self._depth != "none" else None,
-        )
-        return Batch(inputs, target)
 
 
 def drawn_batches(

@@ -12,6 +12,7 @@ network, no compiled operator. There a Gaussian that was refined once is half fr
 order of frames was shows in the result. Written from the paper alone.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
@@ -81,9 +82,16 @@ class Embodied(nn.Module):
             chosen.reading, grid_shape, norm, reaches=chosen.reaches, context=False
         )
 
-    def forward(self, inputs: OccInput) -> OccOutput:
-        """Return what each frame of a batch says by itself, and its depth."""
+    def forward(self, inputs: OccInput, more: Sequence[OccInput] = ()) -> OccOutput:
+        """Return what each frame of a batch says, by itself or with others, and its depth.
+
+        Args:
+            inputs: the frames.
+            more: further frames of their scenes, each with its camera in the same grids.
+        """
         evidence, depth_logits = self.observe(inputs)
+        for other in more:
+            evidence = evidence + self.observe(other)[0]
         turn = self._turn(evidence.values) if self.training and self.turns else 0
         if not turn:
             return OccOutput(self.read(evidence), depth_logits=depth_logits)
