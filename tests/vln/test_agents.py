@@ -225,8 +225,8 @@ def test_agents_are_known_by_name():
         raise AssertionError("no model was named")
 
     assert agent_of("stop", no_chat).name == "stop"
-    with pytest.raises(UsageError, match="no agent is named 'orcale'; did you mean 'oracle'"):
-        agent_of("orcale", no_chat)
+    with pytest.raises(UsageError, match="no agent is named 'oracl'; did you mean 'oracle'"):
+        agent_of("oracl", no_chat)
     for wrong in ({"chunk": 5}, {"history": 9}, {"map_kind": "globe"}):
         with scripted([""]) as server, pytest.raises(UsageError):
             ModelAgent(model_at(server), **wrong)

@@ -80,7 +80,7 @@ def test_the_words_say_where_to_go(flat):
 
 GOLDEN = [
     (["SCENE"], 2, 'error: say what to do, such as w2m vln run OUT "Go to the table"'),
-    (["SCENE", "Go to the piano", "--agent", "orcale"], 2, "did you mean 'oracle'?"),
+    (["SCENE", "Go to the piano", "--agent", "oracl"], 2, "did you mean 'oracle'?"),
     (["SCENE", "Go to the piano", "--start", "1,2"], 2, "--start is X,Y,Z or X,Y,Z,YAW, not '1,2'"),
     (["SCENE", "Go to the piano", "--map", "globe"], 2, "--map is none or text, not 'globe'"),
     (["SCENE", "Go to the piano", "--moves", "leap"], 2, "set of moves"),
