@@ -323,6 +323,8 @@ def broken(root, name, change):
         (lambda row: row["images"].pop(), "row 0: 1 marks <image>, 0 pictures"),
         (lambda row: row["images"].__setitem__(0, "images/x.jpg"), "images/x.jpg is not there"),
         (lambda row: row["images"].__setitem__(0, "../x.jpg"), "must be a path under the set's"),
+        (lambda row: row.pop("images"), r"not as the trainer reads it \(KeyError: 'images'\)"),
+        (lambda row: row.update(messages=[3]), "not as the trainer reads it"),
     ],
 )
 def test_rows_that_llamafactory_would_drop_are_named(folder, tmp_path, change, reason):

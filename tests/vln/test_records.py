@@ -100,6 +100,8 @@ def changed(**fields):
         (changed(current="/etc/passwd"), "must be a path under the set's folder"),
         (changed(current="images/other.jpg"), "sha256 of images/other.jpg: must be 64"),
         (changed(task="next_action"), "option A: of a next_action item has text alone"),
+        (changed(scene_id="../x"), "scene '../x': its id must be a name that a file could have"),
+        (changed(scene_id=".."), "scene '..': its id must be a name that a file could have"),
         (changed(item_id=" "), "line 2: ' ' is no name: it has 1 to 240 printable marks"),
         (changed(instruction={"text": " "}), "line 2: an instruction has words; this one is empty"),
         (changed(instruction={"text": "x" * 5000}), "the instruction has 5,000 characters"),

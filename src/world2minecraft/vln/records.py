@@ -119,7 +119,8 @@ def check_item(item: Item) -> None:
         UsageError: a name is no name, an image leaves the folder or has no sum, or the options
             are not what the task shows.
     """
-    _check_names(item.item_id, item.scene_id, item.trajectory_id)
+    _check_names(item.item_id, item.trajectory_id)
+    check_scene_id(item.scene_id)
     _check_text("the instruction", item.instruction.text)
     if item.step < 0:
         raise UsageError(f"step: is {item.step}, not 0 or more")
@@ -142,7 +143,8 @@ def check_item(item: Item) -> None:
 
 def check_trajectory(trajectory: Trajectory) -> None:
     """Refuse a trajectory that no reader could use. Raises UsageError."""
-    _check_names(trajectory.trajectory_id, trajectory.scene_id)
+    _check_names(trajectory.trajectory_id)
+    check_scene_id(trajectory.scene_id)
     if not trajectory.keyframes:
         raise UsageError(f"trajectory {trajectory.trajectory_id} has no keyframe")
     for keyframe in trajectory.keyframes:
@@ -158,7 +160,8 @@ def check_trajectory(trajectory: Trajectory) -> None:
 
 def check_episode(episode: Episode) -> None:
     """Refuse an episode that no reader could use. Raises UsageError."""
-    _check_names(episode.episode_id, episode.scene_id)
+    _check_names(episode.episode_id)
+    check_scene_id(episode.scene_id)
     _check_text("the instruction", episode.instruction.text)
     if not 1 <= episode.max_steps <= 100_000:
         raise UsageError(f"max_steps: is {episode.max_steps}, not 1 to 100000")
@@ -179,6 +182,17 @@ def check_image_name(name: str) -> None:
         raise UsageError(
             f"image {name[:80]!r}: must be a path under the set's folder, like images/room/t0/0.jpg"
         )
+
+
+def check_scene_id(name: str) -> None:
+    """Refuse the id of a scene that is no name of a file: exports call files by it.
+
+    Raises:
+        UsageError: it is empty, long, or has marks that no name of a file may have.
+    """
+    _check_names(name)
+    if any(mark in '/\\:*?"<>|' for mark in name) or not name.strip(". "):
+        raise UsageError(f"scene {name[:80]!r}: its id must be a name that a file could have")
 
 
 @cache

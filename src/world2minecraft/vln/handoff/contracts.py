@@ -5,7 +5,8 @@ export is checked so when it is written; files that were edited since can be che
 """
 
 import json
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +19,24 @@ from world2minecraft.vln.records import check_image_name
 
 MAX_BYTES = 1 << 30
 _TURNS = ("user", "assistant")
+Check = Callable[..., None]
 
 
+def _told(check: Check) -> Check:
+    """Have a check name the folder, too, where a row lacks a column or holds another kind."""
+
+    @wraps(check)
+    def checked(root: Path, *rest: Any) -> None:
+        try:
+            check(root, *rest)
+        except (KeyError, TypeError, AttributeError, ValueError) as error:
+            reason = f"a row is not as the trainer reads it ({type(error).__name__}: {error})"
+            raise DamagedFileError(root, reason) from error
+
+    return checked
+
+
+@_told
 def check_llamafactory(root: Path) -> None:
     """Check a folder by LLaMA-Factory's converter: turns that alternate, a picture for each mark.
 
@@ -40,6 +57,7 @@ def check_llamafactory(root: Path) -> None:
             _check_pictures(rows_path, number, text.count(IMAGE), row["images"], root)
 
 
+@_told
 def check_easyr1(root: Path, image_dir: str | None) -> None:
     """Check a folder by EasyR1's loader: columns, a picture for each mark, a prompt to set it in.
 
@@ -68,6 +86,7 @@ def check_easyr1(root: Path, image_dir: str | None) -> None:
             _check_pictures(path, number, marks, names, root / image_dir if image_dir else None)
 
 
+@_told
 def check_trl(root: Path) -> None:
     """Check a folder by what TRL asks: typed parts, a picture for each image part.
 
