@@ -47,26 +47,26 @@ def test_the_frame_is_as_good_as_its_worst_side():
 
 def test_targets_are_met_or_missed_by_difficulty():
     rows = [row(iou=0.8), row(iou=0.78), row("clean", iou=0.96), row("all")]
-    text = "\n".join(verdicts("votes", rows))
+    text = "\n".join(verdicts("labels", rows))
     assert "IoU >= 0.8: noise 0.790 (worst 0.780) [red]missed[/]" in text
     assert "IoU >= 0.95: clean 0.960 (worst 0.960) [green]met[/]" in text
     assert "all 0.900 (worst 0.900) [green]met[/]" in text
     assert "outside <= 0: noise 1.00 (worst 1.00) [red]missed[/]" in text
     assert "mIoU" not in text, "that target is the other labeller's"
-    assert "mIoU >= 0.25" in "\n".join(verdicts("geometric", [row()]))
+    assert "mIoU >= 0.25" in "\n".join(verdicts("none", [row()]))
 
 
 def test_a_row_for_each_difficulty_and_each_trial_on_request():
     rows = [row(), row(), row("all")]
-    text = printed(rows_table("votes", rows))
+    text = printed(rows_table("labels", rows))
     assert "noise (2)" in text and "all (1)" in text and "noise-500" not in text
-    assert printed(rows_table("votes", rows, verbose=True)).count("noise-500") == 2
+    assert printed(rows_table("labels", rows, verbose=True)).count("noise-500") == 2
 
 
 def test_stages_stand_under_the_run_itself():
     better = row(iou=0.97)
     text = printed(
-        stages_table("votes", [row() | {"stages": {"labels": better, "fusion": better}}])
+        stages_table("labels", [row() | {"stages": {"labels": better, "fusion": better}}])
     )
     lines = [line.split() for line in text.splitlines()[2:]]
     assert [line[:2] for line in lines] == [

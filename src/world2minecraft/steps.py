@@ -42,6 +42,7 @@ from world2minecraft.label import (
     with_whole_walls,
     without_wall_guesses,
 )
+from world2minecraft.label.completion_net import LEARNT_VOXEL_M, VOXEL_TOLERANCE
 from world2minecraft.minecraft.formats import WriteOptions
 from world2minecraft.parameters import Parameters
 from world2minecraft.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
@@ -64,10 +65,16 @@ def label_stage(folder: Path, chosen: Parameters) -> None:
 
 def labelled(grid: OccupancyGrid, evidence: FusedEvidence, chosen: Parameters) -> OccupancyGrid:
     """Return the cleaned read-out with a class and a calibrated confidence for each cell."""
-    voted = bool(evidence.votes.any())
-    name = ("votes" if voted else "geometric") if chosen.labeller == "auto" else chosen.labeller
+    name = usual_labeller(evidence) if chosen.labeller == "auto" else chosen.labeller
     grid = close_structure(labeller(name).label(grid, evidence), chosen.clean)
     return calibrate(grid, evidence, confidence_table(name))
+
+
+def usual_labeller(evidence: FusedEvidence) -> str:
+    """Return the labeller that ``auto`` takes: the network for cells of the size it learnt."""
+    if abs(evidence.voxel_m / LEARNT_VOXEL_M - 1) <= VOXEL_TOLERANCE:
+        return "completion"
+    return "votes" if evidence.votes.any() else "geometric"
 
 
 def find_stage(folder: Path, chosen: Parameters) -> None:

@@ -16,6 +16,7 @@ from world2minecraft.label.completion import (
 )
 from world2minecraft.label.completion_net import WEIGHTS, CompletionModel, likeliest
 from world2minecraft.label.geometric import GeometricLabeller
+from world2minecraft.steps import usual_labeller
 from world2minecraft.types import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
 
 
@@ -138,9 +139,9 @@ def test_the_shipped_weights_name_a_small_room(scanned):
     assert np.array_equal(result.confidence, again.confidence)
 
 
-def test_surface_is_kept_and_unseen_cells_are_solid_where_that_is_likelier():
+def test_surface_is_kept_and_other_cells_are_solid_where_that_is_likelier():
     chance = np.full((12, 4, 1, 1), 0.05, np.float32)
-    chance[0] = np.array([0.9, 0.45, 0.45, 0.9])[:, None, None]
+    chance[0] = np.array([0.9, 0.45, 0.55, 0.9])[:, None, None]
     chance[3], chance[8] = 0.08, 0.06
     odds = np.array([60, 0, -60, 0], np.int8)[:, None, None]
     assert likeliest(chance, odds)[:, 0, 0].tolist() == [3, 3, 0, 0]
@@ -148,3 +149,24 @@ def test_surface_is_kept_and_unseen_cells_are_solid_where_that_is_likelier():
 
 def test_it_is_found_by_name():
     assert isinstance(labeller("completion"), CompletionLabeller)
+
+
+def test_votes_decide_where_they_agree_and_the_network_where_they_do_not(scanned):
+    grid, evidence, _ = scanned
+    chairs, split = np.zeros_like(evidence.votes), np.zeros_like(evidence.votes)
+    chairs[grid.occupied, 5] = 9
+    split[grid.occupied] = np.eye(12)[6] + np.eye(12)[8]  # Bed or table: half and half.
+    for votes, said, kind in ((chairs, 8, 5), (split, 8, 8), (split, 6, 6)):
+        told = (grid, replace(evidence, votes=votes), None)
+        result = labelled(told, always(said), small_cells=1)
+        base = GeometricLabeller().label(grid, evidence)
+        things = result.occupied & (base.source == OBSERVED) & (base.labels > 4)
+        assert (result.labels[things] == kind).all()
+
+
+def test_auto_takes_the_network_for_cells_of_the_size_that_it_learnt(scanned):
+    evidence = scanned[1]
+    assert usual_labeller(evidence) == "completion"
+    large = replace(evidence, voxel_m=0.16)
+    assert usual_labeller(large) == "geometric"
+    assert usual_labeller(replace(large, votes=np.ones_like(large.votes))) == "votes"

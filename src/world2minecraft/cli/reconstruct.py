@@ -102,7 +102,9 @@ def run(
     formats: Formats = None,
     start: Start = None,
     labels: LabelImages = None,
-    labeller: Annotated[str, typer.Option("--labeller", help="auto, votes or geometric.")] = "auto",
+    labeller: Annotated[
+        str, typer.Option("--labeller", help="auto, completion, votes or geometric.")
+    ] = "auto",
     method: Method = "best",
     known: Known = None,
     known_points: KnownPoints = None,

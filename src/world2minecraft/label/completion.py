@@ -22,9 +22,11 @@ from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.smoothing import smooth_labels
 from world2minecraft.label.storeys import find_storeys
 from world2minecraft.label.surface import surface_of
+from world2minecraft.label.votes import geometric_prior
 from world2minecraft.types import COMPLETED, UNSEEN, FusedEvidence, OccupancyGrid
 
 LEAST_CHANCE = 1e-4
+FIRST_THING = int(SemanticClass.CHAIR)
 
 
 @dataclass(frozen=True)
@@ -34,19 +36,27 @@ class CompletionParameters:
     small_cells: parts of a class with fewer cells take the class around them.
     agreed_share: a piece that the geometric labeller cut takes one class where this share of its
         cells, by their chances, agrees.
-    hint_share: what the geometric label adds to the chance of its class: it is seldom wrong where
-        the scan is clean.
+    hint_share: what the geometric label adds to the chance of its class. Object F1 of ten tuning
+        scans was 0.899, 0.891, 0.886 and 0.882 at 0.6, 0.7, 0.8 and 0.9 (0.847 by geometry alone);
+        but in the real kitchen, unlike any room that the network learnt from, geometry is right
+        more often, and from 0.9 on its table, chairs and screen are what they are.
+    beside_votes: what the network's chances count beside the shares of 2D votes, where a cell has
+        some; then the geometric label counts as it does for the votes labeller.
     sure: the chance of being solid from which an unseen cell is completed.
     reach_cells: how far off the observed surface that may be: 3 cells are 24 cm.
+    clear_cells: no cell is completed so near an observed thing: it would be hidden, and where a
+        block holds both, the thing would be lost to the wall behind it.
     filled: the classes that are filled: ceiling, floor and wall. Filled furniture is right more
         often than not, but of three tuning scans object F1 fell from 0.85 to 0.82 by it.
     """
 
     small_cells: int = 4
     agreed_share: float = 0.6
-    hint_share: float = 0.6
+    hint_share: float = 0.9
+    beside_votes: float = 0.2
     sure: float = 0.8
     reach_cells: int = 3
+    clear_cells: int = 1
     filled: tuple[int, ...] = (1, 2, 3)
 
 
@@ -76,7 +86,7 @@ class CompletionLabeller:
         base, origin = self.geometric.traced(grid, evidence)
         hint = hint_of(base, origin)
         chance = self._chances(grid, evidence, hint)
-        named = self._named(base, origin, hint, chance)
+        named = self._named(base, origin, hint, chance, evidence.votes)
         return self._completed(named, chance)
 
     def _chances(
@@ -95,7 +105,12 @@ class CompletionLabeller:
         return chance
 
     def _named(
-        self, base: OccupancyGrid, origin: np.ndarray, hint: np.ndarray, chance: np.ndarray
+        self,
+        base: OccupancyGrid,
+        origin: np.ndarray,
+        hint: np.ndarray,
+        chance: np.ndarray,
+        votes: np.ndarray,
     ) -> OccupancyGrid:
         """Return the straightened grid with the network's classes, voted per piece."""
         voted = piece_votes(hint, chance, self.parameters.agreed_share)
@@ -103,6 +118,11 @@ class CompletionLabeller:
         share = voted.reshape(CLASS_COUNT, -1)[1:, origin[cells]]
         share = share / np.maximum(share.sum(axis=0), LEAST_CHANCE)
         said = share + self._from_hint(hint.reshape(-1)[origin[cells]])
+        counts = votes.reshape(-1, CLASS_COUNT)[origin[cells], 1:].astype(np.float32).T
+        has = counts.any(axis=0)
+        shares = counts[:, has] / counts[:, has].sum(axis=0)
+        prior = geometric_prior(base.labels[cells][has]).T
+        said[:, has] = shares + prior + self.parameters.beside_votes * share[:, has]
         labels, confidence = base.labels.copy(), np.array(base.confidence, np.float32)
         kinds = said.argmax(axis=0)
         labels[cells] = kinds + 1
@@ -124,6 +144,7 @@ class CompletionLabeller:
         confidence, colour = grid.confidence.copy(), grid.colour.copy()
         best = chance[1:].argmax(axis=0).astype(np.uint8) + 1
         wanted = (grid.source == UNSEEN) & (1 - chance[0] >= self.parameters.sure)
+        wanted &= ~_near(grid.occupied & (grid.labels >= FIRST_THING), self.parameters.clear_cells)
         for kind in self.parameters.filled:
             seen, like = grid.labels == kind, wanted & (best == kind)
             if not (seen.any() and like.any()):
@@ -198,6 +219,12 @@ def columns_of_evidence(evidence: FusedEvidence, layers: slice) -> FusedEvidence
 
 def _raised(value: OccupancyGrid | FusedEvidence, layers: slice) -> np.ndarray:
     return value.origin_m + np.array([0.0, 0.0, layers.start * value.voxel_m])
+
+
+def _near(cells: np.ndarray, steps: int) -> np.ndarray:
+    """Return the cells at most so many steps from some, corners and edges counting as one."""
+    box = np.ones([2 * steps + 1] * 3, bool)
+    return np.asarray(ndimage.binary_dilation(cells, box), bool)
 
 
 def _reached(way: np.ndarray, kind: int, seen: np.ndarray, steps: int) -> np.ndarray:

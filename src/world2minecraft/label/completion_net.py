@@ -13,6 +13,7 @@ from world2minecraft.files import read_bytes
 from world2minecraft.label.channels import CHANNELS, Sight, network_input
 
 WEIGHTS = Path(__file__).parents[1] / "weights" / "completion.onnx"
+LEARNT_VOXEL_M, VOXEL_TOLERANCE = 0.08, 0.25  # Other cells look like other things.
 MULTIPLE = 8  # Of the sides that the network takes.
 TILE, MARGIN = 96, 16  # Cells: a room is one tile; what lies at a tile's edge sees less around it.
 MAX_BYTES = 64 << 20
@@ -77,17 +78,16 @@ class CompletionModel:
 def likeliest(chance: np.ndarray, log_odds: np.ndarray) -> np.ndarray:
     """Return uint8 [X, Y, Z]: what each cell most likely is, observed surface kept.
 
-    Surface takes the likeliest of the eleven classes. An unseen cell is solid where its classes
+    Surface takes the likeliest of the eleven classes. Any other cell is solid where its classes
     together are likelier than empty; so are more rooms whole than by the single best class.
 
     Args:
         chance: float32 [12, X, Y, Z].
-        log_odds: [X, Y, Z]; above 0 where surface was observed, 0 where nothing was.
+        log_odds: [X, Y, Z]; above 0 where surface was observed.
     """
     best = chance[1:].argmax(axis=0).astype(np.uint8) + 1
-    labels = chance.argmax(axis=0).astype(np.uint8)
-    solid = (log_odds > 0) | ((log_odds == 0) & (chance[0] < HALF))
-    return np.where(solid, best, labels)
+    solid = (log_odds > 0) | (chance[0] < HALF)
+    return np.where(solid, best, np.uint8(0))
 
 
 def spans(length: int) -> list[tuple[int, int, int, int]]:

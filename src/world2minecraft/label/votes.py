@@ -43,7 +43,7 @@ class VotesLabeller:
         at = tuple(occupied[voted].T)
         labels, confidence = np.array(base.labels), np.array(base.confidence, np.float32)
         shares = votes[voted] / total[voted][:, None]
-        kinds = (shares + _prior(base.labels[at])).argmax(axis=1)
+        kinds = (shares + geometric_prior(base.labels[at])).argmax(axis=1)
         labels[at] = kinds + 1
         share = shares[np.arange(len(kinds)), kinds]
         confidence[at] = share * grid.confidence.reshape(-1)[seen_at[voted]].astype(np.float32)
@@ -51,7 +51,7 @@ class VotesLabeller:
         return replace(base, labels=labels, confidence=confidence.astype(np.float16))
 
 
-def _prior(labels: np.ndarray) -> np.ndarray:
+def geometric_prior(labels: np.ndarray) -> np.ndarray:
     """Return what geometric labels [N] of classes 1 to 11 add to each class, float32 [N, 11]."""
     weight = np.where(labels <= SemanticClass.WINDOW, STRUCTURE_PRIOR, OBJECT_PRIOR)
     prior = np.zeros((len(labels), CLASS_COUNT - 1), np.float32)
