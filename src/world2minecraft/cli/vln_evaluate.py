@@ -81,15 +81,14 @@ def run(
     goes on where it was stopped.
 
     Raises:
-        UsageError: a name or an option is wrong. InputError: the set cannot be read.
-        ServerError: the model cannot be asked. BudgetError: a cap is reached.
+        UsageError, InputError: a name, an option or the set is wrong.
+        ServerError, BudgetError: the model cannot be asked.
     """
-    from world2minecraft.cli.progress import shown
     from world2minecraft.errors import UnknownNameError
     from world2minecraft.models.chat_endpoints import is_endpoint
     from world2minecraft.vln.agents.answering import ModelAnswerer
     from world2minecraft.vln.records import read_items
-    from world2minecraft.vln.running.evaluating import TRAININGS, evaluate, write_result
+    from world2minecraft.vln.running.evaluating import TRAININGS
     from world2minecraft.vln.running.picking import picked_items
 
     if training not in TRAININGS:
@@ -109,11 +108,20 @@ def run(
     else:
         answerer, items = _baseline(agent, every, items, place)
         training = "baseline"
+    facts = {"agent": answerer.name, "training": training, "style": style, "split": split}
+    _evaluate(target, items, answerer, jobs, facts)
+    _say(target, items, chat)
+
+
+def _evaluate(
+    target: Path, items: "list[Item]", answerer: Any, jobs: int, facts: dict[str, str]
+) -> None:
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.vln.running.evaluating import evaluate, write_result
+
     with shown() as progress:
         found = evaluate(items, answerer, jobs=jobs, progress=progress)
-    facts = {"agent": answerer.name, "training": training, "style": style, "split": split}
     write_result(target, found, facts)
-    _say(target, items, chat)
 
 
 def _baseline(
