@@ -24,7 +24,7 @@ Composition = Annotated[
     typer.Option("--composition", help="base (reconstructions), extend (all else), combined."),
 ]
 Trajectories = Annotated[
-    int | None, typer.Option("--trajectories", help="Of each scene; 24 of base, 100 of extend.")
+    int | None, typer.Option("--trajectories", help="Of each scene; 30 of base, 110 of extend.")
 ]
 Views = Annotated[int, typer.Option("--views", help="Next-View items of a trajectory.", min=0)]
 PaperSize = Annotated[

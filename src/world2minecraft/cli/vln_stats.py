@@ -59,7 +59,7 @@ def run(
     statistics, leaks = statistics_of(items), leaks_of(items)
     print(statistics_text(statistics, leaks))
     rows = score(items, path if path.is_dir() else path.parent) if baselines else []
-    _say_baselines(rows)
+    _say_baselines(rows, any(item.split != "train" for item in items))
     if json_file is not None:
         write_json(json_file, figures(statistics, leaks, rows))
         print(f"  wrote  {json_file}")
@@ -71,9 +71,10 @@ def run(
     print(f"  next   w2m vln evaluate {path} --agent oracle")
 
 
-def _say_baselines(rows: "list[BaselineRow]") -> None:
+def _say_baselines(rows: "list[BaselineRow]", is_held: bool) -> None:
     if rows:
-        print("\nWithout understanding, on what is held out (95 % interval):")
+        where = "what is held out" if is_held else "train, as nothing is held out"
+        print(f"\nWithout understanding, on {where} (95 % interval):")
     for row in rows:
         low, high = row.accuracy.low, row.accuracy.high
         flag = "  FLAG: needs no picture" if row.is_flagged else ""

@@ -33,7 +33,7 @@ from world2minecraft.vln.records import (
 from world2minecraft.vln.scene import VlnScene, open_scene
 from world2minecraft.vln.values import Item
 
-PER_SCENE = {"base": 24, "extend": 100}  # Trajectories: what the paper's size asks for.
+PER_SCENE = {"base": 30, "extend": 110}  # Trajectories: what the paper's size asks for.
 RECONSTRUCTED = ("room.npz", "placements.json")  # A run folder has them.
 
 

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from world2minecraft.vln.data.keyframes import Mark, is_about_turn, marks_of
 from world2minecraft.vln.data.pictures import vln_camera
 from world2minecraft.vln.data.stream import StreamFrame
 from world2minecraft.vln.data.touring import standing
-from world2minecraft.vln.data.validity import fault_of_way, path_m
+from world2minecraft.vln.data.validity import NOWHERE, fault_of_way, path_m
 from world2minecraft.vln.language.grammar import instructions_of
 from world2minecraft.vln.language.way import Seen, Way, way_of
 from world2minecraft.vln.scene import VlnScene
@@ -38,14 +38,6 @@ class Candidate:
     clear: tuple[int, ...]  # keyframes whose next action an instruction tells
 
 
-@dataclass
-class Refusals:
-    """How often segments were refused, by the reason."""
-
-    counts: Counter[str] = field(default_factory=Counter)
-    segments: int = 0
-
-
 class Maker:
     """Makes candidates of the streams of one scene."""
 
@@ -61,7 +53,7 @@ class Maker:
         self._walker, self._guide = walker, guide
         self._landmarks = standing(scene)
         self._camera = vln_camera(*LOOK_PX)
-        self.refusals = Refusals()
+        self.refusals = Counter[str]()
 
     def candidates(
         self, frames: Sequence[StreamFrame], target_at: Callable[[float], str] | None = None
@@ -77,11 +69,10 @@ class Maker:
         for number, segment in enumerate(segments):
             target = target_at(segment[-1].t_s) if target_at is not None else ""
             one = self._candidate(segment, number, target)
-            if isinstance(one, str):
-                self.refusals.counts[one] += 1
-            else:
+            if not isinstance(one, str):
                 made.append(one)
-        self.refusals.segments += len(segments)
+            elif one != NOWHERE:  # Turning on the spot is no walk.
+                self.refusals[one] += 1
         return made
 
     def _candidate(

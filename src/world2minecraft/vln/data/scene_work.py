@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.types import Camera
 from world2minecraft.vln.data.album import Album, Pictured
-from world2minecraft.vln.data.candidates import Candidate, Maker, Refusals
+from world2minecraft.vln.data.candidates import Candidate, Maker
 from world2minecraft.vln.data.discretise import VERSION, Guide, Walker
 from world2minecraft.vln.data.next_action import action_steps
 from world2minecraft.vln.data.next_view import (
@@ -122,12 +122,8 @@ def work_scene(
             crew.take_in(candidate, rng)
         if len(work.trajectories) == rule.trajectories:
             break
-    _count(work, maker.refusals)
+    work.refused += maker.refusals
     return work
-
-
-def _count(work: SceneWork, refusals: Refusals) -> None:
-    work.refused += refusals.counts
 
 
 class _Crew:

@@ -10,6 +10,8 @@ from world2minecraft.vln.data.keyframes import Mark
 from world2minecraft.vln.data.pictures import hash_distance
 from world2minecraft.vln.values import Move
 
+NOWHERE = "goes nowhere"
+
 
 @dataclass(frozen=True)
 class ValidRule:
@@ -37,7 +39,7 @@ def fault_of_way(
     """
     how = rule or ValidRule()
     if not any(mark.move == Move.FORWARD for mark in marks):
-        return "goes nowhere"
+        return NOWHERE
     if not how.least_m <= path_m <= how.most_m:
         return "too short" if path_m < how.least_m else "too long"
     if apart_m < how.least_apart_m:
