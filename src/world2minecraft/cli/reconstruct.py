@@ -84,6 +84,9 @@ FieldOfView = Annotated[
     float | None,
     typer.Option("--fov", metavar="DEGREES", help="Of one photo: lower to upper edge; else EXIF."),
 ]
+LabellerName = Annotated[
+    str, typer.Option("--labeller", help="auto, completion, votes or geometric.")
+]
 PredictorName = Annotated[
     str, typer.Option("--predictor", help="depth, or mono:FILE.onnx, the paper's network.")
 ]
@@ -102,9 +105,7 @@ def run(
     formats: Formats = None,
     start: Start = None,
     labels: LabelImages = None,
-    labeller: Annotated[
-        str, typer.Option("--labeller", help="auto, completion, votes or geometric.")
-    ] = "auto",
+    labeller: LabellerName = "auto",
     method: Method = "best",
     known: Known = None,
     known_points: KnownPoints = None,
