@@ -26,9 +26,9 @@ class Parameters:
     """What decides a result, beside the capture.
 
     voxel_m: the paper's cell. blocks_per_metre: at 4 a room is recognised at once, at 2 it is
-    not. predictor: ``depth``, or ``mono:FILE.onnx``. labeller: ``auto`` takes ``completion``
-    for cells of the size that its network learnt; for others ``votes`` where anything voted, else
-    ``geometric``. mend: clean up what is built as a person would; ``w2m clean
+    not. predictor: ``depth``, or ``mono:FILE.onnx``. labeller: ``auto`` takes ``completion`` where
+    depth was measured and cells are of the size that its network learnt; else ``votes`` where
+    anything voted, or ``geometric``. mend: clean up what is built as a person would; ``w2m clean
     OUT --list`` tells what that was. formats: further forms of the build, such as
     ``litematic,nbt,glb``.
     depth_model: a network whose depth fills what stereo leaves open, such as ``hf:ORG/NAME``.

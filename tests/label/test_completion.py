@@ -164,9 +164,11 @@ def test_votes_decide_where_they_agree_and_the_network_where_they_do_not(scanned
         assert (result.labels[things] == kind).all()
 
 
-def test_auto_takes_the_network_for_cells_of_the_size_that_it_learnt(scanned):
+def test_auto_takes_the_network_for_measured_depth_in_cells_of_the_size_that_it_learnt(scanned):
     evidence = scanned[1]
-    assert usual_labeller(evidence) == "completion"
+    assert usual_labeller(evidence, from_photos=False) == "completion"
+    assert usual_labeller(evidence, from_photos=True) == "geometric"
     large = replace(evidence, voxel_m=0.16)
-    assert usual_labeller(large) == "geometric"
-    assert usual_labeller(replace(large, votes=np.ones_like(large.votes))) == "votes"
+    assert usual_labeller(large, from_photos=False) == "geometric"
+    voted = replace(large, votes=np.ones_like(large.votes))
+    assert usual_labeller(voted, from_photos=False) == "votes"
