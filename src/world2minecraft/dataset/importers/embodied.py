@@ -104,7 +104,7 @@ class SceneSet:
         seen = np.zeros(package.labels.shape, bool)
         for file in self.frames[scene]:
             mask = np.asarray(read_pickle(file, MAX_SCENE_BYTES).get("mask_in_global"))
-            if mask.shape != seen.shape or mask.dtype.kind not in "bu":
+            if mask.shape != seen.shape or mask.dtype.kind not in ("b", "u"):
                 raise DamagedFileError(
                     file, f"has a mask_in_global of {mask.shape}, its scene {seen.shape} cells"
                 )
