@@ -35,9 +35,9 @@ def test_a_thing_lies_where_its_blocks_are(flat):
 
 def test_a_name_that_means_nothing_or_two_things_is_told(flat):
     with pytest.raises(
-        UnknownNameError, match="no landmark is named 'tabl'; did you mean 'table'"
+        UnknownNameError, match="no landmark is named 'tables'; did you mean 'table'"
     ):
-        flat.landmark("tabl")
+        flat.landmark("tables")
     two = "2 things are called 'chair'; say one of 'chair beside the table', 'chair beside the"
     with pytest.raises(UsageError, match=two):
         flat.landmark("chair")

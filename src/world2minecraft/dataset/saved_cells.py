@@ -80,7 +80,8 @@ def cells_in_grid(room: SaidCells, scan_to_room: np.ndarray, place: GridPlace) -
     centers_m = (np.moveaxis(np.indices(SHAPE), 0, -1) + 0.5) * VOXEL_M + place.origin_m
     at = (apply(scan_to_room, centers_m) - room.origin_m) / room.voxel_m
     cells = np.floor(at).astype(np.int64)
-    inside = ((cells >= 0) & (cells < room.labels.shape)).all(axis=-1)
+    within = (cells >= 0) & (cells < np.array(room.labels.shape))
+    inside = np.asarray(within.all(axis=-1), bool)
     if not inside.any():
         raise InputError("grid", "lies beside all that the capture shows; is it of another world?")
     held = tuple(np.moveaxis(np.where(inside[..., None], cells, 0), -1, 0))
