@@ -4,6 +4,7 @@ import io
 import os
 import struct
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -214,3 +215,12 @@ def test_an_encrypted_member_is_refused(tmp_path):
     path.write_bytes(data)
     with pytest.raises(DamagedFileError):
         files.read_npz(path, ("x",))
+
+
+def test_json_rows_come_with_their_lines_and_a_wrong_one_is_named():
+    source = Path("rows.jsonl")
+    assert files.json_rows('{"a": 1}\n\n{"b": 2}\n', source) == [(1, {"a": 1}), (3, {"b": 2})]
+    for text, told in (("{}\n{", "line 2 is no JSON"), ("[1]", "line 1 is no JSON object")):
+        with pytest.raises(DamagedFileError) as caught:
+            files.json_rows(text, source)
+        assert str(caught.value) == f"rows.jsonl: {told}"

@@ -203,3 +203,23 @@ def _check_header(stream: Any, held: int, source: Path, name: str) -> None:
     needed = int(np.prod(shape, dtype=np.float64)) * dtype.itemsize
     if dtype.hasobject or needed > held:
         raise DamagedFileError(source, f"array {name} says {shape} {dtype}, holds less")
+
+
+def json_rows(text: str, source: Path) -> list[tuple[int, dict[str, Any]]]:
+    """Return the objects of a text with one JSON object a line, each with the number of its line.
+
+    Raises:
+        DamagedFileError: a line is none; ``source`` is named.
+    """
+    rows = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip():
+            continue
+        try:
+            row = json.loads(line)
+        except (ValueError, RecursionError) as error:
+            raise DamagedFileError(source, f"line {number} is no JSON") from error
+        if not isinstance(row, dict):
+            raise DamagedFileError(source, f"line {number} is no JSON object")
+        rows.append((number, row))
+    return rows

@@ -17,7 +17,7 @@ from typing import Any, Literal
 import numpy as np
 
 from world2minecraft.errors import DamagedFileError, UsageError
-from world2minecraft.files import read_bytes, write_text
+from world2minecraft.files import json_rows, read_bytes, write_text
 from world2minecraft.render.views.cameras import camera_of, vertical_fov_deg_of
 from world2minecraft.render.views.poses import GamePose, Shot, game_pose_of
 from world2minecraft.types import Camera
@@ -56,7 +56,7 @@ def read_tour(path: str | Path, at: Literal["feet", "eye"] = "eye") -> list[Tour
         text = read_bytes(source, MAX_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise DamagedFileError(source, "is no text in UTF-8") from error
-    rows = _csv_rows(text) if source.suffix.lower() == ".csv" else _json_rows(text, source)
+    rows = _csv_rows(text) if source.suffix.lower() == ".csv" else json_rows(text, source)
     poses = [_pose({"at": at, **row}, number, source) for number, row in rows]
     if not poses:
         raise DamagedFileError(source, "holds no pose; each line needs x, y, z, yaw, pitch")
@@ -90,21 +90,6 @@ def _short(value: float) -> float:
 def write_lines(path: str | Path, lines: Sequence[Mapping[str, Any]]) -> None:
     """Write lines of JSON, whole or not at all. Raises OutputError."""
     write_text(path, "".join(json.dumps(line, allow_nan=False) + "\n" for line in lines))
-
-
-def _json_rows(text: str, source: Path) -> list[tuple[int, Mapping[str, Any]]]:
-    rows = []
-    for number, line in enumerate(text.splitlines(), 1):
-        if not line.strip():
-            continue
-        try:
-            row = json.loads(line)
-        except (ValueError, RecursionError) as error:
-            raise DamagedFileError(source, f"line {number} is no JSON") from error
-        if not isinstance(row, dict):
-            raise DamagedFileError(source, f"line {number} is no JSON object")
-        rows.append((number, row))
-    return rows
 
 
 def _csv_rows(text: str) -> list[tuple[int, Mapping[str, Any]]]:

@@ -6,14 +6,13 @@ many; none takes another's place.
 
 import csv
 import io
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from world2minecraft.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.files import read_bytes
+from world2minecraft.files import json_rows, read_bytes
 from world2minecraft.vln.values import Instruction, Trajectory
 
 MAX_BYTES = 64 << 20
@@ -36,7 +35,7 @@ def read_annotations(path: str | Path) -> list[tuple[str, Instruction]]:
         text = read_bytes(source, MAX_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise DamagedFileError(source, "is no text in UTF-8") from error
-    rows = _csv_rows(text) if source.suffix.lower() == ".csv" else _json_rows(text, source)
+    rows = _csv_rows(text) if source.suffix.lower() == ".csv" else json_rows(text, source)
     if len(rows) > MAX_ROWS:
         raise LimitError(source, f"has {len(rows):,} lines; at most {MAX_ROWS:,} are read")
     return [_annotation(row, number, source) for number, row in rows]
@@ -82,18 +81,3 @@ def _annotation(row: Mapping[str, Any], number: int, source: Path) -> tuple[str,
 def _csv_rows(text: str) -> list[tuple[int, Mapping[str, Any]]]:
     reader = csv.DictReader(io.StringIO(text), skipinitialspace=True)
     return [(number, row) for number, row in enumerate(reader, 2)]
-
-
-def _json_rows(text: str, source: Path) -> list[tuple[int, Mapping[str, Any]]]:
-    rows = []
-    for number, line in enumerate(text.splitlines(), 1):
-        if not line.strip():
-            continue
-        try:
-            row = json.loads(line)
-        except (ValueError, RecursionError) as error:
-            raise DamagedFileError(source, f"line {number} is no JSON") from error
-        if not isinstance(row, dict):
-            raise DamagedFileError(source, f"line {number} is no JSON object")
-        rows.append((number, row))
-    return rows
