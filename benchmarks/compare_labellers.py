@@ -1,6 +1,7 @@
 """Labellers side by side on the evidence of finished runs, up to the objects that are found.
 
-``python -m benchmarks.compare_labellers RUN=CAPTURE [RUN=CAPTURE ...] [--weights FILE]``
+``python -m benchmarks.compare_labellers RUN=CAPTURE [RUN=CAPTURE ...] [--weights FILE]
+[--hint-share 0.9]``
 
 RUN is a folder of ``w2m reconstruct``, CAPTURE the virtual scan with its truth. Each labeller
 labels the same ``evidence.npz`` with and without its 2D votes, and ``find`` looks for objects in
@@ -12,6 +13,7 @@ import shutil
 import tempfile
 import time
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +26,7 @@ from world2minecraft.evaluate.score import TrueRoom, cell_facts, see_truth
 from world2minecraft.exchange.evidence import read_evidence, write_evidence
 from world2minecraft.exchange.objects import read_objects
 from world2minecraft.exchange.room import read_room
-from world2minecraft.label import completion_net
+from world2minecraft.label import completion, completion_net
 from world2minecraft.parameters import Parameters
 from world2minecraft.steps import LATER_STEPS
 
@@ -68,9 +70,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("pairs", nargs="+", metavar="RUN=CAPTURE")
     parser.add_argument("--weights", type=Path)
+    parser.add_argument("--hint-share", type=float, help="of the completion labeller")
     chosen = parser.parse_args()
     if chosen.weights:
         completion_net.WEIGHTS = chosen.weights
+    if chosen.hint_share is not None:
+        usual = partial(completion.CompletionParameters, hint_share=chosen.hint_share)
+        completion.CompletionParameters = usual  # type: ignore[misc]
     table, rows = Table("run", "labeller", "votes", *COLUMNS, box=None), {}
     for pair in chosen.pairs:
         run, capture = (Path(text) for text in pair.split("="))

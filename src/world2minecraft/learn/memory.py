@@ -20,7 +20,7 @@ from world2minecraft.learn.data.cache import Frames
 from world2minecraft.learn.data.frames import known_cells
 from world2minecraft.learn.networks.embodied import Embodied
 from world2minecraft.learn.networks.stream import SceneStream
-from world2minecraft.learn.scenes import Lattice, SceneFrame, lattice_of
+from world2minecraft.learn.scenes import SceneFrame, assembled, lattice_of
 from world2minecraft.learn.scoring import MEMORY, of_scenes
 from world2minecraft.metrics.intervals import FrameScore
 from world2minecraft.metrics.protocols import count_scene
@@ -86,23 +86,13 @@ def true_scene(
     if lattice is None:
         return None, reason
     factor = round(config.cells.voxel_m / FINE.voxel_m)
-    labels, seen = _assembled(lattice)
+    labels, seen = assembled(lattice)
     if factor > 1:
         spare = [(0, -side % factor) for side in labels.shape]
         labels = downsampled(np.pad(labels, spare, constant_values=UNKNOWN), factor)
         blocks = [part for side in labels.shape for part in (side, factor)]
         seen = np.asarray(np.pad(seen, spare).reshape(blocks).any(axis=(1, 3, 5)))
     return TrueScene(labels, seen, lattice.origin_m), ""
-
-
-def _assembled(lattice: Lattice) -> tuple[np.ndarray, np.ndarray]:
-    labels = np.full(lattice.shape, UNKNOWN, np.uint8)
-    seen = np.zeros(lattice.shape, bool)
-    for (_, true, mask), first in zip(lattice.grids, lattice.cells, strict=True):
-        box = tuple(slice(at, at + side) for at, side in zip(first, true.shape, strict=True))
-        labels[box] = np.where(true == UNKNOWN, labels[box], true)
-        seen[box] |= mask
-    return labels, seen
 
 
 def remembered(

@@ -103,16 +103,24 @@ def _placed(
     return (said, truth, mask), corner_m
 
 
+def assembled(lattice: Lattice) -> tuple[np.ndarray, np.ndarray]:
+    """Return a scene's true labels uint8 [X, Y, Z], 255 where no frame knows, and what was seen."""
+    labels = np.full(lattice.shape, UNKNOWN, np.uint8)
+    seen = np.zeros(lattice.shape, bool)
+    for (_, true, mask), first in zip(lattice.grids, lattice.cells, strict=True):
+        box = tuple(slice(at, at + side) for at, side in zip(first, true.shape, strict=True))
+        labels[box] = np.where(true == UNKNOWN, labels[box], true)
+        seen[box] |= mask
+    return labels, seen
+
+
 def _voted(lattice: Lattice) -> ProtocolCounts:
     votes = np.zeros((*lattice.shape, CLASS_COUNT), np.uint8)
-    truth = np.full(lattice.shape, UNKNOWN, np.uint8)
-    seen = np.zeros(lattice.shape, bool)
-    for (said, true, mask), first in zip(lattice.grids, lattice.cells, strict=True):
+    for (said, _, mask), first in zip(lattice.grids, lattice.cells, strict=True):
         box = tuple(slice(at, at + side) for at, side in zip(first, said.shape, strict=True))
-        truth[box] = np.where(true == UNKNOWN, truth[box], true)
-        seen[box] |= mask
         at = np.nonzero(mask & (said < CLASS_COUNT))
         held = votes[box]
         held[(*at, said[at])] = np.minimum(held[(*at, said[at])], 254) + 1
     labels = np.where(votes.any(axis=-1), votes.argmax(axis=-1), UNKNOWN).astype(np.uint8)
+    truth, seen = assembled(lattice)
     return count_scene(labels, truth, [seen])
