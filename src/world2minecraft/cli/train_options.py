@@ -26,7 +26,7 @@ Config = Annotated[
     Path | None, _option("--config", metavar="FILE", text="All settings, of a run.yaml.")
 ]
 Preset = Annotated[
-    str, _option("--preset", text="smoke, 1k (usual) or 8k: sizes and steps together.")
+    str, _option("--preset", text="smoke, quick, 1k (usual) or 8k: sizes and steps together.")
 ]
 Size = Annotated[str | None, _option("--size", text="tiny, small or full.")]
 Backbone = Annotated[

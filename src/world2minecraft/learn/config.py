@@ -154,6 +154,10 @@ PRESETS: dict[str, dict[str, Any]] = {
         "size": "tiny", "image": (96, 72), "steps": 20, "batch": 2, "warmup_steps": 2,
         "validate_every": 10, "validate_frames": 8, "checkpoint_every": 10,
     },
+    "quick": {
+        "size": "small", "grid": "0.16", "image": (160, 120), "steps": 800, "batch": 4,
+        "warmup_steps": 40,
+    },
     "1k": {"size": "small", "grid": "0.16", "image": (320, 240), "steps": 2000, "batch": 4},
     "8k": {  # MonoScene's recipe on NYUv2's grid: 30 epochs of the paper's 6,100 frames.
         "size": "full", "grid": "0.08", "image": (640, 480), "steps": 45_750, "batch": 4,

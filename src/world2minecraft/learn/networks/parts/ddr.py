@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import torch
 from torch import Tensor, nn
 
+from world2minecraft.learn.networks.parts.dilated import DilatedConv3d
 from world2minecraft.learn.networks.parts.norms import Norm, conv3d, norm3d
 
 
@@ -94,7 +95,8 @@ def _along(axis: int, channels: int, norm: Norm, dilation: int, stride: int) -> 
     def only(value: int, other: int) -> tuple[int, int, int]:
         return tuple(value if k == axis else other for k in range(3))  # type: ignore[return-value]
 
-    conv = nn.Conv3d(
+    kind = DilatedConv3d if stride == 1 else nn.Conv3d
+    conv = kind(
         channels, channels, only(3, 1), only(stride, 1), only(dilation, 0), only(dilation, 1),
         bias=False,
     )  # fmt: skip

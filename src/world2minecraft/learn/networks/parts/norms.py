@@ -8,6 +8,9 @@ from typing import Literal
 
 from torch import nn
 
+from world2minecraft.learn.networks.parts.dilated import DilatedConv3d
+from world2minecraft.learn.networks.parts.group_norm import GroupNorm
+
 Norm = Literal["batch", "group"]
 GROUPS = 4  # Of channels; the small networks have 8 to 32.
 
@@ -22,9 +25,9 @@ def norm3d(kind: Norm, channels: int) -> nn.Module:
     return nn.BatchNorm3d(channels) if kind == "batch" else _grouped(channels)
 
 
-def _grouped(channels: int) -> nn.GroupNorm:
+def _grouped(channels: int) -> GroupNorm:
     groups = next(count for count in range(min(GROUPS, channels), 0, -1) if channels % count == 0)
-    return nn.GroupNorm(groups, channels)
+    return GroupNorm(groups, channels)
 
 
 def conv2d(given: int, made: int, kind: Norm, *, kernel: int = 3, stride: int = 1) -> nn.Sequential:
@@ -36,5 +39,5 @@ def conv2d(given: int, made: int, kind: Norm, *, kernel: int = 3, stride: int = 
 def conv3d(given: int, made: int, kind: Norm, *, kernel: int = 3, dilation: int = 1) -> nn.Module:
     """Return a convolution of cells with its normalisation; nothing is cut off afterwards."""
     around = dilation * (kernel // 2)
-    conv = nn.Conv3d(given, made, kernel, padding=around, dilation=dilation, bias=False)
+    conv = DilatedConv3d(given, made, kernel, padding=around, dilation=dilation, bias=False)
     return nn.Sequential(conv, norm3d(kind, made))
