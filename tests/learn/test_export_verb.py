@@ -34,6 +34,16 @@ def test_a_run_becomes_a_file_that_predicts(run, capsys):
     np.testing.assert_allclose(found.sum(axis=-1), 1, atol=1e-4)
 
 
+def test_weights_stored_small_are_told_with_what_they_move(run, capsys):
+    out = run / "small.onnx"
+    assert cli.run(["export", str(run), "--out", str(out), "--weights", "int8"]) == 0
+    said = capsys.readouterr().out
+    assert f"{out}: monoscene-tiny, {out.stat().st_size / 1e6:.1f} MB; " in said
+    assert "weights as int8 move a logit by " in said and f"w2m evaluate occupancy {out}" in said
+    assert cli.run(["export", str(run), "--out", str(out), "--weights", "int4"]) == 2
+    assert "no way to store weights is named 'int4'; did you mean 'int8'" in capsys.readouterr().err
+
+
 def test_what_is_no_weights_is_refused(tmp_path, capsys):
     assert cli.run(["export", str(tmp_path), "--out", str(tmp_path / "n.onnx")]) == 3
     assert "weights.safetensors" in capsys.readouterr().err

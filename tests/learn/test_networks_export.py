@@ -20,8 +20,10 @@ def test_onnx_says_the_same(name, wants_depth, tmp_path):
     network = make_network(name, "tiny", grid_shape=SHAPE, voxel_m=VOXEL_M, seed=1)
     size = inputs.image.shape[:1:-1]
     facts = NetworkFacts(name, SHAPE, VOXEL_M, tuple(size), wants_depth)
-    difference = export_network(network, tmp_path / "net.onnx", facts)
-    assert difference <= MOST_DIFFERENCE
+    written = export_network(network, tmp_path / "net.onnx", facts)
+    assert written.difference <= MOST_DIFFERENCE
+    assert written.moved == written.renamed == 0
+    assert written.size == (tmp_path / "net.onnx").stat().st_size
     assert network.training
     read = OccupancyNetwork(tmp_path / "net.onnx")
     assert read.facts == facts

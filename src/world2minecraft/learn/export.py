@@ -1,13 +1,16 @@
 """A trained network leaves PyTorch as one ONNX file of the contract in docs/networks-onnx.md.
 
 It is written only where it says what the network says: both are asked about the same picture, and
-no logit may differ by more than ``MOST_DIFFERENCE``.
+no logit may differ by more than ``MOST_DIFFERENCE``. Weights may then be stored small, as
+``weight_storage`` does it; by how much that moves the logits is measured, not bounded: whether it
+may, a score must say.
 """
 
+import importlib.util
 import io
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import onnxruntime
@@ -24,35 +27,67 @@ MOST_DIFFERENCE = 1e-3
 TURN_DEG = 10.0  # How far the camera of the question looks down.
 
 
+class Exported(NamedTuple):
+    """What a written file came to, asked about one picture."""
+
+    difference: float  # the most that a logit differs from the network's, weights whole
+    moved: float  # the most that storing the weights small moves a logit by
+    moved_mean: float  # and on the mean, beside ``spread``, the standard deviation of all logits
+    spread: float
+    renamed: float  # share of the cells that take another class by it
+    size: int  # bytes of the file
+
+
 def export_network(
-    network: nn.Module, path: str | Path, facts: NetworkFacts, *, seed: int = 0
-) -> float:
-    """Write a network as ONNX, and return by how much its logits differ at most.
+    network: nn.Module,
+    path: str | Path,
+    facts: NetworkFacts,
+    *,
+    weights: str = "float",
+    seed: int = 0,
+) -> Exported:
+    """Write a network as ONNX, and return how much the file's answers differ.
 
     Args:
         network: maps ``OccInput`` to ``OccOutput``. It is asked in evaluation, and left as it was.
         path: the file.
         facts: what the file states: its grid, its picture's size, whether it wants depth.
+        weights: float, half or int8: how they are stored (``weight_storage.KINDS``).
         seed: of the picture that both are asked about.
 
     Raises:
         OutputError: the file would say something else, or cannot be written.
+        UnknownNameError: weights are not stored so.
         MissingExtraError: onnx is not installed.
     """
+    _check_onnx()
+    from world2minecraft.learn.weight_storage import with_stored_weights  # noqa: PLC0415
+
     example = _question(facts, np.random.default_rng(seed))
     trained = network.training
     network.eval()
     try:
         with torch.no_grad():
             said = network(example).logits.float().cpu().numpy()
-            data = _traced(network, example, facts)
+            model = _traced(network, example, facts)
     finally:
         network.train(trained)
-    difference = float(np.abs(_asked(data, example) - said).max())
+    whole = _asked(model.SerializeToString(), example)
+    difference = float(np.abs(whole - said).max())
     if not difference <= MOST_DIFFERENCE:  # Holds for what is no number too.
         raise OutputError(path, f"the ONNX file's logits would differ by {difference:.3g}")
+    data = with_stored_weights(model, weights).SerializeToString()
+    stored = whole if weights == "float" else _asked(data, example)
+    if not np.isfinite(stored).all():
+        raise OutputError(path, f"weights stored as {weights} would give what is no number")
     write_bytes(Path(path), data)
-    return difference
+    return Exported(difference, *_moves(whole, stored), len(data))
+
+
+def _moves(whole: np.ndarray, stored: np.ndarray) -> tuple[float, float, float, float]:
+    moved = np.abs(stored - whole)
+    renamed = stored.argmax(axis=1) != whole.argmax(axis=1)
+    return float(moved.max()), float(moved.mean()), float(whole.std()), float(renamed.mean())
 
 
 class _Named(nn.Module):
@@ -77,11 +112,15 @@ class _Named(nn.Module):
         return self.network(inputs).logits.float()
 
 
-def _traced(network: nn.Module, example: OccInput, facts: NetworkFacts) -> bytes:
-    try:
-        import onnx  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
-    except ImportError:
-        raise MissingExtraError("writing ONNX files", "train") from None
+def _check_onnx() -> None:
+    if importlib.util.find_spec("onnx") is None:
+        raise MissingExtraError("writing ONNX files", "train")
+
+
+def _traced(network: nn.Module, example: OccInput, facts: NetworkFacts) -> Any:
+    """Return the network as an ``onnx.ModelProto``."""
+    import onnx  # noqa: PLC0415
+
     given = _by_name(example)
     written: Any = io.BytesIO()  # It takes a stream, and says that it does not.
     with warnings.catch_warnings():
@@ -97,7 +136,7 @@ def _traced(network: nn.Module, example: OccInput, facts: NetworkFacts) -> bytes
         )
     model = onnx.load_from_string(written.getvalue())
     onnx.helper.set_model_props(model, facts.metadata())
-    return model.SerializeToString()
+    return model
 
 
 def _asked(data: bytes, example: OccInput) -> np.ndarray:

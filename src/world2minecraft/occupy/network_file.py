@@ -73,6 +73,9 @@ class OccupancyNetwork:
         options = onnxruntime.SessionOptions()
         options.intra_op_num_threads = options.inter_op_num_threads = 1
         options.log_severity_level = 3
+        # Weights stored as bytes become floats once, as the file is loaded; and what a file does in
+        # bytes is done in floats, since byte kernels round otherwise on other processors.
+        options.add_session_config_entry("session.disable_quant_qdq", "1")
         try:
             self._session = onnxruntime.InferenceSession(
                 data, options, providers=["CPUExecutionProvider"]

@@ -7,15 +7,14 @@ import numpy as np
 import onnx
 import onnxruntime
 import torch
-from onnx import numpy_helper
 from torch import nn
 
 from world2minecraft.files import write_bytes
 from world2minecraft.label.channels import CHANNELS
 from world2minecraft.learn.completion.network import CompletionNet
+from world2minecraft.learn.weight_storage import SMALL, with_stored_weights
 
 OPSET = 17
-SMALL = 64  # Weights with fewer numbers stay as they are.
 TRIAL_SHAPE = (24, 16, 24)
 
 
@@ -26,7 +25,7 @@ def export_completion(network: CompletionNet, path: Path, about: dict[str, str])
     matter of scores. ``about`` is written into the file.
     """
     network = halved(network).eval()
-    data = _with_half_weights(_onnx_bytes(network), about)
+    data = _stored(_onnx_bytes(network), about)
     write_bytes(path, data)
     return parity(network, data)
 
@@ -71,26 +70,11 @@ def _onnx_bytes(network: nn.Module) -> bytes:
     return buffer.getvalue()
 
 
-def _with_half_weights(data: bytes, about: dict[str, str]) -> bytes:
-    """Return a model whose large weights are stored as halves and cast when it is loaded."""
+def _stored(data: bytes, about: dict[str, str]) -> bytes:
+    """Return a model whose large weights are stored as halves, and which says what it is."""
     model = onnx.load_from_string(data)
-    casts = []
-    for weight in model.graph.initializer:
-        values = numpy_helper.to_array(weight)
-        if values.dtype != np.float32 or values.size < SMALL:
-            continue
-        name = weight.name
-        weight.CopyFrom(numpy_helper.from_array(values.astype(np.float16), f"{name}_half"))
-        casts.append(
-            onnx.helper.make_node("Cast", [f"{name}_half"], [name], to=onnx.TensorProto.FLOAT)
-        )
-    nodes = [*casts, *model.graph.node]
-    del model.graph.node[:]
-    model.graph.node.extend(nodes)
-    for key, value in sorted(about.items()):
-        model.metadata_props.append(onnx.StringStringEntryProto(key=key, value=value))
-    onnx.checker.check_model(model)
-    return model.SerializeToString()
+    onnx.helper.set_model_props(model, dict(sorted(about.items())))
+    return with_stored_weights(model, "half").SerializeToString()
 
 
 @torch.no_grad()
