@@ -59,6 +59,7 @@ VERBS: dict[str, str] = {
     "vln run": "Let an agent walk by an instruction: live, scored and on film.",
     "vln evaluate": "Ask a model the items of a navigation set.",
     "vln table": "Print the results of navigation runs side by side.",
+    "compare layouts": "Score layouts of rooms, of other methods and ours, by one rule.",
     "doctor": "Check that this machine can run the program.",
 }
 

@@ -1,0 +1,93 @@
+"""LayoutGPT: what its script writes to ``llm_output/3D``, read as it is published.
+
+A list of records ``{query_id, iter, prompt, object_list}``. The prompt says ``Room Size: max
+length 270px, max width 252px``; an object is ``[category, {length, width, height, left, top,
+depth, orientation}]``. ``left``, ``top`` and ``depth`` are the centre, sizes are full. ``left``
+runs along 3D-FRONT's x and ``top`` along its z, which seen from above runs down the page; so y is
+the room's width less ``top``, and nothing is mirrored. At 0 degrees a front looks along ``top``:
+of the published wardrobes three quarters then have their back to the wall at ``top`` 0.
+
+**Pixels.** The published files are in pixels and hold no metres, so a scale is assumed: 256 pixels
+are 3.5 m. With it their desks are 0.75 m high and their chairs 0.89 m. Files in metres are read as
+they are.
+"""
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from world2minecraft.compare.importers.reading import (
+    MOST_OBJECTS,
+    MOST_SCENES,
+    Box,
+    checked_count,
+    clean_name,
+    height_over,
+    number,
+    object_of,
+    rectangle,
+)
+from world2minecraft.compare.values import ComparedScene
+from world2minecraft.types import LayoutObject
+
+if TYPE_CHECKING:
+    from world2minecraft.compare.importers import How
+
+METHOD = "LayoutGPT"
+_SIDE = r"\s*([0-9]+(?:\.[0-9]+)?)\s*(px|m)?\b"
+_SIZE = re.compile(rf"max\s+length{_SIDE}\s*,\s*max\s+width{_SIDE}", re.I)
+
+
+class Format:
+    """The format of this module."""
+
+    @staticmethod
+    def is_mine(path: Path, told: Any) -> bool:
+        """Whether a JSON holds records of LayoutGPT."""
+        first = told[0] if isinstance(told, list) and told else told
+        return isinstance(first, dict) and "object_list" in first
+
+    @staticmethod
+    def read(path: Path, told: Any, how: "How") -> list[ComparedScene]:
+        """Return the scene of each record. Raises ValueError, KeyError, TypeError."""
+        records = checked_count([told] if isinstance(told, dict) else told, MOST_SCENES, "records")
+        return [_scene(record, number, how.px_m) for number, record in enumerate(records)]
+
+
+FORMAT = Format()
+
+
+def _scene(record: dict[str, Any], count: int, px_m: float) -> ComparedScene:
+    found = _SIZE.search(str(record.get("prompt", "")))
+    if found is None:
+        raise ValueError(f"record {count} says no room size: 'max length 270px, max width 252px'")
+    unit_m = 1.0 if "m" in (found[2], found[4]) else px_m
+    length_m, width_m = float(found[1]) * unit_m, float(found[3]) * unit_m
+    objects, skipped = [], []
+    for item in checked_count(record["object_list"], MOST_OBJECTS, "objects"):
+        try:
+            objects.append(_object(item, unit_m, width_m))
+        except (KeyError, TypeError, ValueError, IndexError) as error:
+            skipped.append(f"{_name(item)}: {error}")
+    room = rectangle(length_m, width_m, height_over(objects))
+    name = clean_name(record.get("query_id", record.get("id", f"record {count}")))
+    return ComparedScene(
+        name, METHOD, (room,), tuple(objects), skipped=tuple(skipped), is_height_stated=False
+    )
+
+
+def _name(item: Any) -> str:
+    return clean_name(item[0] if isinstance(item, (list, tuple)) and item else None)
+
+
+def _object(item: Any, unit_m: float, width_m: float) -> LayoutObject:
+    told = item[1]
+    length, width, height = (
+        number(told[key], key) * unit_m for key in ("length", "width", "height")
+    )
+    left, top = (number(told[key], key) * unit_m for key in ("left", "top"))
+    middle = number(told["depth"], "depth") * unit_m if "depth" in told else height / 2
+    turned = number(told.get("orientation", 0.0), "orientation")
+    return object_of(
+        Box(_name(item), (left, width_m - top, middle), (width, length, height), turned - 90)
+    )

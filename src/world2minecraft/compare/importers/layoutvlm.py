@@ -1,0 +1,194 @@
+"""LayoutVLM: ``layout.json``, and the scene file that it was made from, for room and sizes.
+
+The layout is ``{asset: {position [x, y, z], rotation [x, y, z]}}``: centres in metres, degrees
+about the axes, z up; at 0 a front looks along x. The scene file is ``{task_description, boundary
+{floor_vertices [[x, y, z]], wall_height}, assets {id: {...}}}``. Sizes stand in an asset's
+``assetMetadata.boundingBox``, in the scene file or in ``ID/data.json`` of the folder of assets,
+and as LayoutVLM does, x and y are swapped when they are read: ``y`` is front to back.
+
+Its program names the assets of a layout anew, by their categories (``dining_chair-1``,
+``lamp_B-0``); both those and the scene file's own names are known.
+"""
+
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from world2minecraft.compare.importers.reading import (
+    FARTHEST_M,
+    MOST_CORNERS,
+    MOST_OBJECTS,
+    USUAL_HEIGHT_M,
+    Box,
+    checked_count,
+    clean_name,
+    number,
+    object_of,
+)
+from world2minecraft.compare.values import ComparedScene
+from world2minecraft.errors import InputError
+from world2minecraft.files import read_json
+from world2minecraft.types import Layout, LayoutObject
+
+if TYPE_CHECKING:
+    from world2minecraft.compare.importers import How
+
+METHOD = "LayoutVLM"
+LAYOUT_FILE = "layout.json"
+MOST_TASK_BYTES, MOST_ASSET_BYTES = 64 << 20, 1 << 20
+MOST_BESIDE = 200  # Files beside a layout that are looked at.
+
+
+class Format:
+    """The format of this module."""
+
+    @staticmethod
+    def is_mine(path: Path, told: Any) -> bool:
+        """Whether a JSON is a layout of LayoutVLM, or a folder holds one."""
+        if path.is_dir():
+            place = path / LAYOUT_FILE
+            told = read_json(place) if place.is_file() else None
+        if not isinstance(told, dict) or not told:
+            return False
+        first = next(iter(told.values()))
+        return isinstance(first, dict) and "position" in first
+
+    @staticmethod
+    def read(path: Path, told: Any, how: "How") -> list[ComparedScene]:
+        """Return its one scene. Raises InputError, ValueError, KeyError, TypeError."""
+        place = path / LAYOUT_FILE if path.is_dir() else path
+        told = read_json(place) if told is None else told
+        if len(told) > MOST_OBJECTS:
+            raise ValueError(f"has {len(told):,} objects; at most {MOST_OBJECTS:,} are read")
+        task = _task(place, how.task)
+        assets = dict(_assets(task, how.assets))
+        objects, skipped = [], []
+        for key, one in told.items():
+            try:
+                objects.append(_object(key, one, assets))
+            except (KeyError, TypeError, ValueError, IndexError) as error:
+                skipped.append(f"{clean_name(key)}: {error}")
+        unplaced = [clean_name(key) for key in dict(_names(task, how.assets)) if key not in told]
+        room = _room(task["boundary"])
+        name = place.parent.name if place.name == LAYOUT_FILE else place.stem
+        missing = max(0, len(task.get("assets", {})) - len(told))
+        return [ComparedScene(name, METHOD, (room,), tuple(objects), tuple(unplaced[:missing]),
+                              tuple(skipped))]  # fmt: skip
+
+
+FORMAT = Format()
+
+
+def _task(place: Path, stated: Path | None) -> dict[str, Any]:
+    """Return the scene file: the stated one, or the only one beside the layout."""
+    if stated is not None:
+        told = read_json(stated, MOST_TASK_BYTES)
+        if not _is_task(told):
+            raise InputError(stated, "is no scene file of LayoutVLM: it has no boundary")
+        return told
+    beside = sorted(place.parent.glob("*.json"))[:MOST_BESIDE]
+    found = [told for one in beside if one != place and _is_task(told := _try(one))]
+    if len(found) != 1:
+        raise InputError(
+            place, f"has {len(found)} scene files with a boundary beside it; give one with --task"
+        )
+    return found[0]
+
+
+def _try(path: Path) -> Any:
+    try:
+        return read_json(path, MOST_TASK_BYTES)
+    except InputError:
+        return None
+
+
+def _is_task(told: Any) -> bool:
+    return isinstance(told, dict) and isinstance(told.get("boundary"), dict)
+
+
+def _room(boundary: dict[str, Any]) -> Layout:
+    corners = checked_count(boundary["floor_vertices"], MOST_CORNERS, "floor_vertices")
+    points = np.array([[number(value, "a corner") for value in one[:2]] for one in corners])
+    if points.ndim != 2 or points.shape[1] != 2 or np.abs(points).max() > FARTHEST_M:
+        raise ValueError("floor_vertices must be corners [x, y, z] in metres")
+    if len(points) > 3 and np.allclose(points[0], points[-1]):
+        points = points[:-1]
+    x, y = points.T
+    if x @ np.roll(y, -1) - y @ np.roll(x, -1) < 0:
+        points = points[::-1]
+    height = number(boundary.get("wall_height", USUAL_HEIGHT_M), "wall_height")
+    return Layout(points, height)
+
+
+def _assets(task: dict[str, Any], folder: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield what is known of each asset, under its own name and the one it has in layouts."""
+    assets = task.get("assets", {})
+    for name, uid in _names(task, folder):
+        known = _data(uid, assets.get(uid) or {}, folder)
+        yield uid, known
+        yield name, known
+
+
+def _names(task: dict[str, Any], folder: Path | None) -> list[tuple[str, str]]:
+    """Return, for each asset of a scene file, the name that LayoutVLM gives it, and its own."""
+    assets = task.get("assets", {})
+    if not isinstance(assets, dict) or len(assets) > MOST_OBJECTS:
+        raise ValueError(f"assets must be an object of at most {MOST_OBJECTS:,} names")
+    groups: dict[str, list[str]] = {}
+    for key in assets:
+        groups.setdefault(_model(key), []).append(key)
+    plain = {model: _category(_data(keys[0], assets[keys[0]] or {}, folder), keys[0])
+             for model, keys in groups.items()}  # fmt: skip
+    kinds, seen, names = Counter(plain.values()), Counter(), []
+    for model, keys in groups.items():
+        word = plain[model]
+        seen[word] += 1
+        suffix = f"_{chr(ord('A') + seen[word] - 1)}" if kinds[word] > 1 else ""
+        for count, key in enumerate(keys):
+            word += suffix  # Once more for each instance: so does its program.
+            names.append((f"{word}-{count}", key))
+    return names
+
+
+def _model(key: str) -> str:
+    """Return an asset's name without its count."""
+    head, _, tail = key.rpartition("-")
+    return head if head and tail.isdigit() else key
+
+
+def _data(key: str, stated: dict[str, Any], folder: Path | None) -> dict[str, Any]:
+    """Return what a scene file or the folder of assets says of one."""
+    if "assetMetadata" in stated or folder is None:
+        return stated
+    model = _model(key)
+    if model != Path(model).name or model in (".", ".."):
+        return stated  # A name is no path.
+    for root in (folder, folder / "test_asset_dir"):
+        place = root / model / "data.json"
+        if place.is_file():
+            return {**read_json(place, MOST_ASSET_BYTES), **stated}
+    return stated
+
+
+def _category(known: dict[str, Any], key: str) -> str:
+    told = known.get("category") or (known.get("annotations") or {}).get("category")
+    word = clean_name(told or _model(key))
+    for letter in "- '/,":
+        word = word.replace(letter, "_")
+    return word.lower()
+
+
+def _object(key: str, one: dict[str, Any], assets: dict[str, Any]) -> LayoutObject:
+    known = assets.get(key)
+    if known is None:
+        raise ValueError("is not among the scene file's assets")
+    box = (known.get("assetMetadata") or {}).get("boundingBox")
+    if not isinstance(box, dict):
+        raise ValueError("has no size; give the folder of assets with --assets")
+    x, y, z = (number(value, "position") for value in one["position"])
+    side, deep, high = (number(box[axis], f"size {axis}") for axis in "xyz")
+    turned = number(one["rotation"][2], "rotation")
+    return object_of(Box(_category(known, key), (x, y, z), (deep, side, high), turned))

@@ -1,0 +1,60 @@
+"""Our own reconstructions: what was placed, in the rooms that are truly there where they are known.
+
+Without a truth the rooms are those that the run itself found, which flatters it; with one, its
+rooms are carried into the run's frame. Furniture of templates is more than boxes, so beside the
+boxes their solid parts count too: a chair under a table does not meet it.
+"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from world2minecraft.compare.importers.reading import MOST_OBJECTS
+from world2minecraft.compare.values import ComparedScene
+from world2minecraft.errors import InputError
+from world2minecraft.evaluate.frames import truth_of_run
+from world2minecraft.evaluate.layout import in_room
+from world2minecraft.exchange.objects import read_placements
+from world2minecraft.exchange.room import read_room
+from world2minecraft.exchange.rooms import read_rooms
+from world2minecraft.metrics.layout import collisions
+from world2minecraft.types import Layout
+
+if TYPE_CHECKING:
+    from world2minecraft.compare.importers import How
+
+METHOD = "World2Minecraft"
+
+
+class Format:
+    """The format of this module."""
+
+    @staticmethod
+    def is_mine(path: Path, told: Any) -> bool:
+        """Whether a folder is that of a finished run."""
+        return path.is_dir() and (path / "placements.json").is_file()
+
+    @staticmethod
+    def read(path: Path, told: Any, how: "How") -> list[ComparedScene]:
+        """Return its one scene. Raises InputError."""
+        if not path.is_dir():
+            raise InputError(path, "is no folder of a run")
+        grid, scan_to_room = read_room(path / "room.npz")
+        placed = read_placements(path / "placements.json")
+        if len(placed) > MOST_OBJECTS:
+            raise ValueError(f"has {len(placed):,} placements; at most {MOST_OBJECTS:,} are read")
+        rooms = read_rooms(path, grid)
+        if how.truth is not None:
+            rooms = true_rooms(path, how.truth, scan_to_room)
+        if not rooms:
+            raise InputError(path, "tells of no room; run w2m reconstruct again")
+        met = len(collisions(placed, grid=grid))
+        return [ComparedScene(path.name, METHOD, rooms, placed, collided=met)]
+
+
+FORMAT = Format()
+
+
+def true_rooms(run: Path, truth: Path, scan_to_room: Any) -> tuple[Layout, ...]:
+    """Return the rooms of a truth in the frame of a run. Raises InputError."""
+    known = truth_of_run(run, truth)
+    return in_room(known.layouts, scan_to_room @ known.truth_to_scan)

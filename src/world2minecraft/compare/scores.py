@@ -1,0 +1,228 @@
+"""What of a scene lies outside its room, collides, or is missing: one rule for all methods.
+
+An object is **out of bounds** where more than 1 % of its footprint lies more than 10 cm outside
+the floor, or its top is more than 10 cm over the ceiling. Two **collide** where they share more
+than 1 % of the smaller one's volume and would have to be moved by more than 2 cm to part; what
+rests on something, and what is thinner than 5 cm (rugs), does not. Boxes count before they become
+cells, for cells of two things can never overlap.
+
+Beside these stand the rules of others, so that their figures can be met: ``reaching`` is the rule
+of LayoutGPT's own script (a corner of the turned box more than 10 cm outside the box around the
+room), ``overlapping`` are pairs that share any volume at all.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
+from world2minecraft.compare.values import ComparedScene
+from world2minecraft.errors import UsageError
+from world2minecraft.metrics.footprints import outside_share, shared_height_m, shared_volume_m3
+from world2minecraft.metrics.layout import inside_polygon, overlap_depth_m, plan_corners_m
+from world2minecraft.types import Layout
+from world2minecraft.vln.scores import rate
+
+ANY_M3 = 1e-9  # Less is rounding: boxes that touch.
+
+
+@dataclass(frozen=True)
+class Margins:
+    """How much is forgiven; the numbers of the module's first lines."""
+
+    outside_m: float = 0.1
+    outside_share: float = 0.01
+    above_m: float = 0.1
+    shared: float = 0.01
+    depth_m: float = 0.02
+    thin_m: float = 0.05
+    resting_m: float = 0.05
+
+    def __post_init__(self):
+        if not all(np.isfinite(value) and value >= 0 for value in vars(self).values()):
+            raise UsageError(f"margins are 0 or more, not {vars(self)}")
+
+
+USUAL = Margins()
+
+
+@dataclass(frozen=True)
+class SceneScores:
+    """Counts of one scene: indices of objects, and sorted pairs of them.
+
+    ``categories`` are the classes of objects, ``structure`` those of its shell; ``collided`` is
+    the count of meeting solid parts where more than boxes is known.
+    """
+
+    name: str
+    objects: int
+    unplaced: int
+    outside: tuple[int, ...]
+    reaching: tuple[int, ...]
+    colliding: tuple[tuple[int, int], ...]
+    overlapping: tuple[tuple[int, int], ...]
+    categories: frozenset[int]
+    structure: frozenset[int]
+    collided: int | None = None
+
+
+def score_scene(scene: ComparedScene, margins: Margins = USUAL) -> SceneScores:
+    """Return the counts of a scene."""
+    pairs = [
+        (m, n)
+        for (m, a), (n, b) in combinations(enumerate(scene.objects), 2)
+        if not _one_thing(a, b) and overlap_depth_m(a, b) > 0 and shared_volume_m3(a, b) > ANY_M3
+    ]
+    colliding = [(m, n) for m, n in pairs if _collide(scene.objects[m], scene.objects[n], margins)]
+    return SceneScores(
+        name=scene.name,
+        objects=len(scene.objects),
+        unplaced=len(scene.unplaced),
+        outside=_in_no_room(scene, lambda item, room: _is_outside(item, room, scene, margins)),
+        reaching=_in_no_room(scene, lambda item, room: _reaches_out(item, room, margins)),
+        colliding=tuple(colliding),
+        overlapping=tuple(pairs),
+        categories=frozenset(int(item.class_id) for item in scene.objects) & set(OBJECT_CLASSES),
+        structure=structure_of(scene.rooms),
+        collided=scene.collided,
+    )
+
+
+def structure_of(rooms: Sequence[Layout]) -> frozenset[int]:
+    """Return the classes of structure that rooms have."""
+    windows = any(one.kind == "window" for room in rooms for one in room.openings)
+    shell = {SemanticClass.FLOOR, SemanticClass.WALL, SemanticClass.CEILING}
+    return frozenset(int(one) for one in shell | ({SemanticClass.WINDOW} if windows else set()))
+
+
+def integrity(built: frozenset[int], true: frozenset[int]) -> tuple[float, float]:
+    """Return how many of the true categories are there, and how many of those there are true.
+
+    Example:
+        >>> integrity(frozenset({5, 8, 9}), frozenset({5, 6, 8, 10}))
+        (0.5, 0.6666666666666666)
+    """
+    both = len(built & true)
+    return both / len(true) if true else 1.0, both / len(built) if built else 1.0
+
+
+def summary_of(
+    scores: Sequence[SceneScores], true: Sequence[SceneScores | None] = ()
+) -> dict[str, Any]:
+    """Return the rates over scenes, as plain values.
+
+    Args:
+        scores: of the scenes.
+        true: of the true scene of each, None where it is not known; empty for none at all.
+
+    Returns:
+        Rates from 0 to 1, counts a scene; ``interval`` of a rate is Wilson's at 95 %. Objects
+        count alike, so a rate is over all objects; a share of scenes says ``scenes``.
+
+    Raises:
+        UsageError: there is no scene.
+    """
+    if not scores:
+        raise UsageError("there is no scene to score")
+    objects = sum(one.objects for one in scores)
+    outside = sum(len(one.outside) for one in scores)
+    counts = {
+        "collisions": [len(one.colliding) for one in scores],
+        "overlaps": [len(one.overlapping) for one in scores],
+    }
+    parts = [one.collided for one in scores]
+    return {
+        "scenes": len(scores),
+        "objects": objects,
+        "unplaced": sum(one.unplaced for one in scores),
+        "out_of_bounds": _share(outside, objects),
+        "out_of_bounds_interval": _interval(outside, objects),
+        "scenes_out_of_bounds": _share(sum(bool(one.outside) for one in scores), len(scores)),
+        "reaching_out": _share(sum(len(one.reaching) for one in scores), objects),
+        "scenes_reaching_out": _share(sum(bool(one.reaching) for one in scores), len(scores)),
+        **{name: round(float(np.mean(each)), 4) for name, each in counts.items()},
+        "scenes_with_collisions": _share(sum(map(bool, counts["collisions"])), len(scores)),
+        "solid_collisions": None if None in parts else round(float(np.mean(parts)), 4),  # type: ignore[arg-type]
+        **_integrity_of(scores, true),
+    }
+
+
+def _integrity_of(
+    scores: Sequence[SceneScores], true: Sequence[SceneScores | None]
+) -> dict[str, float | None]:
+    """Return the means over the scenes whose truth is known; None where none is."""
+    known = [(one, of) for one, of in zip(scores, true, strict=bool(true)) if of is not None]
+    plain = [integrity(one.categories, of.categories) for one, of in known]
+    shell = [
+        integrity(one.categories | one.structure, of.categories | of.structure) for one, of in known
+    ]
+
+    def mean(pairs: list[tuple[float, float]], which: int) -> float | None:
+        return round(float(np.mean([pair[which] for pair in pairs])), 4) if pairs else None
+
+    return {
+        "semantic_integrity": mean(plain, 0),
+        "semantic_precision": mean(plain, 1),
+        "semantic_integrity_with_structure": mean(shell, 0),
+    }
+
+
+def _in_no_room(scene: ComparedScene, is_outside: Any) -> tuple[int, ...]:
+    """Return the indices of the objects that are outside of every room."""
+    return tuple(
+        index
+        for index, item in enumerate(scene.objects)
+        if all(is_outside(item, room) for room in scene.rooms)
+    )
+
+
+def _is_outside(item: Any, room: Layout, scene: ComparedScene, margins: Margins) -> bool:
+    top_m = float(item.center_m[2] + item.size_m[2] / 2) - room.floor_z_m
+    if scene.is_height_stated and top_m > room.wall_height_m + margins.above_m:
+        return True
+    corners, polygon = plan_corners_m(item), room.floor_polygon_m
+    if _is_convex(polygon) and inside_polygon(corners, polygon, margins.outside_m).all():
+        return False  # All between them is within, too.
+    return outside_share(item, polygon, margins.outside_m) > margins.outside_share
+
+
+def _reaches_out(item: Any, room: Layout, margins: Margins) -> bool:
+    corners, polygon = plan_corners_m(item), room.floor_polygon_m
+    low, high = polygon.min(axis=0) - margins.outside_m, polygon.max(axis=0) + margins.outside_m
+    return bool((corners < low).any() or (corners > high).any())
+
+
+def _is_convex(polygon: np.ndarray) -> bool:
+    side = np.roll(polygon, -1, axis=0) - polygon
+    after = np.roll(side, -1, axis=0)
+    turns = side[:, 0] * after[:, 1] - side[:, 1] * after[:, 0]
+    return bool((turns >= 0).all() or (turns <= 0).all())
+
+
+def _one_thing(a: Any, b: Any) -> bool:
+    """Whether two placements stand for one object, as the two runs of an L do."""
+    owner = getattr(a, "object_id", None)
+    return owner is not None and owner == getattr(b, "object_id", None)
+
+
+def _collide(a: Any, b: Any, margins: Margins) -> bool:
+    """Whether two boxes that share a volume collide."""
+    if min(a.size_m[2], b.size_m[2]) < margins.thin_m:
+        return False
+    if shared_height_m(a, b) <= margins.resting_m:
+        return False
+    smaller_m3 = min(float(np.prod(a.size_m)), float(np.prod(b.size_m)))
+    enough = shared_volume_m3(a, b) > margins.shared * smaller_m3
+    return enough and overlap_depth_m(a, b) > margins.depth_m
+
+
+def _interval(hits: int, count: int) -> list[float]:
+    found = rate(hits, count)
+    return [round(found.low, 4), round(found.high, 4)]
+
+
+def _share(part: int, whole: int) -> float:
+    return round(part / whole, 4) if whole else 0.0

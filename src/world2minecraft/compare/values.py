@@ -1,0 +1,99 @@
+"""A scene to compare, whoever made it, and its file ``compared.json``."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.classes import CLASS_NAMES, class_id
+from world2minecraft.errors import DamagedFileError, World2MinecraftError
+from world2minecraft.exchange.layout import layout_of_row, layout_row
+from world2minecraft.files import read_json, write_json
+from world2minecraft.types import Layout, LayoutObject, Placement
+
+SCENE_FILE = "compared.json"
+MOST_BYTES = 16 << 20
+DECIMALS = 6  # Micrometres: finer than any margin, so that what is read again scores the same.
+
+
+@dataclass(frozen=True, eq=False)
+class ComparedScene:
+    """Rooms and the boxes that stand in them, in one frame: metres, z up, floor at z = 0.
+
+    ``objects`` are boxes as their makers gave them, before anything becomes cells. ``method`` says
+    who made the scene. ``is_height_stated`` is False where ``wall_height_m`` is only a guess, so
+    that nothing can be too high. ``unplaced`` names what the method wanted and found no place for,
+    ``skipped`` says what could not be read. ``collided``: pairs of solid parts that meet, where
+    more than boxes is known; None where it is not.
+    """
+
+    name: str
+    method: str
+    rooms: tuple[Layout, ...]
+    objects: tuple[LayoutObject | Placement, ...]
+    unplaced: tuple[str, ...] = ()
+    skipped: tuple[str, ...] = ()
+    is_height_stated: bool = True
+    collided: int | None = None
+
+    def __post_init__(self):
+        if not self.rooms:
+            raise ValueError("a scene has a room")
+        for name in ("rooms", "objects", "unplaced", "skipped"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+
+
+def write_scene(path: str | Path, scene: ComparedScene) -> None:
+    """Write a scene. Raises OutputError."""
+    write_json(
+        path,
+        {
+            "name": scene.name,
+            "method": scene.method,
+            "rooms": [layout_row(room) for room in scene.rooms],
+            "objects": [_row(item) for item in scene.objects],
+            "unplaced": list(scene.unplaced),
+            "skipped": list(scene.skipped),
+            "is_height_stated": scene.is_height_stated,
+            "collided": scene.collided,
+        },
+    )
+
+
+def read_scene(path: str | Path) -> ComparedScene:
+    """Read a scene.
+
+    Raises:
+        InputError: the file is missing. DamagedFileError: it is no scene.
+    """
+    told = read_json(path, MOST_BYTES)
+    try:
+        return ComparedScene(
+            name=str(told["name"]),
+            method=str(told["method"]),
+            rooms=tuple(layout_of_row(row) for row in told["rooms"]),
+            objects=tuple(_object(row) for row in told["objects"]),
+            unplaced=tuple(str(name) for name in told["unplaced"]),
+            skipped=tuple(str(name) for name in told["skipped"]),
+            is_height_stated=bool(told["is_height_stated"]),
+            collided=None if told["collided"] is None else int(told["collided"]),
+        )
+    except (KeyError, TypeError, ValueError, AttributeError, World2MinecraftError) as error:
+        raise DamagedFileError(path, f"is no scene of w2m compare ({error})") from error
+
+
+def _row(item: LayoutObject | Placement) -> dict[str, Any]:
+    placed = isinstance(item, Placement)
+    return {
+        "name": item.template if placed else item.name,
+        "class": CLASS_NAMES[item.class_id],
+        "center_m": [round(float(value), DECIMALS) for value in item.center_m],
+        "size_m": [round(float(value), DECIMALS) for value in item.size_m],
+        "yaw_deg": round(float(90 * item.quarter_turns if placed else item.yaw_deg), DECIMALS),
+    }
+
+
+def _object(row: dict[str, Any]) -> LayoutObject:
+    return LayoutObject(
+        class_id(row["class"]), row["center_m"], row["size_m"], float(row["yaw_deg"]),
+        str(row["name"]),
+    )  # fmt: skip
