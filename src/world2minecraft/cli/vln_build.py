@@ -9,16 +9,21 @@ if TYPE_CHECKING:
     from world2minecraft.vln.data.building import Built
 
 EXAMPLES = """\
-w2m vln build OUT --out SET                              of one reconstruction
-w2m vln build runs/* houses/* --out SET --paper-size     3,542 items, as the paper counts
+w2m vln build OUT --out SET                                of one reconstruction
+w2m vln build --rooms 3 --houses 1 --out SET               of scenes that it makes itself
+w2m vln build --rooms 15 --houses 5 --paper-size --out SET 3,542 items, as the paper counts
 w2m vln build runs/* houses/* --out SET --composition base
 w2m vln build houses/* --out SET --trajectories 10 --moves rxr
 """
 
 Scenes = Annotated[
-    list[Path], typer.Argument(help="Run folders, generated houses, worlds, schematics.")
+    list[Path] | None, typer.Argument(help="Run folders, generated houses, worlds, schematics.")
 ]
 Out = Annotated[Path, typer.Option("--out", help="The folder of the set.")]
+Rooms = Annotated[
+    int, typer.Option("--rooms", help="Generate, scan and reconstruct so many rooms first.", min=0)
+]
+Houses = Annotated[int, typer.Option("--houses", help="Generate so many houses first.", min=0)]
 Composition = Annotated[
     str,
     typer.Option("--composition", help="base (reconstructions), extend (all else), combined."),
@@ -30,6 +35,12 @@ Views = Annotated[int, typer.Option("--views", help="Next-View items of a trajec
 PaperSize = Annotated[
     bool, typer.Option("--paper-size", help="No more items than the paper has, part by part.")
 ]
+PaperSplit = Annotated[
+    bool, typer.Option("--paper-split", help="Hold out walks, not scenes, as many as the paper.")
+]
+UnseenShare = Annotated[
+    float, typer.Option("--unseen-share", help="Of the scenes of each kind.", min=0.0, max=1.0)
+]
 EveryKeyframe = Annotated[
     bool,
     typer.Option("--every-keyframe", help="Ask at every keyframe; then blind guesses win."),
@@ -37,37 +48,51 @@ EveryKeyframe = Annotated[
 Moves = Annotated[str, typer.Option("--moves", help="vlnce, rxr, block or macro.")]
 Size = Annotated[str, typer.Option("--size", help="Of pictures, width x height.")]
 Seed = Annotated[int, typer.Option("--seed", help="Another seed, another set.", min=0)]
+Workers = Annotated[
+    int | None, typer.Option("--workers", help="Processes; as many as cores if not said.", min=1)
+]
 
 
 def run(
-    scenes: Scenes,
     out: Out,
+    scenes: Scenes = None,
+    rooms: Rooms = 0,
+    houses: Houses = 0,
     composition: Composition = "combined",
     trajectories: Trajectories = None,
     views: Views = 3,
     paper_size: PaperSize = False,
+    paper_split: PaperSplit = False,
+    unseen_share: UnseenShare = 0.2,
     every_keyframe: EveryKeyframe = False,
     moves: Moves = "vlnce",
     size: Size = "640x360",
     seed: Seed = 0,
+    workers: Workers = None,
 ) -> None:
     """Walk through scenes, tell each walk in English, and ask what is seen and done next.
 
     A scene is toured from thing to thing; each leg becomes moves that the game's physics can make.
-    Scenes are split by their names: one in five of each kind is for scoring alone. The same words
-    and seed give the same bytes.
+    Scenes are split by their names: one in five of each kind is for scoring alone. Rooms and houses
+    that it makes go to OUT/scenes; those that are there are taken as they are. The same words
+    and seed give the same bytes, with any number of workers.
 
     Args:
-        scenes: their paths.
         out: the folder to write.
+        scenes: their paths.
+        rooms: how many reconstructions of generated rooms are made.
+        houses: how many houses are made.
         composition: which scenes go in.
         trajectories: of each scene.
         views: Next-View items of a trajectory, at most.
         paper_size: cut to the paper's counts.
+        paper_split: split walks of the same scenes.
+        unseen_share: how many scenes are for scoring alone.
         every_keyframe: no balance of actions.
         moves: the set of moves.
         size: of pictures.
         seed: of all chances.
+        workers: how many processes work.
 
     Raises:
         UsageError: an option cannot be, or no scene gives an item. InputError: a scene cannot be
@@ -75,10 +100,11 @@ def run(
     """
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.errors import UnknownNameError
+    from world2minecraft.errors import UnknownNameError, UsageError
+    from world2minecraft.render.batch.hands import usual_workers
     from world2minecraft.run_folder import check_writable
     from world2minecraft.vln.data.building import BuildRule, build_set
-    from world2minecraft.vln.data.quotas import PAPER_SIZE
+    from world2minecraft.vln.data.made_scenes import SCENES_FOLDER, make_scenes
     from world2minecraft.vln.data.scene_work import WorkRule
     from world2minecraft.vln.values import MOVE_SETS
 
@@ -87,11 +113,15 @@ def run(
     work = WorkRule(
         views=views, move_set=moves, balanced=not every_keyframe, size_px=_size(size), seed=seed
     )
-    rule = BuildRule(composition, trajectories, PAPER_SIZE if paper_size else None, work)
+    rule = BuildRule(composition, trajectories, paper_size, paper_split, unseen_share, work)
+    places, hands = list(scenes or []), workers or usual_workers()
+    if not (places or rooms or houses):
+        raise UsageError("no scene is named; give paths of scenes, or --rooms 3 to make some")
     check_writable(out)
     compiling_note()
     with shown() as progress:
-        built = build_set(scenes, out, rule, progress)
+        places += make_scenes(out / SCENES_FOLDER, rooms, houses, seed, hands, progress)
+        built = build_set(places, out, rule, progress, hands)
     _say(out, built)
 
 

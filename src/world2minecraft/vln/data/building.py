@@ -1,4 +1,4 @@
-"""A set of many scenes: walked one after the other, then asked about, then written.
+"""A set of many scenes: walked, then asked about, then written.
 
 OUT/dataset.json      what it was made of, and how
 OUT/items.jsonl       questions
@@ -6,7 +6,8 @@ OUT/trajectories.jsonl, OUT/episodes.jsonl
 OUT/images/SCENE/TRAJECTORY/NNN.jpg
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -17,10 +18,11 @@ from world2minecraft.errors import UsageError
 from world2minecraft.files import write_json
 from world2minecraft.progress import Progress, silent
 from world2minecraft.vln.data.asking import items_of
+from world2minecraft.vln.data.crew import SceneJob, work_jobs
 from world2minecraft.vln.data.leaks import Leaks, leaks_of
-from world2minecraft.vln.data.quotas import COMPOSITIONS, cut
-from world2minecraft.vln.data.scene_work import MADE_BY, SceneWork, WorkRule, work_scene
-from world2minecraft.vln.data.splits import scene_splits
+from world2minecraft.vln.data.quotas import COMPOSITIONS, PAPER_WALKS, cut_as_the_paper
+from world2minecraft.vln.data.scene_work import MADE_BY, SceneWork, WorkRule
+from world2minecraft.vln.data.splits import UNSEEN_SHARE, paper_splits, scene_splits
 from world2minecraft.vln.records import (
     ABOUT,
     EPISODES,
@@ -30,7 +32,6 @@ from world2minecraft.vln.records import (
     write_items,
     write_trajectories,
 )
-from world2minecraft.vln.scene import VlnScene, open_scene
 from world2minecraft.vln.values import Item
 
 PER_SCENE = {"base": 30, "extend": 110}  # Trajectories: what the paper's size asks for.
@@ -39,11 +40,18 @@ RECONSTRUCTED = ("room.npz", "placements.json")  # A run folder has them.
 
 @dataclass(frozen=True)
 class BuildRule:
-    """How a set is made. ``trajectories`` of each scene; None takes ``PER_SCENE``."""
+    """How a set is made. ``trajectories`` of each scene; None takes ``PER_SCENE``.
+
+    ``paper_size`` cuts to the paper's counts, and asks each scene for its share of them.
+    ``paper_split`` holds out walks of the same scenes, as the paper does; ``unseen_share`` of the
+    scenes are held out otherwise.
+    """
 
     composition: str = "combined"
     trajectories: int | None = None
-    quotas: Mapping[tuple[str, str], int] | None = None
+    paper_size: bool = False
+    paper_split: bool = False
+    unseen_share: float = UNSEEN_SHARE
     work: WorkRule = field(default_factory=WorkRule)
 
     def __post_init__(self):
@@ -51,6 +59,15 @@ class BuildRule:
             raise UsageError(f"a composition is base, extend or combined, not {self.composition!r}")
         if self.trajectories is not None and self.trajectories < 1:
             raise UsageError(f"--trajectories must be 1 or more, not {self.trajectories}")
+        if self.paper_split and self.unseen_share not in (0, UNSEEN_SHARE):
+            raise UsageError("the paper's split holds out no scene; leave out --unseen-share")
+
+    def walks_of(self, kinds: Mapping[str, str]) -> dict[str, int]:
+        """Return how many walks each scene is asked for, by the scenes' compositions."""
+        scenes = Counter(kinds.values())
+        share = {kind: -(-PAPER_WALKS[kind] // scenes[kind]) for kind in scenes}
+        usual = share if self.paper_size else PER_SCENE
+        return {name: self.trajectories or usual[kind] for name, kind in kinds.items()}
 
 
 @dataclass(frozen=True)
@@ -76,7 +93,7 @@ def build_set(
     out: str | Path,
     rule: BuildRule | None = None,
     progress: Progress = silent,
-    opened: Callable[[str | Path], VlnScene] = open_scene,
+    workers: int = 1,
 ) -> Built:
     """Make a set of scenes.
 
@@ -84,8 +101,8 @@ def build_set(
         paths: of the scenes, as ``open_scene`` takes them.
         out: the folder to write; the same words and seed give the same bytes.
         rule: what is made.
-        progress: told of the scenes.
-        opened: opens a scene.
+        progress: told of the walks.
+        workers: how many processes walk; the bytes are the same for any number.
 
     Raises:
         UsageError: no scene is of the composition, two have one name, or none gives a trajectory.
@@ -93,25 +110,41 @@ def build_set(
     """
     how = rule or BuildRule()
     kinds = {str(path): composition_of(path) for path in paths}
-    wanted = [path for path in kinds if how.composition in ("combined", kinds[path])]
+    wanted = {path: kind for path, kind in kinds.items() if how.composition in ("combined", kind)}
     if not wanted:
         raise UsageError(f"none of the {len(kinds)} scenes is of composition {how.composition}")
-    works, scene_of = [], _names(wanted)
-    splits = scene_splits({scene_of[path]: kinds[path] for path in wanted}, how.work.seed)
-    progress("scenes", 0, len(wanted))
-    for number, path in enumerate(wanted):
-        count = how.trajectories or PER_SCENE[kinds[path]]
-        own = replace(how.work, trajectories=count)
-        scene = opened(path)
-        works.append(work_scene(scene, Path(out), kinds[path], splits[scene.scene_id], own))
-        made = len(works[-1].trajectories)
-        progress("scenes", number + 1, len(wanted), f"{scene.scene_id}: {made} trajectories")
+    scene_of = _names(list(wanted))
+    unseen = 0.0 if how.paper_split else how.unseen_share
+    named = {scene_of[path]: kind for path, kind in wanted.items()}
+    splits, walks = scene_splits(named, how.work.seed, unseen), how.walks_of(named)
+    jobs = [
+        SceneJob(
+            path, str(out), kind, splits[scene_of[path]],
+            replace(how.work, trajectories=walks[scene_of[path]]),
+        )
+        for path, kind in wanted.items()
+    ]  # fmt: skip
+    works = work_jobs(jobs, workers, progress)
+    if how.paper_split:
+        _split_as_the_paper(works, how.work.seed)
     items = items_of(works, how.work.seed)
-    items = cut(items, how.quotas) if how.quotas else items
+    items = cut_as_the_paper(items, how.paper_split) if how.paper_size else items
     if not items:
         raise UsageError("no scene gave an item: they lack things to go to, or floor to walk on")
-    _write(Path(out), how, works, items, splits, dict(zip(wanted, scene_of.values(), strict=True)))
+    _write(Path(out), how, works, items, splits, {scene_of[path]: path for path in wanted})
     return Built(items, works, leaks_of(items), [path for path in kinds if path not in wanted])
+
+
+def _split_as_the_paper(works: Sequence[SceneWork], seed: int) -> None:
+    """Put walks and episodes of each composition into the paper's splits."""
+    for kind in {work.composition for work in works}:
+        own = [work for work in works if work.composition == kind]
+        splits = paper_splits([one for work in own for one in work.trajectories], seed)
+        for work in own:
+            work.trajectories = [
+                replace(one, split=splits[one.trajectory_id]) for one in work.trajectories
+            ]
+            work.episodes = [replace(one, split=splits[one.trajectory_id]) for one in work.episodes]
 
 
 def _names(paths: Sequence[str]) -> dict[str, str]:
@@ -130,7 +163,7 @@ def _write(
     works: Sequence[SceneWork],
     items: Sequence[Item],
     splits: Mapping[str, str],
-    names: Mapping[str, str],
+    paths: Mapping[str, str],
 ) -> None:
     write_items(out / ITEMS, items)
     write_trajectories(out / TRAJECTORIES, [one for work in works for one in work.trajectories])
@@ -144,9 +177,9 @@ def _write(
         "scenes": [
             {
                 "scene_id": work.scene_id,
-                "path": next(path for path, name in names.items() if name == work.scene_id),
+                "path": paths[work.scene_id],
                 "composition": work.composition,
-                "split": splits[work.scene_id],
+                "split": "by walk" if how.paper_split else splits[work.scene_id],
                 "metres_per_block": work.metres_per_block,
                 "tours": work.tours,
                 "trajectories": len(work.trajectories),

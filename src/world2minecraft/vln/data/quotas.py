@@ -11,7 +11,31 @@ PAPER_SIZE: Mapping[tuple[str, str], int] = {
     ("next_action", "extend"): 1351,
     ("next_view", "extend"): 1132,
 }
+# Of its table of sizes, the rows put right: how many of them it scores on.
+PAPER_HELD: Mapping[tuple[str, str], int] = {
+    ("next_action", "base"): 175,
+    ("next_view", "base"): 41,
+    ("next_action", "extend"): 309,
+    ("next_view", "extend"): 230,
+}
+PAPER_WALKS = {"base": 450, "extend": 550}  # Of all scenes together: with room to cut from.
 COMPOSITIONS = ("base", "extend", "combined")
+
+
+def cut_as_the_paper(items: Sequence[Item], splits_too: bool = False) -> list[Item]:
+    """Return as many items as the paper has of each task and composition.
+
+    Args:
+        items: of a set.
+        splits_too: cut what trains and what is held out each to the paper's number.
+    """
+    if not splits_too:
+        return cut(items, PAPER_SIZE)
+    train = {key: PAPER_SIZE[key] - PAPER_HELD[key] for key in PAPER_SIZE}
+    kept = cut([item for item in items if item.split == "train"], train)
+    kept += cut([item for item in items if item.split != "train"], PAPER_HELD)
+    chosen = {item.item_id for item in kept}
+    return [item for item in items if item.item_id in chosen]
 
 
 def cut(items: Sequence[Item], quotas: Mapping[tuple[str, str], int]) -> list[Item]:

@@ -1,7 +1,7 @@
 """What one scene gives a set: trajectories with pictures, questions about them, episodes."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -38,6 +38,9 @@ from world2minecraft.vln.values import (
     Stance,
     Trajectory,
 )
+
+Tick = Callable[[int], None]
+"""Told how many walks more there are."""
 
 MADE_BY = f"{VERSION}+{ORACLE_VERSION}"
 MOST_TOURS = 60  # A scene that gives too little in so many gives no more.
@@ -89,7 +92,12 @@ def scene_guide(scene: VlnScene, move_set: MoveSet) -> Guide:
 
 
 def work_scene(
-    scene: VlnScene, folder: Path, composition: str, scene_split: str, rule: WorkRule
+    scene: VlnScene,
+    folder: Path,
+    composition: str,
+    scene_split: str,
+    rule: WorkRule,
+    tick: Tick = lambda _: None,
 ) -> SceneWork:
     """Walk a scene until it has given as many trajectories as the rule asks for.
 
@@ -99,6 +107,7 @@ def work_scene(
         composition: base or extend.
         scene_split: train or val_unseen.
         rule: how much, and how.
+        tick: told of each walk.
 
     Raises:
         OutputError: a picture cannot be written.
@@ -119,7 +128,7 @@ def work_scene(
         for candidate in maker.candidates(tour.frames, tour.target_at):
             if len(work.trajectories) == rule.trajectories:
                 break
-            crew.take_in(candidate, rng)
+            tick(crew.take_in(candidate, rng))
         if len(work.trajectories) == rule.trajectories:
             break
     work.refused += maker.refusals
@@ -143,13 +152,13 @@ class _Crew:
         camera = vln_camera(*rule.size_px)
         self._album = Album(folder, lambda stances: _taken(scene, camera, stances))
 
-    def take_in(self, candidate: Candidate, rng: np.random.Generator) -> None:
-        """Add a candidate with its questions, or count why it is none."""
+    def take_in(self, candidate: Candidate, rng: np.random.Generator) -> int:
+        """Add a candidate with its questions, or count why it is none; return how many it is."""
         shots = self._album.take([mark.stance for mark in candidate.marks])
         fault = fault_of_pictures([one.mean for one in shots], [one.dhash for one in shots])
         if fault:
             self._work.refused[fault] += 1
-            return
+            return 0
         split = split_of_tour(candidate.tour_id, self._split, self._rule.seed)
         pictures = self._written(candidate, shots)
         trajectory = _trajectory(self._scene, candidate, pictures, split)
@@ -161,6 +170,7 @@ class _Crew:
         work.actions[name] = action_steps(candidate.marks, candidate.clear, rng, balanced)
         work.views += self._views(candidate, pictures, spoken, rng)
         work.episodes.append(_episode(self._scene, candidate, spoken, split, self._rule))
+        return 1
 
     def _written(self, candidate: Candidate, shots: Sequence[Shot]) -> list[Pictured]:
         folder = f"images/{self._scene.scene_id}/{candidate.trajectory_id}"

@@ -5,12 +5,15 @@ asked of a walk is always in one split.
 """
 
 import hashlib
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 
 from world2minecraft.errors import UsageError
+from world2minecraft.vln.values import Trajectory
 
 UNSEEN_SHARE = 0.2  # Of the scenes of each composition: the paper's test share of items is 0.21.
 SEEN_SHARE = 0.1  # Of the tours of the other scenes.
+PAPER_SHARE = 0.23  # Of the walks: of its items the paper holds out 14 to 23 %, part by part.
 
 
 def scene_splits(
@@ -51,6 +54,39 @@ def split_of_tour(
     if scene_split != "train":
         return scene_split
     return "val_seen" if _sum(seed, f"tour {tour_id}") / 2**64 < seen_share else "train"
+
+
+def paper_splits(trajectories: Sequence[Trajectory], seed: int = 0) -> dict[str, str]:
+    """Return the split of each trajectory as the paper splits: walks of the same scenes.
+
+    Whole tours, in the order of a sum of seed and name, are ``val_seen`` until they have
+    ``PAPER_SHARE`` of the walks; all others are for training. No scene is unseen.
+
+    Args:
+        trajectories: of one composition.
+        seed: another seed, another choice.
+    """
+    walks = Counter(tour_of(one.trajectory_id) for one in trajectories)
+    held, left = set[str](), PAPER_SHARE * len(trajectories)
+    for tour in sorted(walks, key=lambda name: (_sum(seed, f"tour {name}"), name)):
+        if left <= 0:
+            break
+        held.add(tour)
+        left -= walks[tour]
+    return {
+        one.trajectory_id: "val_seen" if tour_of(one.trajectory_id) in held else "train"
+        for one in trajectories
+    }
+
+
+def tour_of(trajectory_id: str) -> str:
+    """Return the tour that a trajectory is a part of.
+
+    Example:
+        >>> tour_of("kitchen_t03_002")
+        'kitchen_t03'
+    """
+    return trajectory_id.rpartition("_")[0]
 
 
 def _sum(seed: int, name: str) -> int:

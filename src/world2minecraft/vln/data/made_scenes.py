@@ -1,0 +1,88 @@
+"""Scenes for those who have none: rooms that are generated, scanned and reconstructed, and houses.
+
+A room goes the whole way of a real capture: a virtual depth camera scans it, with that camera's
+faults, and ``w2m reconstruct`` makes a run of it, so that a set can hold real and generated rooms
+side by side. What is there already is taken as it is.
+"""
+
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from world2minecraft.dataset.engine import opened_engine
+from world2minecraft.errors import UsageError
+from world2minecraft.making import make_run
+from world2minecraft.parameters import Parameters
+from world2minecraft.progress import Progress, silent
+from world2minecraft.rooms import BASE_KINDS, generate_room, scan_room
+from world2minecraft.rooms.worlds import house_of, write_house
+
+SCENES_FOLDER = "scenes"  # Of a set.
+MOST_MADE = 1_000
+_FINISHED = {"room": "report.json", "house": "house.json"}  # What is written last.
+
+
+@dataclass(frozen=True)
+class _Order:
+    """A room or a house to make, by its number from 1 in the series of a seed."""
+
+    folder: str
+    what: str
+    number: int
+    seed: int
+
+
+def make_scenes(
+    folder: str | Path,
+    rooms: int,
+    houses: int,
+    seed: int = 0,
+    workers: int = 1,
+    progress: Progress = silent,
+) -> list[Path]:
+    """Make runs of generated rooms, and houses; return their folders, rooms first.
+
+    Args:
+        folder: where; ``living_01``, ``bed_02`` ... and ``house_01`` ... go below it.
+        rooms: how many rooms, of the kinds in turn; a longer series begins with a shorter one.
+        houses: how many houses.
+        seed: another seed, other scenes.
+        workers: how many processes.
+        progress: told of each scene.
+
+    Raises:
+        UsageError: a number cannot be. OutputError: the folder cannot be written.
+    """
+    if not (0 <= rooms <= MOST_MADE and 0 <= houses <= MOST_MADE):
+        raise UsageError(f"0 to {MOST_MADE:,} rooms and houses can be made, not {rooms}, {houses}")
+    place = Path(folder)
+    orders = [
+        _Order(str(place / f"{BASE_KINDS[n % len(BASE_KINDS)]}_{n + 1:02d}"), "room", n + 1, seed)
+        for n in range(rooms)
+    ]
+    orders += [
+        _Order(str(place / f"house_{n + 1:02d}"), "house", n + 1, seed) for n in range(houses)
+    ]
+    left = [one for one in orders if not (Path(one.folder) / _FINISHED[one.what]).is_file()]
+    if left:
+        progress("scenes", 0, len(left))
+        with opened_engine("pool", max(1, min(workers, len(left)))) as engine:
+            for done, (n, _) in enumerate(engine.run(_make, left, lambda _: None), 1):
+                progress("scenes", done, len(left), Path(left[n].folder).name)
+    return [Path(one.folder) for one in orders]
+
+
+def _make(order: _Order, tick: Callable[[int], None]) -> None:
+    """Make a scene: what processes are sent to do."""
+    out = Path(order.folder)
+    if order.what == "house":
+        write_house(house_of(order.seed, order.number), out, name=out.name.replace("_", " "))
+    else:
+        kind = BASE_KINDS[(order.number - 1) % len(BASE_KINDS)]
+        chance = order.seed * MOST_MADE + order.number  # Rooms of two seeds differ.
+        shutil.rmtree(out / "capture", ignore_errors=True)  # Of one that was broken off.
+        scan_room(generate_room(chance, kind=kind), out / "capture", seed=chance)
+        make_run(out / "capture", out, Parameters())
+        shutil.rmtree(out / "capture")
+    tick(1)
