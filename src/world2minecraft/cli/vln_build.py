@@ -77,23 +77,6 @@ def run(
     that it makes go to OUT/scenes; those that are there are taken as they are. The same words
     and seed give the same bytes, with any number of workers.
 
-    Args:
-        out: the folder to write.
-        scenes: their paths.
-        rooms: how many reconstructions of generated rooms are made.
-        houses: how many houses are made.
-        composition: which scenes go in.
-        trajectories: of each scene.
-        views: Next-View items of a trajectory, at most.
-        paper_size: cut to the paper's counts.
-        paper_split: split walks of the same scenes.
-        unseen_share: how many scenes are for scoring alone.
-        every_keyframe: no balance of actions.
-        moves: the set of moves.
-        size: of pictures.
-        seed: of all chances.
-        workers: how many processes work.
-
     Raises:
         UsageError: an option cannot be, or no scene gives an item. InputError: a scene cannot be
         read. OutputError: the folder cannot be written.

@@ -71,7 +71,7 @@ def test_progress_ends_once_and_never_falls(scenes):
     told = []
     given_of = [(min(given, asked), asked) for given, asked in scenes]
     total = sum(asked for _, asked in given_of)
-    count = _Count(total, len(scenes), lambda *words: told.append(words))
+    count = _Count(total, len(scenes), told_to(told))
     for given_, asked in given_of:
         for _ in range(given_):
             count.add(1)
@@ -89,6 +89,15 @@ def two_flats(flat_path, tmp_path_factory):
     return [shutil.copytree(flat_path, folder / name) for name in ("east", "west")]
 
 
+def told_to(told):
+    """Progress that keeps what it is told."""
+
+    def progress(stage: str, done: int, total: int, note: str = "") -> None:
+        told.append((stage, done, total, note))
+
+    return progress
+
+
 def small(**more):
     return BuildRule(
         trajectories=3, work=WorkRule(size_px=(64, 36), balanced=False, seed=2), **more
@@ -104,9 +113,7 @@ def one_worker(two_flats, tmp_path_factory):
 def test_workers_change_nothing(two_flats, one_worker, tmp_path):
     out, built = one_worker
     told = []
-    again = build_set(
-        two_flats, tmp_path, small(paper_split=True), lambda *words: told.append(words), workers=2
-    )
+    again = build_set(two_flats, tmp_path, small(paper_split=True), told_to(told), workers=2)
     assert again.items == built.items
     for name in RECORDS:
         assert (tmp_path / name).read_bytes() == (out / name).read_bytes()
@@ -128,13 +135,13 @@ def test_scenes_are_made_once(tmp_path, monkeypatch):
     few = partial(made_scenes.scan_room, frames=6, width=160, height=120)
     monkeypatch.setattr(made_scenes, "scan_room", few)
     told = []
-    room, house = made_scenes.make_scenes(tmp_path, 1, 1, 3, 1, lambda *words: told.append(words))
+    room, house = made_scenes.make_scenes(tmp_path, 1, 1, 3, 1, told_to(told))
     assert (composition_of(room), composition_of(house)) == ("base", "extend")
     assert (room.name, house.name) == ("bed_01", "house_01")
     assert not (room / "capture").exists()
     assert [words[:3] for words in told] == [("scenes", n, 2) for n in range(3)]
     del told[:]
-    assert made_scenes.make_scenes(tmp_path, 1, 1, 3, 1, lambda *words: told.append(words)) == [
+    assert made_scenes.make_scenes(tmp_path, 1, 1, 3, 1, told_to(told)) == [
         room,
         house,
     ]
