@@ -145,7 +145,7 @@ def test_a_capture_becomes_the_cells_of_its_room(capture, tmp_path, capsys):
         (["PHOTO", "--grid", "GRID", "--predictor", "mono:SMALL"], 2, "says 8x8x8 cells of 0.16 m"),
         (["PHOTO", "--grid", "GRID", "--predictor", "mono:DEEP"], 2, "wants depth; give a network"),
         (["CAPTURE", "--colour", "PHOTO"], 2, "--colour goes with one depth picture"),
-        (["PHOTO"], 3, "--predictor mono:FILE.onnx"),
+        (["PHOTO"], 3, "--predictor mono"),
         (["EMPTY"], 3, "EMPTY"),
     ],
 )

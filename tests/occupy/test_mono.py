@@ -7,13 +7,20 @@ import pytest
 from tests.exact_room import CAMERA, BoxRoom
 from tests.occupy.tiny_network import FACTS, sized, write_network
 
+from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.coordinates import apply, invert_rigid, look_at, rotation_about_z
 from world2minecraft.dataset.region import RegionRule, region_of
-from world2minecraft.errors import CaptureError, UsageError
+from world2minecraft.errors import CaptureError
 from world2minecraft.fuse import fuse_views, read_out
 from world2minecraft.geometry.lifting import lift_depth, project
 from world2minecraft.occupy import mono, predictor
-from world2minecraft.occupy.mono import MonoPredictor, depth_of, fitted, region_before
+from world2minecraft.occupy.mono import (
+    MonoPredictor,
+    before_walls,
+    depth_of,
+    fitted,
+    region_before,
+)
 from world2minecraft.types import Camera, Scan, View
 
 ROOM = BoxRoom((4.4, 4.0, 2.6))
@@ -67,7 +74,10 @@ def test_the_network_is_told_where_the_picture_was_taken(network, monkeypatch):
     np.testing.assert_allclose(at_px[:2] / at_px[2], expected, atol=1e-6)
 
 
-def test_seen_are_the_cells_whose_centre_falls_into_the_picture(network):
+def test_seen_are_the_cells_whose_centre_falls_into_the_picture(tmp_path):
+    bias = np.zeros((12, *FACTS.grid_shape))
+    bias[CLASS_NAMES.index("chair")] = 9  # Everywhere, so that no wall hides a thing.
+    network = write_network(tmp_path / "n.onnx", bias=bias)
     said = MonoPredictor(network).look(view_at(POSES[0]), np.eye(4))
     for cell in np.argwhere(np.ones(said.seen.shape))[::97]:
         centre = apply(said.grid_to_scan, (cell[None] + 0.5) * said.voxel_m)
@@ -76,6 +86,23 @@ def test_seen_are_the_cells_whose_centre_falls_into_the_picture(network):
         inside = at[0, 2] > 0.1 and 0 <= u < 160 and 0 <= v < 120
         assert said.seen[tuple(cell)] == inside
     assert 0.1 < said.seen.mean() < 0.6
+
+
+def test_beyond_a_wall_nothing_is_seen():
+    facts = FACTS
+    region = region_before(POSES[0], facts)
+    camera_to_grid = invert_rigid(region.region_to_room) @ POSES[0]
+    labels = np.zeros(facts.grid_shape, np.uint8)
+    open_room = before_walls(labels, region, camera_to_grid, CAMERA)
+    labels[:, 12] = CLASS_NAMES.index("wall")  # Right across the view, which goes along y.
+    labels[10:20, 12, 5:12] = 0  # A doorway.
+    seen = before_walls(labels, region, camera_to_grid, CAMERA)
+    assert np.array_equal(seen[:, :13], open_room[:, :13])
+    for side in (slice(0, 5), slice(25, 30)):  # But for what the wall's last column lets by.
+        assert seen[side, 18:21].sum() < 0.1 * open_room[side, 18:21].sum()
+    assert seen[14:16, 20, 8].all() and not (seen & ~open_room).any()
+    labels[:, 12] = CLASS_NAMES.index("bed")  # What is no wall may hide things that are there.
+    assert np.array_equal(before_walls(labels, region, camera_to_grid, CAMERA), open_room)
 
 
 @pytest.mark.parametrize("size_px", [(64, 48), (64, 64), (80, 40), (32, 24)])
@@ -158,12 +185,17 @@ def test_without_pictures_there_is_nothing_to_say(network):
         list(predictor(f"mono:{network}").predict(scan))
 
 
-def test_without_a_network_it_is_told_how_one_is_made(monkeypatch, tmp_path):
-    monkeypatch.setattr(mono, "SHIPPED", tmp_path / "none.onnx")
-    with pytest.raises(UsageError) as caught:
-        predictor("mono")
-    assert str(caught.value) == (
-        "no monocular network is shipped with this version; train one: w2m train monoscene "
-        "--data DIR --size small --out RUN, then w2m export RUN --out net.onnx, and type "
-        "--predictor mono:net.onnx"
-    )
+def test_the_shipped_network_sees_the_room_that_it_is_shown():
+    scan = Scan([view_at(pose) for pose in POSES[:1]], np.eye(4), np.ones(3), ("v",))
+    used = predictor("mono")
+    facts = used.network.facts
+    assert facts.voxel_m == 0.16 and not facts.wants_depth and facts.region == "paper"
+    (said,) = used.predict(scan)
+    assert said.probabilities.shape == (*facts.grid_shape, 12)
+    np.testing.assert_allclose(said.probabilities.sum(axis=-1), 1, atol=5e-3)
+    labels = said.probabilities.argmax(axis=-1)
+    low = labels[..., 0][said.seen[..., 0]]
+    assert np.mean(low == CLASS_NAMES.index("floor")) > 0.9
+    high = np.bincount(labels[..., 9][said.seen[..., 9]], minlength=12) / said.seen[..., 9].sum()
+    assert high[0] > 0.5 and high[CLASS_NAMES.index("wall")] > 0.1 and high[[0, 3]].sum() > 0.9
+    assert mono.SHIPPED.stat().st_size <= 8_000_000

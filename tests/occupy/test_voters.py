@@ -146,9 +146,9 @@ def test_soft_votes_reach_the_map():
 
 
 def test_a_monocular_network_votes_by_the_cell_that_holds_a_point(tmp_path):
-    """Its cells of the nearer half are tables, beyond they are windows; points vote so."""
+    """Its cells of the nearer half are tables, beyond they are furniture; points vote so."""
     bias = np.zeros((12, 60, 60, 36))
-    bias[8, :, :20], bias[4, :, 20:] = 30.0, 30.0
+    bias[8, :, :20], bias[10, :, 20:] = 30.0, 30.0
     path = write_network(tmp_path / "n.onnx", sized((60, 60, 36), 0.08), bias=bias)
     mono = MonoPredictor(path)
     found = DepthPredictor(voters=[CellVoter(mono)]).lift(view(), np.eye(4))
@@ -158,7 +158,7 @@ def test_a_monocular_network_votes_by_the_cell_that_holds_a_point(tmp_path):
     voted = found.votes.any(axis=1)
     assert voted.mean() > 0.9
     assert (found.votes[voted & (forward < 1.6)][:, 8] > 0.99).all()
-    assert (found.votes[voted & (forward >= 1.6)][:, 4] > 0.99).all()
+    assert (found.votes[voted & (forward >= 1.6)][:, 10] > 0.99).all()
     assert not found.votes[:, 0].any()
 
 

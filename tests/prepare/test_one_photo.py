@@ -95,7 +95,7 @@ def test_a_network_without_metres_is_refused(tmp_path, photo, monkeypatch):
 
 
 def test_a_photo_alone_is_refused_with_what_would_help(tmp_path, photo):
-    with pytest.raises(CaptureError, match="--depth hf:ORG/NAME or --predictor mono:FILE.onnx"):
+    with pytest.raises(CaptureError, match="--depth hf:ORG/NAME or --predictor mono"):
         open_prepared(photo, tmp_path / "OUT", Parameters())
     assert not (tmp_path / "OUT").exists()
 

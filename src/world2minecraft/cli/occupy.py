@@ -15,9 +15,9 @@ EXAMPLES = """\
 w2m occupy NYU0001_0000.png --grid NYU0001_0000.bin --out pred.npz       SSCNet's NYUv2
 w2m occupy depth.png --grid geometry.npz --out pred.npz --depth-code mm  plain millimetres
 w2m occupy NYU0001_0000.png --grid NYU0001_0000.bin --out pred.npz --colour NYU0001_0000_color.jpg
-w2m occupy NYU0001_0000_color.jpg --grid NYU0001_0000.bin --predictor mono:net.onnx
+w2m occupy NYU0001_0000_color.jpg --grid NYU0001_0000.bin --out pred.npz --predictor mono
 w2m occupy my_scan --out room.npz                                        a whole captured room
-w2m occupy photo.jpg --out room.npz --predictor mono:net.onnx --fov 55
+w2m occupy photo.jpg --out room.npz --predictor mono --fov 55
 """
 LAST_STAGE = "label"
 
@@ -40,7 +40,7 @@ FocalPx = Annotated[
     float, typer.Option("--focal-px", help="Of a frame, at its size; NYUv2's by default.")
 ]
 PredictorName = Annotated[
-    str, typer.Option("--predictor", help="depth, or mono:FILE.onnx, which looks at photos.")
+    str, typer.Option("--predictor", help="depth; mono, or mono:FILE.onnx, looks at photos.")
 ]
 LabelImages = Annotated[
     Path | None, typer.Option("--labels", help="Of a capture: a folder of 2D label images.")
@@ -70,7 +70,7 @@ def run(
     With --grid and a picture, the grid is the file's: 60x36x60 cells of 8 cm in its own axes, x
     right, z up, y forward; of a .bin only where its grid and its camera are is read, never a
     label. From a depth picture the completion network names what is seen and guesses what is
-    hidden; from a photo a network (--predictor mono:FILE.onnx) says all of it.
+    hidden; from a photo a network (--predictor mono) says all of it.
 
     Without --grid, whatever w2m reconstruct takes is registered, fused and labelled: the cells of
     the room, x, y, z up. A capture with --grid answers in that grid, whose world must be the
@@ -134,7 +134,7 @@ class _Frame:
             raise CaptureError(
                 self.source,
                 "is a photo; give its depth picture, or a network that needs none: "
-                "--predictor mono:FILE.onnx",
+                "--predictor mono",
             )
         check_depth_kind(self.source, header)
         depth_m = depth_of_png(self.source, read_raw(self.source), self.depth_code)

@@ -26,7 +26,7 @@ w2m reconstruct my_scan --out OUT                         the whole way
 w2m reconstruct IMG_2041.MOV --out OUT                    a phone's video; a folder of photos too
 w2m reconstruct my_photos --out OUT --known "table height" 0.72
 w2m reconstruct photo.jpg --out OUT --depth hf:ORG/NAME   one photo, its depth by a network
-w2m reconstruct photo.jpg --out OUT --predictor mono:FILE.onnx --fov 55
+w2m reconstruct photo.jpg --out OUT --predictor mono --fov 55
 w2m reconstruct room.glb --out OUT                        a mesh or a point cloud
 w2m reconstruct my_scan --out OUT --blocks-per-metre 2    smaller, coarser
 w2m reconstruct my_scan --out OUT --labels my_labels      with 2D label images
@@ -88,7 +88,7 @@ LabellerName = Annotated[
     str, typer.Option("--labeller", help="auto, completion, votes or geometric.")
 ]
 PredictorName = Annotated[
-    str, typer.Option("--predictor", help="depth, or mono:FILE.onnx, the paper's network.")
+    str, typer.Option("--predictor", help="depth; mono, or mono:FILE.onnx: the paper's way.")
 ]
 Plan = Annotated[
     Path | None, typer.Option("--plan", help="A RoomPlan of the same room, as more evidence.")

@@ -2,8 +2,8 @@
 
 Each view's box of cells is the one by whose rule the labels of training pictures were cut
 (``geometry/region.py``), on the cells of the room and from its floor on. The network speaks for
-the cells that fall into the picture; what it says of hidden ones is a guess as all of it, and
-fusion takes it softly.
+the cells that fall into the picture, up to the first wall; what it says of hidden ones is a guess
+as all of it, and fusion takes it softly.
 """
 
 from collections.abc import Iterator
@@ -13,8 +13,9 @@ import numpy as np
 from PIL import Image
 from scipy import ndimage
 
+from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.coordinates import apply, invert_rigid
-from world2minecraft.errors import CaptureError, UsageError
+from world2minecraft.errors import CaptureError
 from world2minecraft.geometry.lifting import lift_depth, project
 from world2minecraft.geometry.region import (
     USUAL_VOXEL_M,
@@ -28,6 +29,8 @@ from world2minecraft.types import Camera, GridEvidence, Scan, View
 
 SHIPPED = Path(__file__).parents[1] / "weights" / "mono.onnx"
 NEAREST_M = 0.1  # Cells nearer to the camera's plane are not in the picture.
+WALLS = [CLASS_NAMES.index(name) for name in ("wall", "window")]
+WALL_CELLS = 3.0  # So far behind its first cell a wall ends; along one seen aslant cells lie apart.
 HIDDEN_CELLS = 1.5  # A cell farther behind the first surface of its pixels is hidden by it.
 
 
@@ -38,16 +41,10 @@ class MonoPredictor:
         network: the path of an ONNX file; that which is shipped with the program where empty.
 
     Raises:
-        UsageError: none is shipped and none was named. InputError: the file cannot be used.
+        InputError: the file cannot be used.
     """
 
     def __init__(self, network: str | Path = ""):
-        if not network and not SHIPPED.is_file():
-            raise UsageError(
-                "no monocular network is shipped with this version; train one: w2m train "
-                "monoscene --data DIR --size small --out RUN, then w2m export RUN --out net.onnx, "
-                "and type --predictor mono:net.onnx"
-            )
         self.network = OccupancyNetwork(network or SHIPPED)
 
     def predict(self, scan: Scan) -> Iterator[GridEvidence]:
@@ -80,7 +77,7 @@ class MonoPredictor:
         return GridEvidence(
             view.name,
             found.astype(np.float16),
-            in_picture(region, camera_to_grid, camera),
+            before_walls(found.argmax(axis=-1), region, camera_to_grid, camera),
             facts.voxel_m,
             invert_rigid(scan_to_room) @ region.region_to_room,
             cell_colours(found[..., 0] < 0.5, region, camera_to_grid, camera, picture),
@@ -139,9 +136,20 @@ def depth_of(view: View, camera: Camera) -> np.ndarray | None:
     return np.where(np.isfinite(found), found, 0).astype(np.float32)
 
 
-def in_picture(region: LabelRegion, camera_to_grid: np.ndarray, camera: Camera) -> np.ndarray:
-    """Return bool [X, Y, Z]: cells whose centre falls into the picture."""
-    return _pixels(region, camera_to_grid, camera)[1]
+def before_walls(
+    labels: np.ndarray, region: LabelRegion, camera_to_grid: np.ndarray, camera: Camera
+) -> np.ndarray:
+    """Return bool [X, Y, Z]: cells of the picture that no wall or window hides.
+
+    What lies beyond a room had no label in training: whatever is said of it there is noise.
+    """
+    pixels, inside, depth_m = _pixels(region, camera_to_grid, camera)
+    walls = inside & np.isin(labels, WALLS)
+    if not walls.any():
+        return inside
+    first = _first_depth(*pixels[walls].T, depth_m[walls], region.voxel_m, camera)
+    last_m = first[pixels[..., 1], pixels[..., 0]] + WALL_CELLS * region.voxel_m
+    return inside & (depth_m <= last_m)
 
 
 def cell_colours(

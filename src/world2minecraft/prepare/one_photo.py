@@ -47,7 +47,7 @@ def prepare_photo(judged: JudgedCapture, folder: Path, chosen: Parameters, unit:
         raise CaptureError(
             judged.capture.folder,
             "is one photo: nothing in it can be compared. Take 30 or more of the room, or let a "
-            "network guess: --depth hf:ORG/NAME or --predictor mono:FILE.onnx",
+            "network guess: --depth hf:ORG/NAME or --predictor mono",
         )
     stated: dict[str, Any] = {
         "made_from": judged.capture.source,
