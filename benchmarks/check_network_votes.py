@@ -8,7 +8,8 @@ Generated rooms that no network was trained on (seeds from 700; ``w2m dataset ro
 40,000) are photographed by a virtual phone and reconstructed from colour with poses: by stereo
 alone, and with the votes joined (or by the network alone). Printed are, over the cells that rays of
 the used frames reached: IoU, mIoU of the classes present and object F1, room by room, and the mean
-gain with its 95 % interval over rooms (bootstrap). Votes are worth joining where that interval lies above 0.
+gain with its 95 % interval over rooms (bootstrap). Votes are worth joining where that interval lies
+above 0.
 """
 
 import argparse
