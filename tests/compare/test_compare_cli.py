@@ -4,6 +4,7 @@ import json
 
 import pytest
 from made_layouts import gpt_record, placed, shell, write
+from tests.models.scripted_server import scripted
 
 from world2minecraft import cli
 
@@ -63,3 +64,48 @@ def test_what_is_left_out_is_told(tmp_path, capsys):
     text = capsys.readouterr().out
     assert "note: left out: room-1: thing 0: 'length'" in text
     assert "note: ... and 2 more" in text
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """A small bedroom of LayoutGPT as a world."""
+    folder = tmp_path_factory.mktemp("built")
+    bed = ("single_bed", 0.7, 1.1, 0.25, 1.0, 2.0, 0.5, 0.0)
+    record = gpt_record([bed], unit="m", length=2.4, width=2.4, name="small room")
+    path = write(folder / "gpt.json", [record, record])
+    out = folder / "ROOM"
+    assert cli.run(["compare", "build", str(path), "--out", str(out)]) == 0
+    return out
+
+
+def test_a_built_layout_is_a_world_and_keeps_its_boxes(built, capsys):
+    assert (built / "build" / "world" / "level.dat").is_file()
+    assert (built / "preview.png").is_file()
+    assert cli.run(["compare", "layouts", str(built)]) == 0
+    assert "LayoutGPT       1        1  0.000" in capsys.readouterr().out
+
+
+def test_a_judge_sees_a_world_and_its_grades_are_kept(built, tmp_path, capsys):
+    told = '{"why": "tidy", "realism": 7, "completeness": 4, "atmosphere": 6}'
+    out = tmp_path / "JUDGED"
+    with scripted([told, told, "no"]) as server:
+        words = ["compare", "judge", str(built), "--agent", server.url, "--out", str(out)]
+        assert cli.run([*words, "--repeats", "2"]) == 0
+        assert len(server.requests) == 2
+    text = capsys.readouterr().out
+    assert "LayoutGPT       1  7.000 +- 0.000  4.000 +- 0.000  6.000 +- 0.000" in text
+    kept = json.loads((out / "judged.json").read_text())
+    assert kept["scenes"][0]["mean"]["realism"] == 7.0 and kept["scenes"][0]["unread"] == 0
+    assert len(list((out / "pictures").glob("*.jpg"))) == 2
+
+
+def test_a_layout_is_described(built, tmp_path, capsys):
+    assert cli.run(["compare", "describe", str(built)]) == 0
+    assert capsys.readouterr().out.startswith("A bedroom of 2.4 m from west to east")
+    target = tmp_path / "room.json"
+    words = ["compare", "describe", str(built), "--for", "layoutvlm", "--out", str(target)]
+    assert cli.run(words) == 0
+    assert json.loads(target.read_text())["boundary"]["wall_height"] == 2.6
+    assert cli.run(["compare", "describe", str(built), "--for", "layoutvml"]) == 2
+    assert cli.run([*words, "--agent", "gemini"]) == 2
+    assert "photos tell no sizes" in capsys.readouterr().err

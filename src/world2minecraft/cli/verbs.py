@@ -60,6 +60,9 @@ VERBS: dict[str, str] = {
     "vln evaluate": "Ask a model the items of a navigation set.",
     "vln table": "Print the results of navigation runs side by side.",
     "compare layouts": "Score layouts of rooms, of other methods and ours, by one rule.",
+    "compare build": "Build layouts of other methods as Minecraft worlds, faults and all.",
+    "compare judge": "Let a vision-language model grade built rooms, all shown alike.",
+    "compare describe": "Say a room in the words that text-to-layout methods start from.",
     "doctor": "Check that this machine can run the program.",
 }
 

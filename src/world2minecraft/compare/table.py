@@ -47,6 +47,20 @@ def other_table(summaries: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
     return rows
 
 
+def grade_table(
+    means: Mapping[str, Mapping[str, tuple[float, float, int] | None]],
+) -> list[list[str]]:
+    """Return a judge's grades by method: the mean, and the deviation over scenes."""
+    rows: list[list[str]] = []
+    for method, told in means.items():
+        if not rows:
+            rows.append(["method", "scenes", *told])
+        counts = [one[2] for one in told.values() if one is not None]
+        cells = ["" if one is None else f"{one[0]:.3f} +- {one[1]:.3f}" for one in told.values()]
+        rows.append([method, str(max(counts, default=0)), *cells])
+    return rows
+
+
 def by_method(pairs: Sequence[tuple[str, Any]]) -> dict[str, list[Any]]:
     """Return things by their method, in the order in which methods first come."""
     groups: dict[str, list[Any]] = {}

@@ -60,7 +60,11 @@ class PlanSurface:
 
 @dataclass(frozen=True, eq=False)
 class PlanObject:
-    """A piece of furniture: RoomPlan's category, its box as in LayoutObject, and more words."""
+    """A piece of furniture: RoomPlan's category, its box as in LayoutObject, and more words.
+
+    Where ``design`` names what stands for it (of the furniture library, or ``cells``), neither that
+    nor where its front looks is judged from its box and the walls.
+    """
 
     category: str
     center_m: np.ndarray  # float64 [3]
@@ -68,6 +72,7 @@ class PlanObject:
     yaw_deg: float
     confidence: float = 1.0
     words: frozenset[str] = frozenset()
+    design: str = ""
 
     def __post_init__(self):
         put = object.__setattr__

@@ -81,9 +81,16 @@ class Formed(Generic[Value]):
 
 
 def ask_form(
-    model: ChatModel, turns: tuple[Turn, ...], form: Form[Value], *, repairs: int = REPAIRS
+    model: ChatModel,
+    turns: tuple[Turn, ...],
+    form: Form[Value],
+    *,
+    repairs: int = REPAIRS,
+    sample: int = 0,
 ) -> Formed[Value]:
     """Ask for a value of a form.
+
+    ``sample`` tells apart the times that the same is asked on purpose.
 
     A rung that is refused where the next one is taken is left for good (``model.rung``); that
     costs no repair.
@@ -97,7 +104,7 @@ def ask_form(
     left, rung = repairs, max(model.rung, form.rung)
     while True:
         try:
-            tried, value = _once(model, asked, form, RUNGS[rung])
+            tried, value = _once(model, asked, form, RUNGS[rung], sample)
         except RefusedQuestionError as error:
             if rung == len(RUNGS) - 1:
                 raise
@@ -114,10 +121,10 @@ def ask_form(
 
 
 def _once(
-    model: ChatModel, turns: tuple[Turn, ...], form: Form[Value], rung: str
+    model: ChatModel, turns: tuple[Turn, ...], form: Form[Value], rung: str, sample: int
 ) -> tuple[Try, Value | None]:
     try:
-        key, reply = model.ask(turns, form=form.wire(rung))
+        key, reply = model.ask(turns, form=form.wire(rung), sample=sample)
     except UselessReplyError as error:
         return Try(rung, "", None, str(error)), None
     if reply.finish == "length":

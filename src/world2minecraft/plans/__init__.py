@@ -10,13 +10,14 @@ from world2minecraft.plans.beside import add_plan_openings, voted_by_plan
 from world2minecraft.plans.matching import LaidPlan, PlanMismatchError, laid_plan
 from world2minecraft.plans.outlines import layouts_of, straightened
 from world2minecraft.plans.votes import plan_votes, with_plan_openings
-from world2minecraft.plans.world import PlanWorld, build_plan
+from world2minecraft.plans.world import PlanWorld, build_captured, build_plan
 
 __all__ = [
     "LaidPlan",
     "PlanMismatchError",
     "PlanWorld",
     "add_plan_openings",
+    "build_captured",
     "build_plan",
     "find_roomplan",
     "laid_plan",

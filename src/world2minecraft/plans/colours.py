@@ -31,6 +31,13 @@ THINGS: dict[str, Colour] = {
     "fireplace": (140, 78, 62),
     "television": (24, 24, 27),
     "stairs": (146, 108, 74),
+    # RoomPlan knows none of these; other plans do.
+    "curtain": (196, 186, 172),
+    "lamp": (238, 226, 196),
+    "mirror": (190, 208, 214),
+    "picture": (170, 140, 100),
+    "plant": (76, 122, 62),
+    "rug": (146, 92, 84),
 }
 
 

@@ -42,6 +42,8 @@ def class_of(item: PlanObject) -> int:
 
 def template_of(item: PlanObject, floor_z_m: float) -> str:
     """Return the name of the template for a thing, by category, attributes and size."""
+    if item.design:
+        return item.design
     depth, width, height = item.size_m.tolist()
     bottom = float(item.center_m[2]) - height / 2 - floor_z_m
     words = " ".join(sorted(item.words)).lower()
@@ -73,6 +75,8 @@ def front_of(item: PlanObject, walls: list[tuple[np.ndarray, np.ndarray]]) -> in
         walls: the start and end, float64 [2] each, of the walls of its room.
     """
     turns = int(np.floor(item.yaw_deg / 90 + 0.5)) % 4
+    if item.design:
+        return turns
     ahead = np.array([np.cos(np.radians(90 * turns)), np.sin(np.radians(90 * turns))])
     half = item.size_m[0] / 2
     before, behind = (

@@ -1,8 +1,10 @@
 """From a plan to a finished run: the files that a reconstruction would leave, and the world."""
 
 import hashlib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -56,15 +58,47 @@ def build_plan(
     chosen = parameters or Parameters()
     progress("plan", 0, 1)
     plan = straightened(read_roomplan(place))
-    held = cells_of_plan(plan, chosen.voxel_m)
+    source = {"plan": hashlib.sha256(place.read_bytes()).hexdigest()}
+    return build_captured(plan, out, chosen, source, progress=progress, name=name)
+
+
+def build_captured(
+    plan: CapturedPlan,
+    out: Path,
+    parameters: Parameters,
+    source: Mapping[str, Any],
+    *,
+    progress: Progress = silent,
+    name: str = "",
+    as_told: bool = False,
+) -> PlanWorld:
+    """Turn a straightened plan of any source into a run's folder with its world.
+
+    Args:
+        plan: its walls lie along x and y.
+        out: the folder of the results.
+        parameters: cells, scale, style and palette count.
+        source: what the manifest says of where the plan is from.
+        progress: told of each step.
+        name: what the scene is called.
+        as_told: leave furniture that meets other furniture where it is, cut by what is larger.
+
+    Raises:
+        UsageError: the plan is too large for such cells. OutputError: ``out`` cannot be written.
+    """
+    progress("plan", 0, 1)
+    held = cells_of_plan(plan, parameters.voxel_m)
     layouts = layouts_of(plan)
+    if not as_told:
+        held = replace(held, placements=settle(held.placements, held.grid, layouts))
     check_writable(out)
     scan = scan_of_plan(plan, name)
     _write_run(out, held, layouts, scan)
-    write_json(out / "manifest.json", _manifest(place, chosen))
+    told = {"program": __version__, "parameters": parameters.as_json(), **source}
+    write_json(out / "manifest.json", told)
     progress("plan", 1, 1)
     progress("build", 0, 1)
-    LATER_STEPS["build"](out, chosen)
+    LATER_STEPS["build"](out, parameters)
     progress("build", 1, 1)
     return PlanWorld(scan, layouts, len(held.instances))
 
@@ -96,14 +130,6 @@ def _write_run(out: Path, held: PlanCells, layouts: tuple[Layout, ...], scan: Sc
     write_room(out / "room.npz", held.grid, scan.scan_to_room)
     write_layouts(out / "layout.json", layouts)
     write_objects(out / "objects.json", held.instances)
-    write_placements(out / "placements.json", settle(held.placements, held.grid, layouts))
+    write_placements(out / "placements.json", held.placements)
     write_occ_json(out / "occ.json", held.grid)
     write_centers_json(out / "centers.json", held.instances)
-
-
-def _manifest(place: AnyPath, chosen: Parameters) -> dict:
-    return {
-        "program": __version__,
-        "plan": hashlib.sha256(place.read_bytes()).hexdigest(),
-        "parameters": chosen.as_json(),
-    }

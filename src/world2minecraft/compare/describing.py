@@ -1,0 +1,194 @@
+"""A room in words: what methods that make layouts of text start from.
+
+From a finished run, a truth or a layout the words are put together by rule, from rooms and boxes;
+from photos a model writes them. ``for_method`` puts them into the form that each method reads.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.compare.importers.reading import clean_name
+from world2minecraft.compare.judge import prompt_text
+from world2minecraft.compare.values import ComparedScene
+from world2minecraft.errors import ServerError, UnknownNameError
+from world2minecraft.furniture import TEMPLATES, template
+from world2minecraft.models.chat import ChatModel
+from world2minecraft.models.chat_messages import Picture, Turn
+from world2minecraft.types import Layout, LayoutObject, Opening, Placement
+
+METHODS = ("text", "layoutgpt", "idesign", "layoutvlm")
+AT_WALL_M = 0.25  # What is nearer to a wall stands at it.
+SIDES = ("west", "east", "south", "north")
+PX = 256
+DESCRIBE = "describe.md"
+# The first kind of which a word is in a room's things.
+KINDS = (
+    ("kitchen", ("stove", "fridge", "refrigerator", "counter", "oven", "dishwasher", "kitchen")),
+    ("bathroom", ("toilet", "bathtub", "shower")),
+    ("bedroom", ("bed", "crib")),
+    ("living room", ("sofa", "couch", "loveseat")),
+    ("dining room", ("dining",)),
+    ("office", ("desk",)),
+)
+_COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+
+
+def describe_scene(scene: ComparedScene) -> str:
+    """Return a scene in plain sentences; the north wall is at the greatest y of the room's frame.
+
+    A person reads them, and so does any method that starts from text.
+    """
+    parts = []
+    for number, room in enumerate(scene.rooms):
+        own = [item for item in scene.objects if _owner(item, scene.rooms) == number]
+        parts.append(_room_words(room, own))
+    return "\n\n".join(parts) + "\n"
+
+
+def describe_photos(model: ChatModel, photos: Sequence[Picture]) -> str:
+    """Return what a model says of a room by its photos; the prompt is ``prompts/describe.md``.
+
+    Raises:
+        ServerError: the model cannot be asked, or says nothing. BudgetError: a cap is reached.
+    """
+    _, reply = model.ask((Turn("user", (prompt_text(DESCRIBE), *photos)),))
+    text = reply.text.strip()
+    if not text:
+        raise ServerError(f"{model.name} says nothing of the photos; try another model")
+    return f"{text}\n"
+
+
+def for_method(method: str, scene: ComparedScene, words: str) -> Any:
+    """Return a description as a method reads it: text, or plain values for JSON.
+
+    Args:
+        method: ``text``, ``layoutgpt`` (the condition of its prompt), ``idesign`` (its arguments)
+            or ``layoutvlm`` (a scene file, to which assets must be added).
+        scene: for the room's size.
+        words: as ``describe_scene`` or ``describe_photos`` gives them.
+
+    Raises:
+        UnknownNameError: there is no such method.
+    """
+    if method not in METHODS:
+        raise UnknownNameError("method", method, METHODS)
+    room = scene.rooms[0]
+    size = np.ptp(room.floor_polygon_m, axis=0)
+    if method == "layoutgpt":
+        length, width = (round(float(side) / float(size.min()) * PX) for side in size)
+        return (
+            f"Condition:\nRoom Type: {room_kind(scene)}\n"
+            f"Room Size: max length {length}px, max width {width}px\n"
+        )
+    if method == "idesign":
+        return {
+            "user_input": words.strip(),
+            "room_dimensions": [round(float(v), 2) for v in (*size, room.wall_height_m)],
+            "no_of_objects": len(scene.objects),
+        }
+    if method == "layoutvlm":
+        corners = [[round(float(x), 3), round(float(y), 3), 0] for x, y in room.floor_polygon_m]
+        return {
+            "task_description": words.strip(),
+            "layout_criteria": "the layout should follow the task description",
+            "boundary": {
+                "floor_vertices": corners,
+                "wall_height": round(float(room.wall_height_m), 3),
+            },
+            "assets": {},
+        }
+    return words
+
+
+def room_kind(scene: ComparedScene) -> str:
+    """Return the kind of a room by what stands in it."""
+    names = " ".join(name_of(item) for item in scene.objects)
+    return next((kind for kind, words in KINDS if any(word in names for word in words)), "room")
+
+
+def name_of(item: LayoutObject | Placement) -> str:
+    """Return what a person calls a thing."""
+    kind = CLASS_NAMES[item.class_id]
+    plain = {"tvs": "television", "furn": "piece of furniture", "objs": "object"}.get(kind, kind)
+    if isinstance(item, Placement):
+        is_known = item.template in TEMPLATES.names()
+        return template(item.template).title.lower() if is_known else plain
+    words = "".join(c if c.isalpha() else " " for c in item.name).split()
+    return clean_name(" ".join(words).lower()) if words else plain
+
+
+def _owner(item: Any, rooms: Sequence[Layout]) -> int:
+    """Return the room whose middle of the nearest floor a thing is over: by its outline's box."""
+    place = np.asarray(item.center_m)
+
+    def away(room: Layout) -> float:
+        low, high = room.floor_polygon_m.min(axis=0), room.floor_polygon_m.max(axis=0)
+        flat = np.maximum(np.maximum(low - place[:2], place[:2] - high), 0)
+        up = max(room.floor_z_m - place[2], place[2] - room.floor_z_m - room.wall_height_m, 0)
+        return float(np.hypot(*flat) + up)
+
+    return min(range(len(rooms)), key=lambda number: away(rooms[number]))
+
+
+def _room_words(room: Layout, objects: Sequence[Any]) -> str:
+    size = np.ptp(room.floor_polygon_m, axis=0)
+    held = ComparedScene(room.name, "", (room,), tuple(objects))
+    kind = room_kind(held)
+    article = "An" if kind[0] in "aeiou" else "A"
+    lines = [
+        f"{article} {kind} of {size[0]:.1f} m from west to east and {size[1]:.1f} m from south to "
+        f"north, {room.wall_height_m:.1f} m high."
+    ]
+    if len(room.floor_polygon_m) > 4:
+        lines.append(f"Its floor has {len(room.floor_polygon_m)} corners.")
+    lines += [_opening_words(one, room) for one in room.openings]
+    groups = Counter((name_of(item), _where(item, room), _size_words(item)) for item in objects)
+    lines += [
+        f"There {'is' if n == 1 else 'are'} {_count(n, name)} ({size_words}) {where}."
+        for (name, where, size_words), n in groups.items()
+    ]
+    return " ".join(lines)
+
+
+def _opening_words(opening: Opening, room: Layout) -> str:
+    middle = (opening.start_m + opening.end_m) / 2
+    wide = float(np.linalg.norm(opening.end_m - opening.start_m))
+    return f"There is a {opening.kind} of {wide:.1f} m in the {_nearest(middle, room)[0]} wall."
+
+
+def _where(item: Any, room: Layout) -> str:
+    """Return where a thing stands: at a wall if it is near one, high or low."""
+    half = np.asarray(item.size_m[:2]) / 2
+    yaw = getattr(item, "yaw_deg", None)
+    yaw = 90.0 * item.quarter_turns if yaw is None else yaw
+    angle = np.radians(yaw)
+    turn = np.abs([[np.cos(angle), np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    side, away = _nearest(np.asarray(item.center_m[:2]), room, turn @ half)
+    bottom = float(item.center_m[2] - item.size_m[2] / 2) - room.floor_z_m
+    hung = " up on it" if bottom > 1.0 else ""
+    if away <= AT_WALL_M:
+        return f"at the {side} wall{hung}"
+    return "hanging in the room" if bottom > 1.0 else f"{away:.1f} m from the {side} wall"
+
+
+def _nearest(point: np.ndarray, room: Layout, half: Any = (0.0, 0.0)) -> tuple[str, float]:
+    """Return the side of the box around a room that is nearest, and how far it is, metres."""
+    low, high = room.floor_polygon_m.min(axis=0), room.floor_polygon_m.max(axis=0)
+    gaps = [point[0] - half[0] - low[0], high[0] - point[0] - half[0],
+            point[1] - half[1] - low[1], high[1] - point[1] - half[1]]  # fmt: skip
+    number = int(np.argmin(gaps))
+    return SIDES[number], max(float(gaps[number]), 0.0)
+
+
+def _size_words(item: Any) -> str:
+    deep, wide, high = (float(v) for v in item.size_m)
+    return f"{wide:.1f} m wide, {deep:.1f} m deep, {high:.1f} m high"
+
+
+def _count(number: int, name: str) -> str:
+    told = _COUNTS[number] if number < len(_COUNTS) else str(number)
+    return f"{told} {name}" if number == 1 else f"{told} of this: {name}"

@@ -1,0 +1,77 @@
+"""What stands for a thing of a layout: a design of the furniture library, by the thing's name.
+
+Names of others are many; the longest words that are known count, from their end. What no word
+tells is told by class and size, and what that does not tell is built as the box that it is.
+"""
+
+import re
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+from world2minecraft.classes import SemanticClass
+from world2minecraft.exchange.roomplan import PlanObject
+from world2minecraft.files import read_json
+from world2minecraft.plans.furniture import HUNG_FROM_M, OWN_CELLS, template_of
+from world2minecraft.types import LayoutObject
+
+TABLE = Path(__file__).parent / "data" / "designs.json"
+# What stands for a class that no word tells more of, by RoomPlan's categories.
+CATEGORIES = {
+    SemanticClass.CHAIR: "chair",
+    SemanticClass.BED: "bed",
+    SemanticClass.SOFA: "sofa",
+    SemanticClass.TABLE: "table",
+    SemanticClass.TVS: "television",
+    SemanticClass.FURN: "storage",
+}
+
+
+class Design(NamedTuple):
+    """A template of the library, or ``cells``, and the category that colours it."""
+
+    template: str
+    category: str
+
+
+@lru_cache(maxsize=1)
+def designs() -> dict[str, Design]:
+    """Return the designs by the words that name them."""
+    return {word: Design(*pair) for word, pair in read_json(TABLE).items()}
+
+
+def design_of(item: LayoutObject, floor_z_m: float = 0.0) -> Design:
+    """Return what stands for a thing.
+
+    Example:
+        >>> import numpy as np
+        >>> wide = LayoutObject(6, np.zeros(3), np.array([2.0, 1.6, 0.5]), 0.0, "children_bed_2")
+        >>> design_of(wide).template
+        'double_bed'
+    """
+    category = CATEGORIES.get(SemanticClass(item.class_id), "")
+    known = _named(item.name)
+    if known is not None:
+        # Its class decides the category, so that what is built counts as what was said.
+        return known if not category else Design(known.template, category)
+    if not category:
+        return Design(OWN_CELLS, _hint(item, floor_z_m))
+    told = PlanObject(category, item.center_m, item.size_m, item.yaw_deg)
+    return Design(template_of(told, floor_z_m), category)
+
+
+def _named(name: str) -> Design | None:
+    words = re.findall(r"[a-z]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower())
+    for length in (2, 1):
+        for start in range(len(words) - length, -1, -1):
+            found = designs().get("_".join(words[start : start + length]))
+            if found is not None:
+                return found
+    return None
+
+
+def _hint(item: LayoutObject, floor_z_m: float) -> str:
+    """Return the category of a thing that nobody knows: a lamp, where it hangs and is named so."""
+    bottom_m = float(item.center_m[2] - item.size_m[2] / 2) - floor_z_m
+    lit = "lamp" in item.name.lower() or "light" in item.name.lower()
+    return "lamp" if lit or bottom_m > 3 * HUNG_FROM_M else ""

@@ -1,0 +1,192 @@
+"""How a room looks to a vision-language model: realism, completeness, atmosphere, from 1 to 10.
+
+All methods are shown alike: built of the same blocks, from the same two corners, in the same
+light. Each room is graded several times; a reply that cannot be read is no grade, and where there
+is none the score stays empty. The prompt is ``prompts/judge.md``; its sum, the model and those of
+the pictures stand beside the grades, since grades of different models or prompts do not compare.
+"""
+
+import hashlib
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.errors import UsageError
+from world2minecraft.models.chat import ChatModel
+from world2minecraft.models.chat_forms import Form, UnreadableError, ask_form, json_of
+from world2minecraft.models.chat_messages import Picture, Turn
+from world2minecraft.render.lamps import NEUTRAL, PAPER
+from world2minecraft.render.scene import prepare_scene
+from world2minecraft.render.views.cameras import camera_of
+from world2minecraft.render.views.frames import DrawOptions, frames_of
+from world2minecraft.render.views.opened import OpenedBuild
+from world2minecraft.render.views.orbit import TURN_DEG, orbit_shots
+from world2minecraft.render.views.turntable import OPEN_ELEVATION_DEG
+from world2minecraft.types import BlockVolume
+
+ASPECTS = ("realism", "completeness", "atmosphere")
+LEAST, MOST = 1, 10
+REPEATS = 3  # The paper's evident source asks three times.
+VIEWS = 2  # From opposite corners.
+SIZE_PX = (768, 576)
+FOV_DEG = 30.0
+QUALITY = 90
+PROMPT = "judge.md"
+
+
+@dataclass(frozen=True)
+class Grades:
+    """What a model said of one room: a row a repeat, None where a reply could not be read."""
+
+    name: str
+    method: str
+    rows: tuple[dict[str, int] | None, ...]
+    pictures: tuple[str, ...]  # SHA-256 of each
+
+    @property
+    def unread(self) -> int:
+        """How many replies could not be read."""
+        return sum(row is None for row in self.rows)
+
+    def mean(self, aspect: str) -> float | None:
+        """Return the mean grade of an aspect, None where there is none."""
+        told = [row[aspect] for row in self.rows if row is not None]
+        return float(np.mean(told)) if told else None
+
+    def told(self) -> dict[str, Any]:
+        """Return the grades as plain values."""
+        return {
+            "name": self.name,
+            "method": self.method,
+            "grades": list(self.rows),
+            "mean": {aspect: self.mean(aspect) for aspect in ASPECTS},
+            "unread": self.unread,
+            "pictures": list(self.pictures),
+        }
+
+
+def prompt_text(name: str = PROMPT) -> str:
+    """Return a prompt of this package."""
+    return (files("world2minecraft.compare") / "prompts" / name).read_text(encoding="utf-8")
+
+
+def prompt_sum() -> str:
+    """Return the SHA-256 of the judge's prompt."""
+    return hashlib.sha256(prompt_text().encode()).hexdigest()
+
+
+def pictures_of(volume: BlockVolume) -> list[Picture]:
+    """Return the pictures of a room that every judge is shown, JPEG."""
+    build = OpenedBuild(volume)
+    camera = camera_of(*SIZE_PX, vertical_fov_deg=FOV_DEG)
+    shots = orbit_shots(
+        build.whole, camera, VIEWS, elevation_deg=OPEN_ELEVATION_DEG, start_deg=TURN_DEG
+    )
+    how = DrawOptions(light=NEUTRAL, samples=2, background=PAPER)
+    pictures = []
+    for shot in shots:
+        scene = prepare_scene(build.seen_by(shot.camera_to_room))
+        picture = next(iter(frames_of(scene, [shot], how)))
+        if picture.colour is None:
+            raise RuntimeError("the renderer gave no colour")
+        pictures.append(Picture(jpeg(picture.colour)))
+    return pictures
+
+
+def jpeg(colour: np.ndarray) -> bytes:
+    """Return a picture, uint8 [H, W, 3], as the bytes of a JPEG."""
+    stream = io.BytesIO()
+    Image.fromarray(colour).save(stream, "JPEG", quality=QUALITY, subsampling=0)
+    return stream.getvalue()
+
+
+def grade(
+    model: ChatModel,
+    name: str,
+    method: str,
+    pictures: Sequence[Picture],
+    *,
+    wish: str = "",
+    repeats: int = REPEATS,
+) -> Grades:
+    """Ask a model for the grades of one room; it is not told who made it.
+
+    Args:
+        model: on any server; replies that it has on record cost nothing.
+        name: of the scene, for the record.
+        method: who made it, for the record.
+        pictures: what is shown.
+        wish: what the room was to be, where all methods were told the same; else empty.
+        repeats: how often.
+
+    Raises:
+        UsageError: fewer than one repeat. ServerError, BudgetError: the model cannot be asked.
+    """
+    if repeats < 1:
+        raise UsageError(f"a room is graded at least once, not {repeats} times")
+    words = prompt_text()
+    if wish:
+        words += f"\nThe room was to be this; grade completeness by it.\n\n{wish.strip()}\n"
+    turns = (Turn("user", (words, *pictures)),)
+    rows = [ask_form(model, turns, FORM, sample=number).value for number in range(repeats)]
+    return Grades(name, method, tuple(rows), tuple(one.sha256 for one in pictures))
+
+
+def means_of(grades: Sequence[Grades]) -> dict[str, dict[str, tuple[float, float, int] | None]]:
+    """Return, by method, the mean grade of each aspect over scenes, its deviation and how many.
+
+    The deviation is over the scenes' means; an aspect that no reply graded is None.
+    """
+    result: dict[str, dict[str, tuple[float, float, int] | None]] = {}
+    for method in dict.fromkeys(one.method for one in grades):
+        row: dict[str, tuple[float, float, int] | None] = {}
+        for aspect in ASPECTS:
+            means = [one.mean(aspect) for one in grades if one.method == method]
+            told = [mean for mean in means if mean is not None]
+            row[aspect] = (float(np.mean(told)), float(np.std(told)), len(told)) if told else None
+        result[method] = row
+    return result
+
+
+def read_grades(text: str) -> dict[str, int]:
+    """Return the grades of a reply.
+
+    Raises:
+        UnreadableError: an aspect is missing, or is no whole number from 1 to 10.
+
+    Example:
+        >>> read_grades('{"realism": 7, "completeness": 6, "atmosphere": 8}')["atmosphere"]
+        8
+    """
+    told = json_of(text)
+    if told is None:
+        raise UnreadableError("it holds no JSON object")
+    row = {}
+    for aspect in ASPECTS:
+        value = told.get(aspect)
+        if isinstance(value, float) and value.is_integer():
+            value = int(value)
+        if type(value) is not int or not LEAST <= value <= MOST:
+            raise UnreadableError(f"{aspect} must be a whole number from {LEAST} to {MOST}")
+        row[aspect] = value
+    return row
+
+
+_SCALE: dict[str, Any] = {"type": "integer", "enum": list(range(LEAST, MOST + 1))}
+FORM: Form[dict[str, int]] = Form(
+    "grades",
+    {
+        "type": "object",
+        "properties": {"why": {"type": "string"}, **{aspect: _SCALE for aspect in ASPECTS}},
+        "required": ["why", *ASPECTS],
+        "additionalProperties": False,
+    },
+    'Reply with JSON alone: {"why": "one sentence", "realism": 1 to 10, "completeness": 1 to 10, '
+    '"atmosphere": 1 to 10}.',
+    read_grades,
+)
