@@ -119,7 +119,7 @@ def test_workers_change_nothing(two_flats, one_worker, tmp_path):
         assert (tmp_path / name).read_bytes() == (out / name).read_bytes()
     pictures = sorted(path.relative_to(out) for path in out.rglob("*.jpg"))
     assert pictures == sorted(path.relative_to(tmp_path) for path in tmp_path.rglob("*.jpg"))
-    assert told[0] == ("walks", 0, 6) and told[-1][:3] == ("walks", 6, 6)
+    assert told[0][:3] == ("walks", 0, 6) and told[-1][:3] == ("walks", 6, 6)
 
 
 def test_a_set_split_as_the_paper_has_no_unseen_scene(one_worker):
