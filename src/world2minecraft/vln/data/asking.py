@@ -12,7 +12,7 @@ from world2minecraft.vln.data.next_view import ViewQuestion, view_item
 from world2minecraft.vln.data.scene_work import MADE_BY, SceneWork
 from world2minecraft.vln.values import Item, Trajectory
 
-TRIES = 12  # Pictures of elsewhere that are looked at for one that differs.
+TRIES = 60  # Pictures of elsewhere that are looked at for one that is as like as is wanted.
 
 
 @dataclass(frozen=True)

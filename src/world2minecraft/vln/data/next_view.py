@@ -1,34 +1,51 @@
 """Next-View: which of four pictures comes next? With wrong ones of three grades.
 
     easy    two views of elsewhere in the scene, one of another scene
-    medium  elsewhere, another time of the same way, the next place with another heading
-    hard    another time, another heading, and what another move would show
+    medium  elsewhere, another time of the same walk, the next place with another heading, a step
+            beside
+    hard    also what another move would show, and where the mirrored walk leads
+
+Who walks on sees much of what was there before. So that the picture most like the present one is
+not mostly the right one, it is drawn how many of the wrong ones are more like it than the right
+one: none to three, each as often, as far as such pictures are found.
 
 A wrong picture is never one that could pass for the right one: from nearly the same stance, or
-with nearly the same hash.
+with nearly the same hash. Nor is it one that was shown before.
 """
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.vln.data.album import Album, Pictured, are_apart, look_apart, shows_something
-from world2minecraft.vln.data.discretise import Walker
-from world2minecraft.vln.data.keyframes import MOST_FORWARD_M, Mark
-from world2minecraft.vln.data.stream import wrapped_deg
-from world2minecraft.vln.values import LETTERS, Instruction, Item, Move, Option, Stance, Trajectory
+from world2minecraft.vln.data.album import (
+    Album,
+    Pictured,
+    are_apart,
+    shows_something,
+    unlike,
+)
+from world2minecraft.vln.data.keyframes import Mark
+from world2minecraft.vln.data.taking import CHOICES, RankDeck, Slot, Taker, differs
+from world2minecraft.vln.data.wrong_views import TAKEN, Scout
+from world2minecraft.vln.values import LETTERS, Instruction, Item, Option, Trajectory
 
 HISTORY = 3  # Pictures that are shown; the last is the current one.
-GRADES = {
+# What is taken for a question, and what serves where nothing is; of a grade.
+TAKEN_OF = {"easy": (), "medium": ("turned", "beside"), "hard": TAKEN}
+FOUND_OF = {
     "easy": ("elsewhere", "elsewhere", "other_scene"),
-    "medium": ("elsewhere", "temporal", "turned"),
-    "hard": ("temporal", "turned", "other_move"),
+    "medium": ("elsewhere", "temporal", "elsewhere"),
+    "hard": ("temporal", "temporal", "elsewhere"),
 }
-TURNS_DEG = (-180.0, -60.0, -30.0, 30.0, 60.0)
-GRADE_SHARES = (0.2, 0.4, 0.4)  # In an easy one the picture most like the present is mostly right.
-TURN_MOVES = 2  # Of another move: so little that it looks as near as the right one.
-CHOICES = 4
+MOST_FAR = {"easy": 0, "medium": 1, "hard": 3}  # Taken ones that are less like the present picture.
+GRADES = tuple(TAKEN_OF)
+GRADE_SHARES = (
+    0.1,
+    0.45,
+    0.45,
+)  # In easy ones the nearest is mostly right.
+NEAR_STEPS = (2, 3, 4, -3, -4)  # From the current one: other times of a walk, not shown yet.
 
 
 @dataclass(frozen=True)
@@ -38,7 +55,7 @@ class ViewQuestion:
     trajectory_id: str
     step: int
     grade: str
-    own: dict[str, Pictured]  # wrong pictures made for it, by kind
+    slots: tuple[Slot, ...]
 
 
 def view_steps(clear: Sequence[int], pictures: Sequence[Pictured]) -> list[int]:
@@ -61,8 +78,8 @@ def view_question(
     step: int,
     grade: str,
     album: Album,
-    walker: Walker,
-    metres_per_block: float,
+    scout: Scout,
+    ranks: RankDeck,
     rng: np.random.Generator,
 ) -> ViewQuestion:
     """Return a question with the wrong pictures that must be taken for it.
@@ -74,52 +91,22 @@ def view_question(
         step: which is the current one.
         grade: of ``GRADES``.
         album: where pictures go.
-        walker: the world's physics.
-        metres_per_block: of the world.
+        scout: says where they may be taken.
+        ranks: says how many of them are to be more like the present picture than the right one.
         rng: chooses.
     """
-    right, own = pictures[step + 1], {}
-    stances = {
-        "turned": _turned(right.stance, rng),
-        "other_move": _moved(marks[step], walker, metres_per_block, rng),
-    }
-    for kind in GRADES[grade]:
-        for stance in stances.get(kind, ()):
-            if not are_apart(stance, right.stance, metres_per_block):
-                continue
-            (shot,) = album.take([stance])
-            apart = all(look_apart(shot, one) for one in (right, *own.values()))
-            if apart and shows_something(shot):
-                name = right.image.removesuffix(".jpg")
-                own[kind] = album.write(f"{name}_{kind}.jpg", stance, shot)
-                break
-    return ViewQuestion(trajectory_id, step, grade, own)
-
-
-def _turned(stance: Stance, rng: np.random.Generator) -> list[Stance]:
-    turns = rng.permutation(TURNS_DEG)
-    return [
-        replace(stance, yaw_deg=float(wrapped_deg(stance.yaw_deg + turn))) for turn in turns[:3]
+    count, right = ranks.wanted(), pictures[step + 1]
+    places = [
+        (kind, stance)
+        for kind in TAKEN_OF[grade]
+        for stance in scout.places(kind, marks, step)
+        if are_apart(stance, right.stance, scout.metres_per_block)
     ]
-
-
-def _moved(
-    mark: Mark, walker: Walker, metres_per_block: float, rng: np.random.Generator
-) -> list[Stance]:
-    """Return where the other moves would lead, one after the other by chance."""
-    found = []
-    for number in rng.permutation(3):
-        move = (Move.FORWARD, Move.LEFT, Move.RIGHT)[number]
-        stance, walked = mark.stance, 0.0
-        for _ in range(8 if move == Move.FORWARD else TURN_MOVES):
-            there, collided = walker(stance, move)
-            if collided or walked >= MOST_FORWARD_M:
-                break
-            walked += float(np.hypot(there.x - stance.x, there.z - stance.z)) * metres_per_block
-            stance = there
-        if move != mark.move and stance != mark.stance:
-            found.append(stance)
-    return found
+    shuffled = [places[n] for n in rng.permutation(len(places))]
+    plan = [Slot(kind, n < count) for n, kind in enumerate(FOUND_OF[grade])]
+    slots = Taker(album, pictures[step], right).filled(plan, shuffled, MOST_FAR[grade])
+    ranks.came(sum(slot.nearer and slot.picture is not None for slot in slots))
+    return ViewQuestion(trajectory_id, step, grade, tuple(slots))
 
 
 def view_item(
@@ -149,16 +136,14 @@ def view_item(
         composition: base or extend.
         oracle_version: of what made the moves.
     """
-    step, right = question.step, pictures[question.step + 1]
-    near = [n for n in (step + 2, step + 3, step - 1) if 0 <= n < len(pictures)]
-    later = [pictures[near[n]] for n in rng.permutation(len(near))]
+    step, now, right = question.step, pictures[question.step], pictures[question.step + 1]
+    near = [n for n in (step + away for away in NEAR_STEPS) if 0 <= n < len(pictures)]
     supply = {
-        "temporal": iter(later),
-        "elsewhere": iter(elsewhere),
-        "other_scene": iter(other_scene),
-        **{kind: iter([one]) for kind, one in question.own.items()},
+        "temporal": [pictures[near[n]] for n in rng.permutation(len(near))],
+        "elsewhere": list(elsewhere),
+        "other_scene": list(other_scene),
     }
-    wrong = _wrong(GRADES[question.grade], supply, right, trajectory.metres_per_block)
+    wrong = _wrong(question, supply, now, right, trajectory.metres_per_block)
     if len(wrong) < CHOICES - 1:
         return None
     mixed = [wrong[n] for n in rng.permutation(len(wrong))]
@@ -170,46 +155,44 @@ def view_item(
     )
     history = pictures[step - HISTORY + 1 : step + 1]
     shown = [*history, *(one for _, one in mixed)]
+    rank = sum(unlike(now, one) < unlike(now, right) for _, one in wrong)
     return Item(
         f"{trajectory.trajectory_id}_v{step:02d}", "next_view", trajectory.scene_id,
         trajectory.trajectory_id, step, instruction, tuple(one.image for one in history[:-1]),
         history[-1].image, options, letter, trajectory.split, composition,
         trajectory.metres_per_block, oracle_version, {one.image: one.sha256 for one in shown},
-        {"grade": question.grade, "progress": round(step / (len(pictures) - 1), 4)},
+        {
+            "grade": question.grade,
+            "nearer": rank,
+            "progress": round(step / (len(pictures) - 1), 4),
+        },
     )  # fmt: skip
 
 
 def _wrong(
-    kinds: Sequence[str], supply: dict, right: Pictured, metres_per_block: float
+    question: ViewQuestion,
+    supply: Mapping[str, Sequence[Pictured]],
+    now: Pictured,
+    right: Pictured,
+    metres_per_block: float,
 ) -> list[tuple[str, Pictured]]:
     """Return a picture of each kind; where one has none left, one of an easier kind."""
     chosen: list[tuple[str, Pictured]] = []
-    for kind in kinds:
-        for instead in (kind, "temporal", "elsewhere", "other_scene"):
-            same_scene = instead != "other_scene"
-            found = next(
-                (
-                    one
-                    for one in supply.get(instead, iter(()))
-                    if _differs(one, right, [c for _, c in chosen], same_scene, metres_per_block)
-                ),
-                None,
-            )
+    limit = unlike(now, right)
+    for slot in question.slots:
+        others = [right, *(one for _, one in chosen)]
+        if slot.picture is not None and differs(slot.picture, now, others):
+            chosen.append((slot.kind, slot.picture))
+            continue
+        for kind in (slot.kind, "temporal", "elsewhere", "other_scene"):
+            fit = [
+                one
+                for one in supply.get(kind, ())
+                if kind == "other_scene" or are_apart(one.stance, right.stance, metres_per_block)
+            ]
+            fit.sort(key=lambda one: (unlike(now, one) < limit) != slot.nearer)
+            found = next((one for one in fit if differs(one, now, others)), None)
             if found is not None:
-                chosen.append((instead, found))
+                chosen.append((kind, found))
                 break
     return chosen
-
-
-def _differs(
-    one: Pictured,
-    right: Pictured,
-    chosen: Sequence[Pictured],
-    same_scene: bool,
-    metres_per_block: float,
-) -> bool:
-    if same_scene and not are_apart(one.stance, right.stance, metres_per_block):
-        return False
-    if not shows_something(one):
-        return False
-    return look_apart(one, right) and all(look_apart(one, other) for other in chosen)

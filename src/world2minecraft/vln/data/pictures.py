@@ -29,6 +29,7 @@ class Shot:
     mean: float  # of its grey, 0 to 255
     dhash: int  # 64 bits
     detail: float  # how much its grey varies over the picture, a standard deviation
+    small: bytes  # its grey, uint8, ``COARSE_PX``
 
 
 def shot_of(colour: np.ndarray) -> Shot:
@@ -39,9 +40,9 @@ def shot_of(colour: np.ndarray) -> Shot:
     data = buffer.getvalue()
     grey = image.convert("L")
     mean = float(np.asarray(grey, np.float64).mean())
-    coarse = np.asarray(grey.resize(COARSE_PX, Image.Resampling.BOX), np.float64)
+    small = np.asarray(grey.resize(COARSE_PX, Image.Resampling.BOX))
     sum_ = hashlib.sha256(data).hexdigest()
-    return Shot(data, sum_, mean, dhash(grey), float(coarse.std()))
+    return Shot(data, sum_, mean, dhash(grey), float(small.std()), small.tobytes())
 
 
 def dhash(image: Image.Image) -> int:

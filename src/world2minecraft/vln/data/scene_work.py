@@ -22,8 +22,10 @@ from world2minecraft.vln.data.next_view import (
 )
 from world2minecraft.vln.data.pictures import Shot, shot_of, vln_camera
 from world2minecraft.vln.data.splits import split_of_tour
+from world2minecraft.vln.data.taking import RankDeck
 from world2minecraft.vln.data.touring import Tourist
 from world2minecraft.vln.data.validity import fault_of_pictures
+from world2minecraft.vln.data.wrong_views import Scout
 from world2minecraft.vln.moves import moved
 from world2minecraft.vln.oracle import ORACLE_VERSION, expert
 from world2minecraft.vln.scene import VlnScene
@@ -43,6 +45,7 @@ Tick = Callable[[int], None]
 """Told how many walks more there are."""
 
 MADE_BY = f"{VERSION}+{ORACLE_VERSION}"
+LOOK_PX = (128, 72)  # Of pictures that are only to tell how like they are.
 MOST_TOURS = 60  # A scene that gives too little in so many gives no more.
 
 
@@ -147,10 +150,11 @@ class _Crew:
         walker: Walker,
         work: SceneWork,
     ):
-        self._scene, self._split, self._rule = scene, scene_split, rule
-        self._walker, self._work = walker, work
-        camera = vln_camera(*rule.size_px)
-        self._album = Album(folder, lambda stances: _taken(scene, camera, stances))
+        self._scene, self._split, self._rule, self._work = scene, scene_split, rule, work
+        kept, small = vln_camera(*rule.size_px), vln_camera(*LOOK_PX)
+        self._album = Album(folder, partial(_taken, scene, kept), partial(_taken, scene, small))
+        self._ranks = RankDeck(np.random.default_rng([rule.seed, *scene.scene_id.encode()]))
+        self._scout = Scout(walker, scene.metres_per_block)
 
     def take_in(self, candidate: Candidate, rng: np.random.Generator) -> int:
         """Add a candidate with its questions, or count why it is none; return how many it is."""
@@ -194,8 +198,8 @@ class _Crew:
         return [
             view_question(
                 candidate.trajectory_id, candidate.marks, pictures, steps[n],
-                str(rng.choice(grades, p=shares / shares.sum())), self._album, self._walker,
-                self._scene.metres_per_block, rng,
+                str(rng.choice(grades, p=shares / shares.sum())), self._album, self._scout,
+                self._ranks, rng,
             )
             for n in chosen
         ]  # fmt: skip
