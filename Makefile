@@ -22,7 +22,7 @@ ifneq ($(shell $(BIN)/python -c 'print("runs")' 2>/dev/null),runs)
 $(shell rm -f $(STAMP))
 endif
 
-.PHONY: help demo forge test test-live test-trainers lint bench setup clean
+.PHONY: help demo forge test test-live test-server test-trainers lint bench setup clean
 .DEFAULT_GOAL := help
 
 help:  ## Show the targets.
@@ -59,6 +59,9 @@ test: $(STAMP)  ## Run the tests, a file a core (TESTS=tests/fuse for a part).
 
 test-live: $(STAMP)  ## Load a built world into a real server and walk in it (needs Node and npm).
 	@$(BIN)/python -m pytest -m live tests/live
+
+test-server: $(STAMP)  ## Walk by a player on a real server and hold it against ours (needs Node and npm).
+	@$(BIN)/python -m pytest -m live tests/live/test_live_body.py
 
 test-trainers: $(STAMP)  ## Train on exports with LLaMA-Factory and TRL, on the CPU (fetches 3 GB to .trainers/).
 	@$(BIN)/python -m pytest -m trainers -rP tests/trainers

@@ -49,6 +49,10 @@ class OpenField:
             stance, _ = self.after(stance, move)
         return (*moves, Move.STOP)
 
+    @property
+    def imagined(self):
+        return self
+
     def to_room_m(self, feet):
         return np.asarray(feet, float)[:, [0, 2, 1]]
 

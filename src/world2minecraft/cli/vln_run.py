@@ -16,6 +16,7 @@ w2m vln run OUT "Go to the piano" --agent gemini --max-usd 0.20
 w2m vln run OUT "Find the bed" --agent openai:gpt-4.1 --map text --chunk 2
 w2m vln run OUT "Go to the piano" --agent http://localhost:8000/v1 --model qwen2.5-vl
 w2m vln run SET --agent random --count 50 --no-video     the episodes of a set
+w2m vln run OUT "Go to the piano" --server localhost:25565     on a game server where OUT stands
 w2m vln run OUT "Go to the piano" --agent gemini --replay RUN/replies.jsonl
 """
 
@@ -55,6 +56,13 @@ History = Annotated[int, typer.Option("--history", help="Views of before that a 
 Map = Annotated[str, typer.Option("--map", help="none, or text: where it was, in words.")]
 Count = Annotated[int | None, typer.Option("--count", help="Walk so many episodes.", min=1)]
 Seed = Annotated[int, typer.Option("--seed", help="Of agents that draw.")]
+Server = Annotated[
+    str,
+    typer.Option(
+        "--server", metavar="HOST[:PORT]", help="Walk by a player on a running server where the "
+        "scene stands at its own place; see w2m vln server.",
+    ),
+]  # fmt: skip
 Video = Annotated[bool, typer.Option("--video/--no-video", help="Write walk.mp4 of each walk.")]
 
 
@@ -73,6 +81,7 @@ def run(
     count: Count = None,
     seed: Seed = 0,
     video: Video = True,
+    server: Server = "",
     model: option.Model = "",
     key_env: option.KeyEnv = "",
     max_usd: option.MaxUsd = None,
@@ -108,15 +117,20 @@ def run(
 
     walker = agent_of(agent, chat, chunk=chunk, history=history, map_kind=_map(map_kind))
     wish = Wish(instruction, goal, _stance(start), moves, max_steps)
-    episodes, grounds = _episodes(scene, wish, count)
-    told = _walk(folder, episodes, grounds, walker, seed, video, chats)
+    grounds = _Grounds(server)
+    try:
+        episodes = _episodes(scene, wish, count, grounds)
+        told = _walk(folder, episodes, grounds, walker, seed, video, chats)
+    finally:
+        grounds.close()
     _say(folder, told, episodes, video, chats)
 
 
 class _Grounds:
-    """Opens each scene once, and keeps its plan."""
+    """Opens each scene once, and keeps its plan; of a server that holds it where one is named."""
 
-    def __init__(self) -> None:
+    def __init__(self, server: str) -> None:
+        self._server, self._bodies = server, list[Any]()
         self._scenes: dict[str, Any] = {}
         self._grounds: dict[tuple[str, str], Any] = {}
         self._plans: dict[str, Any] = {}
@@ -125,15 +139,33 @@ class _Grounds:
         from world2minecraft.vln.scene import open_scene
 
         if path not in self._scenes:
-            self._scenes[path] = open_scene(path)
+            self._scenes[path] = self._on_server(path) if self._server else open_scene(path)
         return self._scenes[path]
+
+    def _on_server(self, path: str) -> Any:
+        from world2minecraft.vln.server.body import join
+        from world2minecraft.vln.server.scene import open_server_scene
+
+        if not self._bodies:
+            self._bodies.append(join(self._server))
+        return open_server_scene(self._bodies[0], labels=path)
+
+    def close(self) -> None:
+        for body in self._bodies:
+            body.close()
 
     def __call__(self, episode: "Episode") -> Any:
         from world2minecraft.vln.running.scene_ground import SceneGround
 
         key = (episode.scene, episode.move_set)
         if key not in self._grounds:
-            self._grounds[key] = SceneGround(self.scene(episode.scene), episode.move_set)
+            scene = self.scene(episode.scene)
+            if self._server:
+                from world2minecraft.vln.server.ground import ServerGround
+
+                self._grounds[key] = ServerGround(scene, episode.move_set)
+            else:
+                self._grounds[key] = SceneGround(scene, episode.move_set)
         return self._grounds[key]
 
     def plan(self, episode: "Episode") -> Any:
@@ -145,22 +177,21 @@ class _Grounds:
         return self._plans[episode.scene]
 
 
-def _episodes(scene: Path, wish: Any, count: int | None) -> "tuple[list[Episode], _Grounds]":
+def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "list[Episode]":
     from world2minecraft.errors import UsageError
     from world2minecraft.vln.records import EPISODES, read_episodes
     from world2minecraft.vln.running.asking import episode_of
 
-    grounds = _Grounds()
     if scene.suffix == ".jsonl" or (scene / EPISODES).is_file():
         if wish.instruction or wish.goal:
             raise UsageError("episodes bring their own instructions; leave the sentence out")
         found = read_episodes(scene)[:count]
         if not found:
             raise UsageError(f"{scene} has no episode")
-        return found, grounds
+        return found
     if not wish.instruction:
         raise UsageError('say what to do, such as w2m vln run OUT "Go to the table"')
-    return [episode_of(grounds.scene(str(scene)), wish)], grounds
+    return [episode_of(grounds.scene(str(scene)), wish)]
 
 
 def _walk(

@@ -145,6 +145,11 @@ def open_scene_source(
     )
 
 
+def source_of_blocks(source: Source, scene_id: str) -> SceneSource:
+    """Return the scene of blocks that are there already, such as those of a running server."""
+    return SceneSource(source.path, scene_id, _cache={"source": source})
+
+
 def scene_id_of(path: Path) -> str:
     """Return a name for the scene of a path: of letters, digits and _.
 

@@ -52,11 +52,13 @@ class VlnScene:
     person. Places are feet in world blocks, lengths on foot are metres of the room.
     """
 
-    def __init__(self, source: SceneSource, body: float | None = None):
+    def __init__(self, source: SceneSource, body: float | None = None, *, opens_doors: bool = True):
         self.source = source
         self.path, self.scene_id = str(source.path), source.scene_id
-        self.volume: BlockVolume = doors_opened(source.volume())
-        self.solid: Solid = solid_of(self.volume)
+        volume = source.volume()
+        self.volume: BlockVolume = doors_opened(volume) if opens_doors else volume
+        self.solid: Solid = solid_of(self.volume, opens_doors)
+        self._opens_doors = opens_doors
         self.body, self.graph, self._found = self._walkable(body)
         self._fields: OrderedDict[tuple[tuple[float, ...], ...], np.ndarray] = OrderedDict()
 
@@ -98,7 +100,7 @@ class VlnScene:
     @cached_property
     def layouts(self) -> tuple[Layout, ...]:
         """The floor plans that lie beside the blocks; none of worlds of others."""
-        return _layouts_beside(Path(self.path))
+        return layouts_beside(Path(self.path))
 
     @cached_property
     def room_of_places(self) -> np.ndarray:
@@ -232,7 +234,8 @@ class VlnScene:
         """Return the largest body that has floor to walk on, its graph and its rooms."""
         rule = TourRule(start=self.source.start(), layouts=self.layouts)
         for size in BODIES if body is None else (body,):
-            graph = walk_graph(self.volume, WalkRule(scale=size * self.blocks_per_metre))
+            scale = size * self.blocks_per_metre
+            graph = walk_graph(self.volume, WalkRule(scale, opens_doors=self._opens_doors))
             rooms = find_rooms(self.volume, graph, self.solid, rule)
             floor_m2 = sum(room.floor_m2 for room in rooms)
             if floor_m2 >= LEAST_FLOOR_M2 or (rooms and (body or size) == (body or BODIES[-1])):
@@ -305,8 +308,8 @@ def _titles(names: Sequence[str]) -> dict[str, str]:
     return {name: TEMPLATES.load(name).title for name in names if name in known}
 
 
-def _layouts_beside(path: Path) -> tuple[Layout, ...]:
-    """Return the layouts beside a house, or of a run whose folder or build is named."""
+def layouts_beside(path: Path) -> tuple[Layout, ...]:
+    """Return the floor plans beside a house, or of a run whose folder or build is named."""
     folder = path if path.is_dir() else path.parent
     blocks = place_of_blocks(path) if path.is_dir() else path
     for place in (folder, blocks.parent, blocks.parent.parent):

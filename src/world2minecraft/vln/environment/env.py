@@ -16,7 +16,7 @@ from world2minecraft.vln.environment.window import Window
 from world2minecraft.vln.episodes import score
 from world2minecraft.vln.moves import named_set
 from world2minecraft.vln.scene import VlnScene, open_scene
-from world2minecraft.vln.values import Episode, Stance
+from world2minecraft.vln.values import Episode, MoveSet, Stance
 
 ACTIONS = ("discrete", "continuous")
 MOST_STEPS = {"discrete": 500, "continuous": 5_000}  # Habitat's 500; 250 s of the game.
@@ -80,11 +80,7 @@ class VlnEnv(gymnasium.Env):
         self.scene = _opened(scene, body, box, blocks_per_metre)
         self.drawing = Drawing(self.scene, episodes, split, named_set(move_set).name, span_m)
         self.senses = Senses(self.scene, observations, eyes or Eyes(), self.drawing.texts)
-        self.acting: Acting = (
-            Continuous(self.scene)
-            if actions == "continuous"
-            else Discrete(self.scene, named_set(move_set), sliding)
-        )
+        self.acting: Acting = self._acting(actions == "continuous", named_set(move_set), sliding)
         self.observation_space, self.action_space = self.senses.space, self.acting.space
         self.max_steps, self.success_m = max_steps or MOST_STEPS[actions], success_m
         self.render_mode = render_mode
@@ -160,6 +156,12 @@ class VlnEnv(gymnasium.Env):
         if self.window:
             self.window.close()
             self.window = None
+
+    def _acting(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> Acting:
+        """Return what takes the actions; a body elsewhere has its own."""
+        if by_keys:
+            return Continuous(self.scene)
+        return Discrete(self.scene, move_set, sliding)
 
     @property
     def _playing(self) -> Episode:

@@ -3,10 +3,11 @@
 from world2minecraft.errors import MissingExtraError
 
 ENV_ID = "World2Minecraft-VLN-v0"
+SERVER_ENV_ID = "World2Minecraft-VLN-Server-v0"
 
 
 def register_environments() -> None:
-    """Register the environment, once; older gymnasiums call this through its entry point.
+    """Register the environments, once; older gymnasiums call this through its entry point.
 
     Raises:
         MissingExtraError: gymnasium is not installed.
@@ -17,3 +18,4 @@ def register_environments() -> None:
         raise MissingExtraError("the environment", "vln") from error
     if ENV_ID not in gymnasium.registry:
         gymnasium.register(ENV_ID, "world2minecraft.vln.environment.env:VlnEnv")
+        gymnasium.register(SERVER_ENV_ID, "world2minecraft.vln.server.env:ServerEnv")

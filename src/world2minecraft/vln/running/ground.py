@@ -41,12 +41,17 @@ class Ground(Protocol):
         """Return places [N, 3] in metres of the room."""
         ...
 
+    @property
+    def imagined(self) -> "Ground":
+        """The same ground for moves that are only thought of; itself, where none is for real."""
+        ...
+
 
 class GroundGuide:
     """What the privileged know of an episode on a ground."""
 
     def __init__(self, ground: Ground, episode: Episode):
-        self._ground, self._goals = ground, episode.goals
+        self._ground, self._goals = ground.imagined, episode.goals
 
     def distance_m(self, stance: Stance) -> float:
         """Return how far it is on foot to the nearest goal."""

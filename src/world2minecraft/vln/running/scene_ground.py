@@ -7,6 +7,7 @@ import numpy as np
 from world2minecraft.types import Camera
 from world2minecraft.vln.moves import forward_blocks, moved, named_set
 from world2minecraft.vln.oracle import expert
+from world2minecraft.vln.running.ground import Ground
 from world2minecraft.vln.scene import VlnScene, camera_of
 from world2minecraft.vln.values import Move, MoveSet, Stance
 
@@ -54,3 +55,8 @@ class SceneGround:
     def to_room_m(self, feet: np.ndarray) -> np.ndarray:
         """Return places [N, 3] in metres of the room."""
         return self.scene.to_room_m(feet)
+
+    @property
+    def imagined(self) -> Ground:
+        """Itself: no move here is for real."""
+        return self

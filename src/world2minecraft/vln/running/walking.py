@@ -177,5 +177,5 @@ def reference_m(ground: Ground, episode: Episode) -> np.ndarray:
         stances = [episode.start]
         for move in ground.expert(episode.start, episode.goals):
             if move != Move.STOP:
-                stances.append(ground.after(stances[-1], move)[0])
+                stances.append(ground.imagined.after(stances[-1], move)[0])
     return ground.to_room_m(np.array([one.feet for one in stances]))

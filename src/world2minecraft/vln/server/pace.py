@@ -1,0 +1,59 @@
+"""Which keys to hold, and how long, to go a certain way on foot from rest to rest.
+
+A tick of walking is worth 0.216 blocks and one of sneaking 0.065, coasting included: together they
+come to within 0.03 blocks of any length that is no shorter than a tick of sneaking.
+"""
+
+from functools import lru_cache
+
+from world2minecraft.walk import Body, BoxWorld, Keys, step
+
+MOST_SNEAKING = 9  # Ticks: with as many, most lengths are met to a hundredth.
+MOST_BLOCKS = 16.0
+_FLAT = BoxWorld([[-99, -1, -99, 99, 0, 99]])
+_WALK = Keys(forward=True)
+_SNEAK = Keys(forward=True, sneak=True)
+_REST = 12  # Ticks, at most, until one who lets go stands.
+
+
+def forward_keys(length: float, yaw_deg: float) -> list[Keys]:
+    """Return the keys, a tick each, that lead so many blocks ahead and leave one at rest.
+
+    Example:
+        >>> keys = forward_keys(1.0, 90.0)
+        >>> len(keys), sum(one.sneak for one in keys), keys[-1].forward
+        (15, 2, False)
+    """
+    walking, sneaking = _ticks(min(max(length, 0.0), MOST_BLOCKS))
+    held = [_WALK] * walking + [_SNEAK] * sneaking
+    rest = _way(walking, sneaking)[1]
+    return [one._replace(yaw_deg=yaw_deg) for one in [*held, *[Keys()] * rest]]
+
+
+@lru_cache(maxsize=256)
+def _ticks(length: float) -> tuple[int, int]:
+    """Return ticks of walking and sneaking that come nearest to a length, few of the latter."""
+    best, error = (0, 0), length
+    for sneaking in range(MOST_SNEAKING + 1):
+        walking = 0
+        while _way(walking + 1, sneaking)[0] <= length:
+            walking += 1
+        for count in (walking, walking + 1):
+            away = abs(_way(count, sneaking)[0] - length)
+            if away < error - 1e-3:
+                best, error = (count, sneaking), away
+    return best
+
+
+@lru_cache(maxsize=4096)
+def _way(walking: int, sneaking: int) -> tuple[float, int]:
+    """Return how far ticks of walking and sneaking lead, blocks, and the ticks until rest."""
+    body = Body((0.0, 0.0, 0.0), on_ground=True)
+    for keys in [_WALK] * walking + [_SNEAK] * sneaking:
+        body = step(_FLAT, body, keys)
+    for tick in range(_REST):
+        before = body.position
+        body = step(_FLAT, body, Keys())
+        if body.position == before:
+            return body.position[2], tick + 1
+    return body.position[2], _REST
