@@ -57,6 +57,7 @@ VERBS: dict[str, str] = {
     "vln stats": "Tell what a navigation set holds, and what guessing scores.",
     "vln export": "Write navigation data as trainers and simulators read it.",
     "vln run": "Let an agent walk by an instruction: live, scored and on film.",
+    "vln annotate": "Write instructions for walks of a set, on a page in the browser.",
     "vln server": "Check, and put in place, what a body on a game server needs.",
     "vln evaluate": "Ask a model the items of a navigation set.",
     "vln table": "Print the results of navigation runs side by side.",

@@ -8,8 +8,10 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from ipaddress import ip_address
 from pathlib import Path
+from typing import Self
 
 import uvicorn
+from starlette.types import ASGIApp
 
 from world2minecraft.errors import UsageError
 from world2minecraft.forge.app import build_app
@@ -25,18 +27,14 @@ PORT = 8484  # The same each time, so that the page's own settings are found aga
 STOPPING_S = 3
 
 
-class ForgeServer:
-    """A server of one document: ``run`` serves here, ``start`` in a thread until ``stop``.
+class PageServer:
+    """A page and what it asks, for one user: ``run`` serves here, ``start`` in a thread.
 
     Args:
-        editor: the document; None for the start page.
+        build: makes the application of a token and a port.
         host: where to listen; other than loopback for others to come in.
         port: where to listen; None for 8484, or any that is free where it is taken.
         token: what the link holds; a new one where None.
-        hosts: further names under which the server may be called.
-        home: the folder for captures and rooms made here; the user's own where None.
-        most_upload_bytes: the most that one dropped capture may hold.
-        capture: where the photos of the room lie, where its folder does not say so.
 
     Raises:
         UsageError: the port is taken, or there is no such address here.
@@ -44,35 +42,18 @@ class ForgeServer:
 
     def __init__(
         self,
-        editor: Editor | None = None,
+        build: Callable[[str, int], ASGIApp],
         *,
         host: str = LOOPBACK,
         port: int | None = None,
         token: str | None = None,
-        hosts: Iterable[str] = (),
-        home: Path | None = None,
-        most_upload_bytes: int = MOST_UPLOAD_BYTES,
-        capture: Path | None = None,
     ):
         self.socket = _listening(host, port)
         self.host, self.port = host, int(self.socket.getsockname()[1])
         self.token = token or new_token()
-        self.session = Session(editor)
-        self.workshop = Workshop(
-            self.session, home or user_home(), most_bytes=most_upload_bytes, capture=capture
-        )
         self.is_open = not _is_loopback(host)
-        named = [*hosts, *([host, socket.gethostname()] if self.is_open else [])]
-        app = build_app(
-            self.session,
-            workshop=self.workshop,
-            token=self.token,
-            port=self.port,
-            hosts=named,
-            any_address=self.is_open,
-        )
         config = uvicorn.Config(
-            app,
+            build(self.token, self.port),
             access_log=False,  # It would print the token.
             log_level="error",
             lifespan="off",
@@ -100,7 +81,7 @@ class ForgeServer:
         with suppress(KeyboardInterrupt):  # uvicorn raises it again after it has stopped.
             asyncio.run(self._serve(ready))
 
-    def start(self) -> "ForgeServer":
+    def start(self) -> Self:
         """Serve in a thread; returns once pages can be opened."""
         begun = threading.Event()
         self._thread = threading.Thread(target=self.run, args=(begun.set,), daemon=True)
@@ -111,12 +92,12 @@ class ForgeServer:
         return self
 
     def stop(self) -> None:
-        """Stop, and close the document; returns when that is done."""
+        """Stop, and close what was served; returns when that is done."""
         self._server.should_exit = True
         if self._thread is not None:
             self._thread.join()
 
-    def __enter__(self) -> "ForgeServer":
+    def __enter__(self) -> Self:
         """Start."""
         return self.start()
 
@@ -133,7 +114,61 @@ class ForgeServer:
             await serving
         finally:
             self.socket.close()
-            await self.session.close()
+            await self.close()
+
+    async def close(self) -> None:
+        """Close what was served; called once nothing is served any more."""
+
+
+class ForgeServer(PageServer):
+    """A server of one document.
+
+    Args:
+        editor: the document; None for the start page.
+        host, port, token: as ``PageServer`` takes them.
+        hosts: further names under which the server may be called.
+        home: the folder for captures and rooms made here; the user's own where None.
+        most_upload_bytes: the most that one dropped capture may hold.
+        capture: where the photos of the room lie, where its folder does not say so.
+
+    Raises:
+        UsageError: the port is taken, or there is no such address here.
+    """
+
+    def __init__(
+        self,
+        editor: Editor | None = None,
+        *,
+        host: str = LOOPBACK,
+        port: int | None = None,
+        token: str | None = None,
+        hosts: Iterable[str] = (),
+        home: Path | None = None,
+        most_upload_bytes: int = MOST_UPLOAD_BYTES,
+        capture: Path | None = None,
+    ):
+        self.session = Session(editor)
+        self.workshop = Workshop(
+            self.session, home or user_home(), most_bytes=most_upload_bytes, capture=capture
+        )
+        is_open = not _is_loopback(host)
+        named = [*hosts, *([host, socket.gethostname()] if is_open else [])]
+
+        def build(token: str, port: int) -> ASGIApp:
+            return build_app(
+                self.session,
+                workshop=self.workshop,
+                token=token,
+                port=port,
+                hosts=named,
+                any_address=is_open,
+            )
+
+        super().__init__(build, host=host, port=port, token=token)
+
+    async def close(self) -> None:
+        """Close the document."""
+        await self.session.close()
 
 
 def _listening(host: str, port: int | None) -> socket.socket:

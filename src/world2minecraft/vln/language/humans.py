@@ -1,7 +1,7 @@
 """Instructions that people wrote, read from a table and added to trajectories.
 
-Columns: trajectory_id, instruction; where known annotator_id and language. A trajectory may have
-many; none takes another's place.
+Columns: trajectory_id, instruction; where known annotator_id, language and level. A trajectory may
+have many; none takes another's place.
 """
 
 import csv
@@ -13,7 +13,7 @@ from typing import Any
 
 from world2minecraft.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.files import json_rows, read_bytes
-from world2minecraft.vln.values import Instruction, Trajectory
+from world2minecraft.vln.values import LEVELS, Instruction, Trajectory
 
 MAX_BYTES = 64 << 20
 MAX_TEXT = 4_000  # Characters; the paper's longest instruction has 334.
@@ -72,9 +72,13 @@ def _annotation(row: Mapping[str, Any], number: int, source: Path) -> tuple[str,
             raise DamagedFileError(source, f"line {number}: {key} must be a text, up to {MAX_TEXT}")
         values[key] = value.strip()
     who, language = str(row.get("annotator_id") or ""), str(row.get("language") or "en")
+    level = str(row.get("level") or "landmark")
+    if level not in LEVELS:
+        told = ", ".join(LEVELS)
+        raise DamagedFileError(source, f"line {number}: level must be one of {told}, not {level!r}")
     text = " ".join(values["instruction"].split())
     return values["trajectory_id"], Instruction(
-        text, "human", annotator=who[:200], language=language[:20]
+        text, "human", level, annotator=who[:200], language=language[:20]
     )
 
 

@@ -1,0 +1,152 @@
+"""The walks of a set, and what people write of them, kept in a file that ``vln build`` imports.
+
+A line is {trajectory_id, annotator_id, instruction, language, level}. Lines are added, never
+changed: a walk may have many, of one person or of several.
+"""
+
+import json
+import threading
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.errors import InputError, UsageError
+from world2minecraft.files import read_bytes, write_text
+from world2minecraft.vln.language.checking import findings, goal_of, names_of
+from world2minecraft.vln.language.humans import read_annotations
+from world2minecraft.vln.records import read_trajectories
+from world2minecraft.vln.values import Trajectory
+
+ANNOTATIONS = "annotations.jsonl"
+MAX_IMAGE_BYTES = 32 << 20
+MAX_WHO = 60
+KINDS = {".jpg": "image/jpeg", ".jpeg": "image/jpeg", ".png": "image/png"}
+
+
+class AnnotationDesk:
+    """A set to be told of.
+
+    Args:
+        folder: of the set: ``trajectories.jsonl`` and the pictures that it names.
+        out: where to write; ``annotations.jsonl`` in the folder if None.
+
+    Raises:
+        InputError: the set has no walk, or a file cannot be read.
+        DamagedFileError: a line is wrong.
+    """
+
+    def __init__(self, folder: Path, out: Path | None = None):
+        self.folder, self.out = folder, out or folder / ANNOTATIONS
+        self.walks: list[Trajectory] = read_trajectories(folder)
+        if not self.walks:
+            raise InputError(folder, "has no walk; make a set with w2m vln build")
+        self._number = {one.trajectory_id: n for n, one in enumerate(self.walks)}
+        scenes = {one.scene_id for one in self.walks}
+        self._names = {scene: names_of(self.walks, scene) for scene in sorted(scenes)}
+        self._lock = threading.Lock()
+        self._lines = self._read()
+
+    def listed(self) -> list[dict[str, Any]]:
+        """Return each walk in a line: what it is, and how many people told of it."""
+        counts: dict[str, int] = {}
+        for line in self._lines:
+            counts[line["trajectory_id"]] = counts.get(line["trajectory_id"], 0) + 1
+        return [
+            {
+                "number": number,
+                "id": one.trajectory_id,
+                "scene": one.scene_id,
+                "frames": len(one.keyframes),
+                "path_m": round(one.path_m, 1),
+                "goal": goal_of(one),
+                "written": counts.get(one.trajectory_id, 0),
+            }
+            for number, one in enumerate(self.walks)
+        ]
+
+    def walk(self, number: int) -> dict[str, Any]:
+        """Return a walk: its pictures, what is done after each, and all that is told of it."""
+        one = self._walk(number)
+        told = [
+            {"level": each.level, "text": each.text, "by": each.annotator or each.source}
+            for each in one.instructions
+        ]
+        told += [
+            {"level": line["level"], "text": line["instruction"], "by": line["annotator_id"]}
+            for line in self._lines
+            if line["trajectory_id"] == one.trajectory_id
+        ]
+        return {
+            "number": number,
+            "id": one.trajectory_id,
+            "scene": one.scene_id,
+            "goal": goal_of(one),
+            "things": list(self._names[one.scene_id]),
+            "path_m": round(one.path_m, 1),
+            "frames": [frame.move for frame in one.keyframes],
+            "told": told,
+        }
+
+    def image(self, number: int, frame: int) -> tuple[bytes, str]:
+        """Return a picture of a walk and its media type. Raises InputError: it cannot be read."""
+        keyframes = self._walk(number).keyframes
+        if not 0 <= frame < len(keyframes):
+            raise UsageError(f"the walk has pictures 0 to {len(keyframes) - 1}, not {frame}")
+        path = self.folder / keyframes[frame].image  # Checked as it was read: it stays inside.
+        kind = KINDS.get(path.suffix.lower())
+        if kind is None:
+            raise InputError(path, "is no JPEG and no PNG")
+        return read_bytes(path, MAX_IMAGE_BYTES), kind
+
+    def check(self, number: int, level: str, text: str) -> list[dict[str, Any]]:
+        """Return what is to be said of a text, what is wrong first."""
+        one = self._walk(number)
+        return [found._asdict() for found in findings(text, level, one, self._names[one.scene_id])]
+
+    def add(
+        self, number: int, level: str, text: str, annotator: str, language: str = "en"
+    ) -> dict[str, Any]:
+        """Keep an instruction and return its line.
+
+        Raises:
+            UsageError: something about it is wrong, see ``check``, or nobody says who wrote it.
+        """
+        one = self._walk(number)
+        wrong = [found["text"] for found in self.check(number, level, text) if found["is_wrong"]]
+        if wrong:
+            raise UsageError(wrong[0])
+        who = " ".join(annotator.split())
+        if not who or len(who) > MAX_WHO or not who.isprintable():
+            raise UsageError(f"say who writes: a name of up to {MAX_WHO} characters")
+        if not (1 < len(language) <= 20 and language.isascii() and language.isprintable()):
+            raise UsageError(f"a language is like en or de-AT, not {language[:20]!r}")
+        line = {
+            "trajectory_id": one.trajectory_id,
+            "annotator_id": who,
+            "instruction": " ".join(text.split()),
+            "language": language,
+            "level": level,
+        }
+        with self._lock:
+            if line not in self._lines:
+                lines = [*self._lines, line]
+                texts = [json.dumps(each, ensure_ascii=False) for each in lines]
+                write_text(self.out, "\n".join(texts) + "\n")
+                self._lines = lines
+        return line
+
+    def _walk(self, number: int) -> Trajectory:
+        if not 0 <= number < len(self.walks):
+            raise UsageError(f"there are walks 0 to {len(self.walks) - 1}, not {number}")
+        return self.walks[number]
+
+    def _read(self) -> list[dict[str, str]]:
+        if not self.out.exists():
+            return []
+        lines = []
+        for name, told in read_annotations(self.out):
+            if name not in self._number:
+                raise InputError(self.out, f"speaks of trajectory {name!r}, which is not there")
+            line = {"trajectory_id": name, "annotator_id": told.annotator}
+            line |= {"instruction": told.text, "language": told.language, "level": told.level}
+            lines.append(line)
+        return lines
