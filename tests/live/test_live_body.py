@@ -211,7 +211,8 @@ def test_moves_of_the_environment_end_where_ours_do(flat_server, say):
     from world2minecraft.vln.values import Move
 
     server, folder = flat_server
-    count, gaps, told, contrasts = COUNTS[server.plan["version"]], [], [], []
+    count, gaps, twins = COUNTS[server.plan["version"]], [], []
+    told, contrasts = [], []
     with join(server.address, folder=user_cache_dir() / "live-test") as body:
         env = ServerEnv(body, labels=folder, eyes=Eyes(64, 64))
         world = BlockWorld.of_volume(env.scene.volume)
@@ -225,12 +226,15 @@ def test_moves_of_the_environment_end_where_ours_do(flat_server, say):
             for _ in range(6):
                 env.step(int(random.choice([1, 1, 1, 1, 2, 3])))
             gaps.append(apart(env.acting.stance.feet, walked(world, ours, held).position))
+            with mineflayer_rules(world):
+                twins.append(apart(env.acting.stance.feet, walked(world, ours, held).position))
             told.append(apart(env.acting.stance.feet, server.ask(where=body.name)))
         info = env.step(int(Move.STOP))[4]
         assert info["score"]["steps"] == 7
     near = sum(one < NEAR for one in gaps)
     say(f"{server.plan['version']}, moves: {near} of {count} within {NEAR}, worst {max(gaps):.1e}")
-    assert near == count
+    assert max(twins) < SAME
+    assert near >= 0.95 * count
     assert max(told) < 1e-6
     assert max(contrasts) > 20  # One looks at walls too.
 
