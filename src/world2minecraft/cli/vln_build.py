@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.vln.data.building import Built
+    from world2minecraft.vln.data.building import BuildRule, Built
 
 EXAMPLES = """\
 w2m vln build OUT --out SET                                of one reconstruction
 w2m vln build --rooms 3 --houses 1 --out SET               of scenes that it makes itself
 w2m vln build --rooms 15 --houses 5 --paper-size --out SET 3,542 items, as the paper counts
+w2m vln build OUT --stream tour.jsonl --out SET            of walks that were recorded there
 w2m vln build runs/* houses/* --out SET --composition base
 w2m vln build houses/* --out SET --trajectories 10 --moves rxr
 """
@@ -24,6 +25,11 @@ Rooms = Annotated[
     int, typer.Option("--rooms", help="Generate, scan and reconstruct so many rooms first.", min=0)
 ]
 Houses = Annotated[int, typer.Option("--houses", help="Generate so many houses first.", min=0)]
+Streams = Annotated[
+    list[Path] | None,
+    typer.Option("--stream", help="A recorded walk: a tour file, or a folder of w2m vln run."),
+]
+At = Annotated[str, typer.Option("--at", help="What x, y, z of streams is: eye or feet.")]
 Composition = Annotated[
     str,
     typer.Option("--composition", help="base (reconstructions), extend (all else), combined."),
@@ -58,6 +64,8 @@ def run(
     scenes: Scenes = None,
     rooms: Rooms = 0,
     houses: Houses = 0,
+    stream: Streams = None,
+    at: At = "eye",
     composition: Composition = "combined",
     trajectories: Trajectories = None,
     views: Views = 3,
@@ -81,31 +89,49 @@ def run(
         UsageError: an option cannot be, or no scene gives an item. InputError: a scene cannot be
         read. OutputError: the folder cannot be written.
     """
+    from world2minecraft.errors import UsageError
+    from world2minecraft.vln.data.building import BuildRule
+    from world2minecraft.vln.data.recorded import checked_at
+    from world2minecraft.vln.data.scene_work import WorkRule
+
+    work = WorkRule(
+        views=views, move_set=_moves(moves), balanced=not every_keyframe, size_px=_size(size),
+        seed=seed,
+    )  # fmt: skip
+    rule = BuildRule(
+        composition, trajectories, paper_size, paper_split, unseen_share,
+        tuple(map(str, stream or ())), checked_at(at), work,
+    )  # fmt: skip
+    if not (scenes or rooms or houses):
+        raise UsageError("no scene is named; give paths of scenes, or --rooms 3 to make some")
+    _say(out, _built(out, list(scenes or []), (rooms, houses), rule, workers))
+
+
+def _built(
+    out: Path, scenes: list[Path], made: tuple[int, int], rule: "BuildRule", workers: int | None
+) -> "Built":
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.errors import UnknownNameError, UsageError
     from world2minecraft.render.batch.hands import usual_workers
     from world2minecraft.run_folder import check_writable
-    from world2minecraft.vln.data.building import BuildRule, build_set
+    from world2minecraft.vln.data.building import build_set
     from world2minecraft.vln.data.made_scenes import SCENES_FOLDER, make_scenes
-    from world2minecraft.vln.data.scene_work import WorkRule
-    from world2minecraft.vln.values import MOVE_SETS
 
-    if moves not in MOVE_SETS:
-        raise UnknownNameError("set of moves", moves, MOVE_SETS)
-    work = WorkRule(
-        views=views, move_set=moves, balanced=not every_keyframe, size_px=_size(size), seed=seed
-    )
-    rule = BuildRule(composition, trajectories, paper_size, paper_split, unseen_share, work)
-    places, hands = list(scenes or []), workers or usual_workers()
-    if not (places or rooms or houses):
-        raise UsageError("no scene is named; give paths of scenes, or --rooms 3 to make some")
     check_writable(out)
     compiling_note()
+    hands, seed = workers or usual_workers(), rule.work.seed
     with shown() as progress:
-        places += make_scenes(out / SCENES_FOLDER, rooms, houses, seed, hands, progress)
-        built = build_set(places, out, rule, progress, hands)
-    _say(out, built)
+        places = scenes + make_scenes(out / SCENES_FOLDER, *made, seed, hands, progress)
+        return build_set(places, out, rule, progress, hands)
+
+
+def _moves(name: str) -> str:
+    from world2minecraft.errors import UnknownNameError
+    from world2minecraft.vln.values import MOVE_SETS
+
+    if name not in MOVE_SETS:
+        raise UnknownNameError("set of moves", name, MOVE_SETS)
+    return name
 
 
 def _size(text: str) -> tuple[int, int]:

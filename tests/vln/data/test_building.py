@@ -58,7 +58,7 @@ def test_the_papers_counts_are_met_on_both_sides():
 
 def test_a_rule_shares_the_papers_walks_among_the_scenes():
     kinds = {"a": "base", "b": "base", "c": "extend"}
-    assert BuildRule(paper_size=True).walks_of(kinds) == {"a": 225, "b": 225, "c": 550}
+    assert BuildRule(paper_size=True).walks_of(kinds) == {"a": 180, "b": 180, "c": 600}
     assert BuildRule().walks_of(kinds) == {"a": 30, "b": 30, "c": 110}
     assert BuildRule(trajectories=7, paper_size=True).walks_of(kinds) == {"a": 7, "b": 7, "c": 7}
     with pytest.raises(UsageError, match="leave out --unseen-share"):

@@ -21,6 +21,7 @@ from world2minecraft.vln.data.asking import items_of
 from world2minecraft.vln.data.crew import SceneJob, work_jobs
 from world2minecraft.vln.data.leaks import Leaks, leaks_of
 from world2minecraft.vln.data.quotas import COMPOSITIONS, PAPER_WALKS, cut_as_the_paper
+from world2minecraft.vln.data.recorded import At, streams_of
 from world2minecraft.vln.data.scene_work import MADE_BY, SceneWork, WorkRule
 from world2minecraft.vln.data.splits import UNSEEN_SHARE, paper_splits, scene_splits
 from world2minecraft.vln.records import (
@@ -44,7 +45,8 @@ class BuildRule:
 
     ``paper_size`` cuts to the paper's counts, and asks each scene for its share of them.
     ``paper_split`` holds out walks of the same scenes, as the paper does; ``unseen_share`` of the
-    scenes are held out otherwise.
+    scenes are held out otherwise. ``streams`` are recorded walks: scenes that have some give those
+    alone; ``at`` is what x, y, z is in lines that do not say it.
     """
 
     composition: str = "combined"
@@ -52,6 +54,8 @@ class BuildRule:
     paper_size: bool = False
     paper_split: bool = False
     unseen_share: float = UNSEEN_SHARE
+    streams: tuple[str, ...] = ()
+    at: At = "eye"
     work: WorkRule = field(default_factory=WorkRule)
 
     def __post_init__(self):
@@ -117,10 +121,12 @@ def build_set(
     unseen = 0.0 if how.paper_split else how.unseen_share
     named = {scene_of[path]: kind for path, kind in wanted.items()}
     splits, walks = scene_splits(named, how.work.seed, unseen), how.walks_of(named)
+    streams = streams_of(how.streams, list(named))
     jobs = [
         SceneJob(
             path, str(out), kind, splits[scene_of[path]],
             replace(how.work, trajectories=walks[scene_of[path]]),
+            streams.get(scene_of[path], ()), how.at,
         )
         for path, kind in wanted.items()
     ]  # fmt: skip
@@ -174,6 +180,7 @@ def _write(
         "oracle_version": MADE_BY,
         "composition": how.composition,
         "rule": asdict(how.work),
+        "streams": list(how.streams),
         "scenes": [
             {
                 "scene_id": work.scene_id,

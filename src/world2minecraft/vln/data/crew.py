@@ -11,19 +11,22 @@ from pathlib import Path
 
 from world2minecraft.dataset.engine import opened_engine
 from world2minecraft.progress import Progress, silent
+from world2minecraft.vln.data.recorded import At, recorded_tours
 from world2minecraft.vln.data.scene_work import SceneWork, Tick, WorkRule, work_scene
 from world2minecraft.vln.scene import open_scene
 
 
 @dataclass(frozen=True)
 class SceneJob:
-    """A scene to work. ``split`` is its own: train or val_unseen."""
+    """A scene to work. ``split`` is train or val_unseen; ``streams`` were recorded there."""
 
     path: str
     folder: str  # of the set
     composition: str
     split: str
     rule: WorkRule
+    streams: tuple[str, ...] = ()
+    at: At = "eye"  # what streams tell that do not say it
 
 
 def work_jobs(
@@ -54,7 +57,8 @@ def work_jobs(
 def _worked(job: SceneJob, tick: Tick) -> SceneWork:
     """Work a scene: what processes are sent to do."""
     scene = open_scene(job.path)
-    return work_scene(scene, Path(job.folder), job.composition, job.split, job.rule, tick)
+    recorded = recorded_tours(scene, job.streams, job.at)
+    return work_scene(scene, Path(job.folder), job.composition, job.split, job.rule, tick, recorded)
 
 
 class _Count:
@@ -73,6 +77,6 @@ class _Count:
     def scene_done(self, name: str, given: int, asked: int) -> None:
         """Count what a scene did not give."""
         self._left -= 1
-        self.add(asked - given)
+        self.add(max(0, asked - given))
         done = self._done if self._left else self._wanted
         self._told(done, self._wanted, f"{name}: {given} walks")

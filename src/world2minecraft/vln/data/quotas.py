@@ -18,7 +18,7 @@ PAPER_HELD: Mapping[tuple[str, str], int] = {
     ("next_action", "extend"): 309,
     ("next_view", "extend"): 230,
 }
-PAPER_WALKS = {"base": 450, "extend": 550}  # Of all scenes together: with room to cut from.
+PAPER_WALKS = {"base": 360, "extend": 600}  # Of all scenes together: with room to cut from.
 COMPOSITIONS = ("base", "extend", "combined")
 
 

@@ -1,7 +1,7 @@
 """What one scene gives a set: trajectories with pictures, questions about them, episodes."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -22,6 +22,7 @@ from world2minecraft.vln.data.next_view import (
 )
 from world2minecraft.vln.data.pictures import Shot, shot_of, vln_camera
 from world2minecraft.vln.data.splits import split_of_tour
+from world2minecraft.vln.data.stream import StreamFrame
 from world2minecraft.vln.data.taking import RankDeck
 from world2minecraft.vln.data.touring import Tourist
 from world2minecraft.vln.data.validity import fault_of_pictures
@@ -45,7 +46,8 @@ Tick = Callable[[int], None]
 """Told how many walks more there are."""
 
 MADE_BY = f"{VERSION}+{ORACLE_VERSION}"
-LOOK_PX = (128, 72)  # Of pictures that are only to tell how like they are.
+LOOK_PX = (64, 36)  # Of pictures that are only to tell how like they are.
+MOST_RECORDED = 100_000  # Walks of one scene.
 MOST_TOURS = 60  # A scene that gives too little in so many gives no more.
 
 
@@ -101,6 +103,7 @@ def work_scene(
     scene_split: str,
     rule: WorkRule,
     tick: Tick = lambda _: None,
+    recorded: Sequence[Sequence[StreamFrame]] = (),
 ) -> SceneWork:
     """Walk a scene until it has given as many trajectories as the rule asks for.
 
@@ -111,31 +114,47 @@ def work_scene(
         scene_split: train or val_unseen.
         rule: how much, and how.
         tick: told of each walk.
+        recorded: tours that were recorded there: all walks of these are taken, and no others.
 
     Raises:
         OutputError: a picture cannot be written.
     """
     move_set = MOVE_SETS[rule.move_set]
     walker = scene_walker(scene, move_set)
-    maker, tourist = (
-        Maker(scene, move_set, walker, scene_guide(scene, move_set), rule.seed),
-        Tourist(scene),
-    )
+    maker = Maker(scene, move_set, walker, scene_guide(scene, move_set), rule.seed)
     work = SceneWork(scene.scene_id, composition, scene.metres_per_block)
     crew = _Crew(scene, folder, scene_split, rule, walker, work)
-    while tourist.has_goals and work.tours < MOST_TOURS:
-        tour_id = f"{scene.scene_id}_t{work.tours:02d}"
-        rng = np.random.default_rng([rule.seed, *tour_id.encode()])
-        tour = tourist.tour(tour_id, rng)
+    most = MOST_RECORDED if recorded else rule.trajectories
+    for frames, target_at, rng in _recorded(recorded, rule) if recorded else _tours(scene, rule):
         work.tours += 1
-        for candidate in maker.candidates(tour.frames, tour.target_at):
-            if len(work.trajectories) == rule.trajectories:
+        for candidate in maker.candidates(frames, target_at):
+            if len(work.trajectories) == most:
                 break
             tick(crew.take_in(candidate, rng))
-        if len(work.trajectories) == rule.trajectories:
+        if len(work.trajectories) == most:
             break
     work.refused += maker.refusals
     return work
+
+
+Toured = tuple[Sequence[StreamFrame], Callable[[float], str] | None, np.random.Generator]
+"""Frames, what was being gone to at a time, and the tour's chances."""
+
+
+def _tours(scene: VlnScene, rule: WorkRule) -> Iterator[Toured]:
+    """Tour a scene again and again."""
+    tourist = Tourist(scene)
+    for number in range(MOST_TOURS if tourist.has_goals else 0):
+        tour_id = f"{scene.scene_id}_t{number:02d}"
+        rng = np.random.default_rng([rule.seed, *tour_id.encode()])
+        tour = tourist.tour(tour_id, rng)
+        yield tour.frames, tour.target_at, rng
+
+
+def _recorded(tours: Sequence[Sequence[StreamFrame]], rule: WorkRule) -> Iterator[Toured]:
+    for frames in tours:
+        if frames:
+            yield frames, None, np.random.default_rng([rule.seed, *frames[0].tour_id.encode()])
 
 
 class _Crew:

@@ -42,12 +42,13 @@ def read_stream(
         >>> frames = read_stream("tour.jsonl", 1.0)                     # doctest: +SKIP
     """
     eye = eye_height_blocks(blocks_per_metre)
-    frames = [_frame(one, eye) for one in read_tour(path, at)]
+    frames = [frame_of(one, eye) for one in read_tour(path, at)]
     order = sorted(range(len(frames)), key=lambda n: (frames[n].tour_id, frames[n].t_s, n))
     return [frames[n] for n in order]
 
 
-def _frame(one: TourPose, eye: float) -> StreamFrame:
+def frame_of(one: TourPose, eye: float) -> StreamFrame:
+    """Return a line of a tour file as a frame; ``eye`` is its height over the feet, blocks."""
     pose = one.pose
     down = eye if pose.at == "eye" else 0.0
     stance = Stance(pose.x, pose.y - down, pose.z, pose.yaw_deg, pose.pitch_deg)
