@@ -54,6 +54,7 @@ VERBS: dict[str, str] = {
     "dataset tour": "Plan which pictures of a world are taken, or take those of screenshots.",
     "dataset sheet": "Draw many pictures of a data set or a tour on one page.",
     "vln build": "Make navigation questions of walks through scenes.",
+    "vln reword": "Let a navigation set ask in the words of people, or of a model.",
     "vln stats": "Tell what a navigation set holds, and what guessing scores.",
     "vln export": "Write navigation data as trainers and simulators read it.",
     "vln run": "Let an agent walk by an instruction: live, scored and on film.",

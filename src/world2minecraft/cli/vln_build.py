@@ -47,6 +47,10 @@ PaperSplit = Annotated[
 UnseenShare = Annotated[
     float, typer.Option("--unseen-share", help="Of the scenes of each kind.", min=0.0, max=1.0)
 ]
+Annotations = Annotated[
+    Path | None,
+    typer.Option("--annotations", help="People's words: trajectory_id, instruction; CSV, JSONL."),
+]
 EveryKeyframe = Annotated[
     bool,
     typer.Option("--every-keyframe", help="Ask at every keyframe; then blind guesses win."),
@@ -72,6 +76,7 @@ def run(
     paper_size: PaperSize = False,
     paper_split: PaperSplit = False,
     unseen_share: UnseenShare = 0.2,
+    annotations: Annotations = None,
     every_keyframe: EveryKeyframe = False,
     moves: Moves = "vlnce",
     size: Size = "640x360",
@@ -104,7 +109,12 @@ def run(
     )  # fmt: skip
     if not (scenes or rooms or houses):
         raise UsageError("no scene is named; give paths of scenes, or --rooms 3 to make some")
-    _say(out, _built(out, list(scenes or []), (rooms, houses), rule, workers))
+    built = _built(out, list(scenes or []), (rooms, houses), rule, workers)
+    if annotations is not None:
+        from world2minecraft.vln.data.rewording import annotate_set
+
+        annotate_set(out, annotations)
+    _say(out, built)
 
 
 def _built(
@@ -154,4 +164,5 @@ def _say(out: Path, built: "Built") -> None:
         shared = len(built.leaks.images)
         print(f"  LEAK     {shared} pictures of train are in what is scored on: see dataset.json")
     print(f"  next     w2m vln stats {out}      lengths, balance, and what blind guessing scores")
+    print(f"  words    w2m vln reword {out} --annotations FILE, or --rewrite MODEL")
     print(f"  then     w2m vln export {out} --to llamafactory --out TRAIN")

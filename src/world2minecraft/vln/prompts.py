@@ -42,6 +42,17 @@ class Question:
                 yield "text", text
 
 
+def mark_in(text: str) -> str:
+    """Return what a trainer or a model would take for a picture or a turn's end; "" for nothing.
+
+    Example:
+        >>> mark_in("Go to the <image>.")
+        '<image>'
+    """
+    found = _MARK.search(text)
+    return found[0] if found else ""
+
+
 def question_of(item: Item) -> Question:
     """Return the question of an item.
 
@@ -63,9 +74,9 @@ def question_of(item: Item) -> Question:
     """
     words = [item.instruction.text, *(option.text for option in item.options)]
     for text in words:
-        if found := _MARK.search(text):
+        if found := mark_in(text):
             raise UsageError(
-                f"item {item.item_id}: its words hold {found[0]!r}, which trainers and models read "
+                f"item {item.item_id}: its words hold {found!r}, which trainers and models read "
                 "as a picture or the end of a turn; reword it"
             )
     lines = [_ROLE, f"Instruction: {' '.join(item.instruction.text.split())}"]

@@ -190,6 +190,7 @@ def _write(
                 "metres_per_block": work.metres_per_block,
                 "tours": work.tours,
                 "trajectories": len(work.trajectories),
+                "landmarks": list(work.names),
                 "refused": dict(sorted(work.refused.items())),
             }
             for work in works

@@ -71,6 +71,7 @@ class SceneWork:
     scene_id: str
     composition: str
     metres_per_block: float
+    names: tuple[str, ...] = ()  # of its landmarks
     trajectories: list[Trajectory] = field(default_factory=list)
     spoken: dict[str, Instruction] = field(default_factory=dict)  # the one that items ask by
     pictures: dict[str, list[Pictured]] = field(default_factory=dict)
@@ -122,7 +123,8 @@ def work_scene(
     move_set = MOVE_SETS[rule.move_set]
     walker = scene_walker(scene, move_set)
     maker = Maker(scene, move_set, walker, scene_guide(scene, move_set), rule.seed)
-    work = SceneWork(scene.scene_id, composition, scene.metres_per_block)
+    names = tuple(sorted(one.name for one in scene.landmarks))
+    work = SceneWork(scene.scene_id, composition, scene.metres_per_block, names)
     crew = _Crew(scene, folder, scene_split, rule, walker, work)
     most = MOST_RECORDED if recorded else rule.trajectories
     for frames, target_at, rng in _recorded(recorded, rule) if recorded else _tours(scene, rule):

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from world2minecraft.vln.language.reading import told_in
+from world2minecraft.vln.prompts import mark_in
 from world2minecraft.vln.values import Instruction
 
 Ask = Callable[[str], str]
@@ -61,6 +62,8 @@ def rewritten(
     text = _plain(ask(prompt))
     if not text or len(text) > MOST_CHARACTERS:
         return Rewriting(None, "empty" if not text else "too long")
+    if not text.isprintable() or mark_in(text):
+        return Rewriting(None, "strange marks")
     found = told_in(text, known)
     if found.turns != expected.turns:
         return Rewriting(None, "other turns")

@@ -1,0 +1,104 @@
+"""``w2m vln reword``: the walks of a set in the words of people, or of a language model."""
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from world2minecraft.cli import vln_options as option
+
+if TYPE_CHECKING:
+    from world2minecraft.models.chat import ChatModel
+    from world2minecraft.vln.data.rewording import NavigationSet
+
+EXAMPLES = """\
+w2m vln reword SET --annotations words.csv                 people's words
+w2m vln reword SET --rewrite gemini --max-usd 1            a model's, where they say the same
+w2m vln reword SET --rewrite http://localhost:8000/v1 --model qwen
+w2m vln reword SET --plain                                 back to the program's own
+"""
+REPLIES = "rewriting"  # The folder of a set where replies are kept.
+
+SetPath = Annotated[Path, typer.Argument(help="A set of w2m vln build; it is changed.")]
+Annotations = Annotated[
+    Path | None,
+    typer.Option("--annotations", help="CSV or JSONL: trajectory_id, instruction."),
+]
+Rewrite = Annotated[
+    str, typer.Option("--rewrite", help="A model's server, by address, or gemini, openai ...")
+]
+Plain = Annotated[bool, typer.Option("--plain", help="Ask in the program's own words again.")]
+Jobs = Annotated[int, typer.Option("--jobs", help="Questions at a time.", min=1, max=64)]
+
+
+def run(
+    path: SetPath,
+    annotations: Annotations = None,
+    rewrite: Rewrite = "",
+    plain: Plain = False,
+    jobs: Jobs = 4,
+    model: option.Model = "",
+    key_env: option.KeyEnv = "",
+    max_usd: option.MaxUsd = None,
+    max_calls: option.MaxCalls = None,
+    prices: option.Prices = None,
+    timeout: option.Timeout = 60.0,
+    temperature: option.Temperature = 0.0,
+    replay: option.Replay = None,
+) -> None:
+    """Let a set ask in the words of people, or of a language model.
+
+    Words are added to trajectories.jsonl and none is taken away. Items and episodes use a person's
+    words where there are some, else a model's, else the program's own. A model's words are taken
+    only where the same turns and things are read from them, in the same order; its replies
+    are kept, so that the same command asks nothing twice.
+
+    Raises:
+        UsageError, InputError: an option or a file is wrong. ServerError: the model gives no reply.
+    """
+    from world2minecraft.errors import UsageError
+    from world2minecraft.vln.data.rewording import ORDER, annotated, asked_by, read_set, write_set
+
+    if not (annotations or rewrite or plain):
+        raise UsageError("nothing to do; give --annotations FILE, --rewrite MODEL or --plain")
+    made, chat, outcomes = read_set(path), None, Counter[str]()
+    if annotations is not None:
+        made = annotated(made, annotations)
+    if rewrite:
+        chat = option.opened_chat(
+            rewrite, path / REPLIES, model, key_env, max_usd, max_calls, prices, timeout,
+            temperature, replay,
+        )  # fmt: skip
+        made, outcomes = _rewritten(made, chat, jobs)
+    made = asked_by(made, ORDER[-1:] if plain else ORDER)
+    write_set(path, made)
+    _say(path, made, outcomes, chat)
+
+
+def _rewritten(
+    made: "NavigationSet", chat: "ChatModel", jobs: int
+) -> "tuple[NavigationSet, Counter[str]]":
+    from world2minecraft.cli.progress import shown
+    from world2minecraft.models.chat_messages import Turn
+    from world2minecraft.vln.data.rewording import rewritten_set
+
+    def ask(prompt: str) -> str:
+        return chat.ask((Turn("user", (prompt,)),))[1].text
+
+    with shown() as progress:
+        return rewritten_set(made, ask, chat.name, jobs, progress)
+
+
+def _say(
+    path: Path, made: "NavigationSet", outcomes: Counter[str], chat: "ChatModel | None"
+) -> None:
+    sources = Counter(item.instruction.source for item in made.items)
+    told = ", ".join(f"{count:,} {name}" for name, count in sorted(sources.items()))
+    print(f"\n{path}: items ask in words of {told}.")
+    if chat is not None:
+        refused = {reason: n for reason, n in sorted(outcomes.items()) if reason}
+        why = ", ".join(f"{reason} {n}" for reason, n in refused.items()) or "none"
+        print(f"  taken    {outcomes['']:,} of {sum(outcomes.values()):,}; refused: {why}")
+        print(f"  asked    {option.cost_line(chat)}")
+    print(f"  next     w2m vln stats {path}      lengths, and what blind guessing scores")
