@@ -84,7 +84,7 @@ def on_floor(scene: VlnScene, frames: Sequence[StreamFrame]) -> list[StreamFrame
     away, places = tree.query(np.array([one.stance.feet for one in frames]) * stretch)
     return [
         replace(one, stance=replace(one.stance, y=float(scene.graph.feet[place, 1])))
-        for one, place, gap in zip(frames, places, away, strict=True)
+        for one, place, gap in zip(frames, np.asarray(places), np.asarray(away), strict=True)
         if gap <= ASIDE_M
     ]
 
