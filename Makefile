@@ -22,7 +22,7 @@ ifneq ($(shell $(BIN)/python -c 'print("runs")' 2>/dev/null),runs)
 $(shell rm -f $(STAMP))
 endif
 
-.PHONY: help demo forge test test-live test-server test-trainers lint bench setup clean
+.PHONY: help demo docs forge test test-live test-server test-trainers release-check lint bench setup clean
 .DEFAULT_GOAL := help
 
 help:  ## Show the targets.
@@ -51,6 +51,9 @@ $(STAMP): pyproject.toml constraints.txt
 demo: $(STAMP)  ## Scan the embedded room and build it as a Minecraft world in OUT/.
 	@$(BIN)/python -m world2minecraft.cli demo
 
+docs: $(STAMP)  ## Build the site of the docs into site/, strictly.
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs --quiet build --strict
+
 forge:  ## Build SceneForge's page from its TypeScript (needs Node 20 and npm).
 	@cd src/world2minecraft/forge/web && npm ci --no-audit --no-fund --silent && npm run --silent build
 
@@ -66,6 +69,9 @@ test-server: $(STAMP)  ## Walk by a player on a real server and hold it against 
 test-trainers: $(STAMP)  ## Train on exports with LLaMA-Factory and TRL, on the CPU (fetches 3 GB to .trainers/).
 	@$(BIN)/python -m pytest -m trainers -rP tests/trainers
 
+release-check: $(STAMP)  ## Build wheel and sdist, install each Python's from the wheel alone, run the demo.
+	@$(BIN)/python tools/release/check.py
+
 lint: $(STAMP)  ## Check style, spelling and types.
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
@@ -75,5 +81,5 @@ lint: $(STAMP)  ## Check style, spelling and types.
 bench: $(STAMP)  ## Measure speed and memory against the budgets (ONLY=cli for one).
 	@$(BIN)/python -m benchmarks $(if $(ONLY),--only $(ONLY))
 
-clean:  ## Remove the environment and the demo's output.
-	rm -rf $(VENV) OUT
+clean:  ## Remove the environment, and what demo, docs and release-check wrote.
+	rm -rf $(VENV) OUT dist site

@@ -24,9 +24,11 @@ REQUIREMENTS = [
     *(item for item in EXTRAS["dev"] if not item.startswith(PROJECT["name"])),
     *EXTRAS["capture"],
     *EXTRAS["data"],
+    *EXTRAS["docs"],
     *EXTRAS["hf"],
     *EXTRAS["train"],
     *EXTRAS["usd"],
+    *EXTRAS["vln"],
 ]
 
 

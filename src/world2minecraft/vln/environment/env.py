@@ -41,7 +41,7 @@ class VlnEnv(gymnasium.Env):
         success_m: STOP nearer to the goal, on foot, is a success: of the reward and of SPL.
         span_m: the shortest and the longest way of drawn episodes.
         render_mode: "rgb_array", or "human": each step is shown at ``window.link`` in the browser.
-        body, box, blocks_per_metre: as ``open_scene`` takes them.
+        body: as ``open_scene`` takes it, ``box`` and ``blocks_per_metre`` too.
 
     ``reset(options={"goal": "piano"})`` draws an episode to a thing; ``{"episode": 3}``, a number
     or an ``episode_id``, takes one of the file.

@@ -1,0 +1,62 @@
+"""What the site takes from elsewhere: sections of the README, docstrings, the verbs' help."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("mkdocs", reason="the docs extra is not installed")
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools" / "site"))
+
+import docstrings
+import modules
+import readme
+import verbs
+from mkdocs.exceptions import PluginError
+
+README = "# Name\n\nHead [a](docs/a.md).\n\n## One\n\ntext\n\n### Part\n\n## Two\nlast\n"
+
+
+def test_a_section_ends_where_the_next_begins():
+    assert readme.section(README, "One") == "text\n\n### Part"
+    assert readme.section(README, "Two") == "last"
+    assert readme.section(README, None) == "Head [a](docs/a.md)."
+
+
+def test_a_section_that_is_not_there_is_told():
+    with pytest.raises(PluginError, match=r"README.md has no section 'Three'; it has One, Two"):
+        readme.section(README, "Three")
+
+
+def test_links_of_the_root_are_turned():
+    text = "[a](docs/a.md#b) ![p](docs/images/p.png) [c](CONTRIBUTING.md#x) [d](https://d/docs/)"
+    turned = "[a](a.md#b) ![p](images/p.png) [c](contributing.md#x) [d](https://d/docs/)"
+    assert readme._in_the_site(text) == turned
+
+
+def test_examples_of_a_docstring_are_fenced():
+    text = "Add.\n\n>>> add(1, 2)\n3\n>>> add(\n...     0, 0)\n0\n\nMore."
+    fenced = "```pycon\n>>> add(1, 2)\n3\n>>> add(\n...     0, 0)\n0\n```\n\nMore."
+    assert docstrings.as_markdown(text).startswith(f"Add.\n\n\n{fenced}")
+
+
+def test_errors_of_a_docstring_stand_apart():
+    text = "Read.\n\nRaises:\n    InputError: it is no file. LimitError: it is\n    too large.\n"
+    apart = "Raises:\n    InputError: it is no file.\n    LimitError: it is too large.\n"
+    assert apart in docstrings.as_markdown(text)
+
+
+def test_shapes_are_no_links():
+    assert docstrings.as_markdown("the pose [4][4], a[0][1]") == "the pose `[4][4]`, a[0][1]\n"
+
+
+def test_a_page_of_a_package_names_its_public_modules():
+    page = modules._page("fuse", modules.SOURCE / "fuse")
+    assert "::: world2minecraft.fuse.read_out\n" in page
+    assert "fuse.__init__" not in page
+
+
+def test_a_verb_stands_with_its_examples():
+    text = verbs.text()
+    assert "## w2m rooms scan { #rooms-scan }" in text
+    assert "w2m rooms scan --seed 7 --sensor photos --out photos" in text

@@ -1,0 +1,63 @@
+"""MkDocs hook: the site takes from the repository's own pages what they say already.
+
+``README.md`` stays the front door: a line ``<!-- README: Try it -->`` in a page is replaced by the
+README's section of that name, and ``<!-- README -->`` by what it says before its first section.
+``CONTRIBUTING.md``, ``CHANGELOG.md`` and the cards of the shipped networks become pages of the site
+as they are. Links are turned to where the files lie in the site.
+"""
+
+import re
+from pathlib import Path
+from typing import Any
+
+from mkdocs.exceptions import PluginError
+from mkdocs.structure.files import File
+
+ROOT = Path(__file__).parents[2]
+CARDS = ROOT / "src" / "world2minecraft" / "weights"
+# Where a page of the repository's root stands in the site.
+PAGES = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changes.md"}
+SLOT = re.compile(r"^<!-- README(?:: (.+?))? -->$", re.MULTILINE)
+
+
+def on_files(files: Any, config: Any) -> Any:
+    """Add the pages that lie outside ``docs``."""
+    for name, page in PAGES.items():
+        text = _in_the_site((ROOT / name).read_text("utf-8"))
+        files.append(File.generated(config, page, content=text))
+    for card in sorted(CARDS.glob("*.md")):
+        page = f"network-{card.stem}.md"
+        files.append(File.generated(config, page, content=_in_the_site(card.read_text("utf-8"))))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
+    """Fill a page's slots from the README, and turn its links."""
+    readme = (ROOT / "README.md").read_text("utf-8")
+    filled = SLOT.sub(lambda slot: _in_the_site(section(readme, slot[1])), markdown)
+    return filled.replace("](../CONTRIBUTING.md", "](contributing.md").replace(
+        "](../CHANGELOG.md", "](changes.md"
+    )
+
+
+def section(text: str, title: str | None) -> str:
+    """Return the body of a section, or what stands between the title and the first section.
+
+    Raises:
+        PluginError: there is no such section.
+    """
+    head, *rest = re.split(r"^## +(.+)$", text, flags=re.MULTILINE)
+    if title is None:
+        return head.partition("\n")[2].strip()
+    bodies = dict(zip(rest[::2], rest[1::2], strict=True))
+    if title not in bodies:
+        raise PluginError(f"README.md has no section {title!r}; it has {', '.join(bodies)}")
+    return bodies[title].strip()
+
+
+def _in_the_site(text: str) -> str:
+    """Return a text of the root with its links as pages of ``docs`` write them."""
+    text = re.sub(r"\]\((?:\.\./)*docs/", "](", text)
+    for name, page in PAGES.items():
+        text = text.replace(f"]({name}", f"]({page}")
+    return text
