@@ -33,6 +33,7 @@ NEEDED = (
     f"{PACKAGE}/weights/completion.md",
     f"{PACKAGE}/minecraft/data/blocks.json.gz",
     f"{PACKAGE}/minecraft/data/NOTICE-minecraft-data.txt",
+    f"{PACKAGE}/forge/NOTICE-three.txt",
 )
 UNWANTED = ("node_modules/", "/forge/web/", "tests/", "benchmarks/", ".pyc", ".jar")
 IN_SDIST = ("LICENSE", "NOTICE", "CITATION.cff", "Makefile", "constraints.txt", "tests/conftest.py")

@@ -42,6 +42,7 @@ SOURCES = Registry(
         "photo": "world2minecraft.scan.one_photo:OnePhotoSource",
     },
 )
+TAKES_ANY = ("photos", "photo")  # Asked last, after those of other packages too.
 MAX_WRAPPINGS = 3  # Folders that hold nothing but a folder, as zips often do.
 INDEX_FILES = ("capture.json", "transforms.json")
 
@@ -65,7 +66,8 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
         empty = place.is_dir() and next(place.iterdir(), None) is None
     except OSError as error:
         raise CaptureError(place, f"cannot be read: {error.strerror or error}") from error
-    sources: list[Source] = [SOURCES.load(name)() for name in SOURCES.names()]
+    names = sorted(SOURCES.names(), key=lambda name: name in TAKES_ANY)
+    sources: list[Source] = [SOURCES.load(name)() for name in names]
     for inner in _places(place):
         for source in sources:
             if source.recognise(inner):
