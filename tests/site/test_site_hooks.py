@@ -8,6 +8,7 @@ import pytest
 pytest.importorskip("mkdocs", reason="the docs extra is not installed")
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools" / "site"))
 
+import dialect
 import docstrings
 import modules
 import readme
@@ -60,3 +61,18 @@ def test_a_verb_stands_with_its_examples():
     text = verbs.text()
     assert "## w2m rooms scan { #rooms-scan }" in text
     assert "w2m rooms scan --seed 7 --sensor photos --out photos" in text
+
+
+@pytest.mark.parametrize(
+    ("written", "read"),
+    [
+        ("Words:\n- a\n- b\n\nMore", "Words:\n\n- a\n- b\n\nMore"),
+        ("Words:\n| a |\n|---|\n| b |", "Words:\n\n| a |\n|---|\n| b |"),
+        ("- a\n  - b\n  goes on\n- c", "- a\n    - b\n  goes on\n- c"),
+        ("1. a\n   - b", "1. a\n    - b"),
+        ("```\nx\n- a\n```\n- b", "```\nx\n- a\n```\n\n- b"),
+        ("Words - and\nmore - words", "Words - and\nmore - words"),
+    ],
+)
+def test_lists_and_tables_are_read_as_github_reads_them(written, read):
+    assert dialect.on_page_markdown(written) == read
