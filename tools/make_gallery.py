@@ -19,15 +19,16 @@ from world2minecraft.files import write_bytes, write_text
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 FOLDER = "images/gallery"
-SIZE = "--size 960x600 --quality 82"
+SIZE = "--size 960x600 --format jpg --quality 82"
 
 
 class Shot(NamedTuple):
-    """A picture: the file's stem, what it shows, and the words of its w2m render."""
+    """A picture: its name, what it shows, the words of its w2m render, and which one of those."""
 
     stem: str
     title: str
     render: str
+    take: int = 0
 
 
 class Scene(NamedTuple):
@@ -48,14 +49,10 @@ SCENES = (
             "w2m demo --kind bed --seed 4 --out bed",
         ),
         (
-            Shot("kitchen", "A kitchen, from outside", "kitchen --orbit --frames 1"),
-            Shot("kitchen-inside", "and inside", "kitchen"),
-            Shot("bed", "A bedroom, from outside", "bed --orbit --frames 1"),
-            Shot(
-                "bed-inside",
-                "and inside, at eight in the evening",
-                "bed --hour 20",
-            ),
+            Shot("kitchen", "A kitchen, from outside", "kitchen --orbit --frames 4", 2),
+            Shot("kitchen-inside", "and inside", "kitchen --tour --frames 8", 4),
+            Shot("bed", "A bedroom, from outside", "bed --orbit --frames 4"),
+            Shot("bed-inside", "and inside", "bed --tour --frames 8", 6),
         ),
     ),
     Scene(
@@ -63,10 +60,12 @@ SCENES = (
         "Furnished houses in styles that each draws for itself: block worlds with exact truth.",
         ("w2m rooms generate --houses 4 --seed 21 --worlds houses",),
         (
-            Shot("house-1", "Opened from above", "houses/house_0001 --orbit --frames 1 --open"),
-            Shot("house-2", "Another", "houses/house_0002 --orbit --frames 1 --open"),
-            Shot("house-3", "Inside, by day", "houses/house_0003"),
-            Shot("house-4", "Inside, at night", "houses/house_0004 --hour 22"),
+            Shot("house-1", "Two storeys, opened", "houses/house_0001 --orbit --frames 4"),
+            Shot("house-2", "One, opened", "houses/house_0002 --orbit --frames 4"),
+            Shot("room-1", "A living room", "houses/house_0001 --tour --frames 8", 3),
+            Shot("room-2", "Another", "houses/house_0002 --tour --frames 8", 4),
+            Shot("room-3", "and one in lime", "houses/house_0003 --tour --frames 8", 1),
+            Shot("room-4", "A dining room", "houses/house_0004 --tour --frames 8", 2),
         ),
     ),
     Scene(
@@ -78,9 +77,9 @@ SCENES = (
             "w2m build kitchen --out exact --blocks-per-metre 12.5",
         ),
         (
-            Shot("style-blocks", "Blocks, 2 a metre", "coarse --orbit --frames 1"),
-            Shot("style-display", "Displays, 2 a metre", "fine --orbit --frames 1"),
-            Shot("style-exact", "A block a voxel", "exact --orbit --frames 1"),
+            Shot("style-blocks", "Blocks, 2 a metre", "coarse --orbit --frames 4", 2),
+            Shot("style-display", "Displays, 2 a metre", "fine --orbit --frames 4", 2),
+            Shot("style-exact", "A block a voxel", "exact --orbit --frames 4"),
         ),
     ),
 )
@@ -101,8 +100,8 @@ def main() -> None:
 
 
 def command_of(shot: Shot) -> str:
-    """Return the command that draws a picture."""
-    return f"w2m render {shot.render} {SIZE} --out {shot.stem}.jpg"
+    """Return the command that draws a picture, and some beside it."""
+    return f"w2m render {shot.render} {SIZE} --out shots/{shot.stem}"
 
 
 def page() -> str:

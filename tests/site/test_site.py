@@ -11,7 +11,9 @@ import yaml
 from world2minecraft.cli.verbs import VERBS
 
 ROOT = Path(__file__).resolve().parents[2]
-GENERATED = {"verbs.md", "contributing.md", "changes.md", "network-completion.md"}
+CARDS = (ROOT / "src" / "world2minecraft" / "weights").glob("*.md")
+GENERATED = {"verbs.md", "benchmarks.md", "contributing.md", "changes.md"}
+GENERATED |= {f"network-{card.stem}.md" for card in CARDS}
 
 
 class _Loader(yaml.SafeLoader):

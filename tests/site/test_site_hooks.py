@@ -10,6 +10,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools" / "site"))
 
 import dialect
 import docstrings
+import measuring
 import modules
 import readme
 import verbs
@@ -55,6 +56,13 @@ def test_a_page_of_a_package_names_its_public_modules():
     page = modules._page("fuse", modules.SOURCE / "fuse")
     assert "::: world2minecraft.fuse.read_out\n" in page
     assert "fuse.__init__" not in page
+
+
+def test_a_benchmark_stands_with_its_command():
+    text = measuring.text()
+    assert "`python -m benchmarks --only render`" in text
+    assert "`python -m benchmarks.check_faithful`" in text
+    assert "### rows" not in text
 
 
 def test_a_verb_stands_with_its_examples():
