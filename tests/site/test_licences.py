@@ -26,7 +26,8 @@ def patterns():
 
 
 def fits(pattern, name):
-    return re.fullmatch(re.escape(pattern).replace(r"\*", "[^/]*"), name)
+    words = re.escape(pattern).replace(r"\*\*", ".*").replace(r"\*", "[^/]*")
+    return re.fullmatch(words, name)
 
 
 def test_each_file_that_is_shipped_has_a_row():

@@ -36,6 +36,12 @@ def test_links_of_the_root_are_turned():
     assert readme._in_the_site(text) == turned
 
 
+def test_links_out_of_the_docs_lead_to_pages_of_the_site():
+    text = "[a](../CHANGELOG.md#x) [b](../src/world2minecraft/weights/mono.md)"
+    turned = "[a](changes.md#x) [b](network-mono.md)"
+    assert readme.on_page_markdown(text, page=None) == turned
+
+
 def test_examples_of_a_docstring_are_fenced():
     text = "Add.\n\n>>> add(1, 2)\n3\n>>> add(\n...     0, 0)\n0\n\nMore."
     fenced = "```pycon\n>>> add(1, 2)\n3\n>>> add(\n...     0, 0)\n0\n```\n\nMore."

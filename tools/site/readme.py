@@ -17,6 +17,7 @@ ROOT = Path(__file__).parents[2]
 CARDS = ROOT / "src" / "world2minecraft" / "weights"
 # Where a page of the repository's root stands in the site.
 PAGES = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changes.md"}
+CARD_LINK = re.compile(r"\]\(\.\./src/world2minecraft/weights/(\w+)\.md")
 SLOT = re.compile(r"^<!-- README(?:: (.+?))? -->$", re.MULTILINE)
 
 
@@ -35,9 +36,9 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     """Fill a page's slots from the README, and turn its links."""
     readme = (ROOT / "README.md").read_text("utf-8")
     filled = SLOT.sub(lambda slot: _in_the_site(section(readme, slot[1])), markdown)
-    return filled.replace("](../CONTRIBUTING.md", "](contributing.md").replace(
-        "](../CHANGELOG.md", "](changes.md"
-    )
+    for name, place in PAGES.items():
+        filled = filled.replace(f"](../{name}", f"]({place}")
+    return CARD_LINK.sub(r"](network-\1.md", filled)
 
 
 def section(text: str, title: str | None) -> str:
