@@ -93,9 +93,8 @@ def main() -> None:
                 _run(line)
             for shot in scene.shots:
                 _run(command_of(shot))
-                write_bytes(
-                    DOCS / FOLDER / f"{shot.stem}.jpg", Path(f"{shot.stem}.jpg").read_bytes()
-                )
+                taken = Path("shots", shot.stem, f"{shot.take:06d}.jpg").read_bytes()
+                write_bytes(DOCS / FOLDER / f"{shot.stem}.jpg", taken)
     write_text(DOCS / "gallery.md", page())
 
 
