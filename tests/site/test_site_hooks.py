@@ -12,6 +12,7 @@ import dialect
 import docstrings
 import measuring
 import modules
+import places
 import readme
 import verbs
 from mkdocs.exceptions import PluginError
@@ -90,3 +91,12 @@ def test_a_verb_stands_with_its_examples():
 )
 def test_lists_and_tables_are_read_as_github_reads_them(written, read):
     assert dialect.on_page_markdown(written) == read
+
+
+def test_a_page_without_a_line_follows_those_like_it():
+    nav = [{"Home": "index.md"}, {"Walks": ["vln-a.md", {"Deep": "vln-b.md"}]}, {"Reference": []}]
+    for page in ("vln-z.md", "layout-baselines.md", "solo.md"):
+        places._place(nav, page)
+    assert nav[1] == {"Walks": ["vln-a.md", "vln-z.md", {"Deep": "vln-b.md"}]}
+    assert nav[2] == {"Reference": ["layout-baselines.md", "solo.md"]}
+    assert set(places._pages(nav)) >= {"index.md", "vln-b.md", "vln-z.md", "solo.md"}
