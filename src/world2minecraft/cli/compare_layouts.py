@@ -81,7 +81,11 @@ def run(
     if json_path is not None:
         write_json(json_path, told)
         print(f"figures  {json_path}")
-    if how.truth is None and any(scene.collided is not None for scene in found):
+    runs = [scene for scene in found if scene.collided is not None]
+    if how.truth is None and runs:
         print("note: a run was held to the rooms that it found itself; --truth SCAN holds it to "
               "the true ones")  # fmt: skip
-    print(f"\nnext: w2m compare build {paths[0]} --out BUILT   to see them as blocks")
+    step = f"w2m compare judge {paths[0]} --agent gemini --out JUDGED   to have it graded"
+    if len(runs) < len(found):
+        step = f"w2m compare build {paths[0]} --out BUILT   to see them as blocks"
+    print(f"\nnext: {step}")

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
+from world2minecraft.compare.solid import solid_collisions
 from world2minecraft.compare.values import ComparedScene
 from world2minecraft.errors import UsageError
 from world2minecraft.metrics.footprints import outside_share, shared_height_m, shared_volume_m3
@@ -53,8 +54,8 @@ USUAL = Margins()
 class SceneScores:
     """Counts of one scene: indices of objects, and sorted pairs of them.
 
-    ``categories`` are the classes of objects, ``structure`` those of its shell; ``collided`` is
-    the count of meeting solid parts where more than boxes is known.
+    ``categories`` are the classes of objects, ``structure`` those of its shell; ``collided``
+    counts the pairs whose solid parts meet.
     """
 
     name: str
@@ -66,7 +67,7 @@ class SceneScores:
     overlapping: tuple[tuple[int, int], ...]
     categories: frozenset[int]
     structure: frozenset[int]
-    collided: int | None = None
+    collided: int
 
 
 def score_scene(scene: ComparedScene, margins: Margins = USUAL) -> SceneScores:
@@ -87,7 +88,7 @@ def score_scene(scene: ComparedScene, margins: Margins = USUAL) -> SceneScores:
         overlapping=tuple(pairs),
         categories=frozenset(int(item.class_id) for item in scene.objects) & set(OBJECT_CLASSES),
         structure=structure_of(scene.rooms),
-        collided=scene.collided,
+        collided=solid_collisions(scene),
     )
 
 
@@ -132,8 +133,8 @@ def summary_of(
     counts = {
         "collisions": [len(one.colliding) for one in scores],
         "overlaps": [len(one.overlapping) for one in scores],
+        "solid_collisions": [one.collided for one in scores],
     }
-    parts = [one.collided for one in scores]
     return {
         "scenes": len(scores),
         "objects": objects,
@@ -145,7 +146,6 @@ def summary_of(
         "scenes_reaching_out": _share(sum(bool(one.reaching) for one in scores), len(scores)),
         **{name: round(float(np.mean(each)), 4) for name, each in counts.items()},
         "scenes_with_collisions": _share(sum(map(bool, counts["collisions"])), len(scores)),
-        "solid_collisions": None if None in parts else round(float(np.mean(parts)), 4),  # type: ignore[arg-type]
         **_integrity_of(scores, true),
     }
 

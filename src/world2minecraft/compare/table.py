@@ -13,7 +13,7 @@ OTHER_HEADS: tuple[str, ...] = (
 )  # fmt: skip
 NOTES: tuple[str, ...] = (
     "OOB: share of objects out of bounds, with its interval; collisions: pairs a scene; semantic: "
-    "share of the true categories.",
+    "share of the true categories; solid collisions: pairs a scene whose solid parts meet.",
     "corner OOB: LayoutGPT's own rule, a corner over 10 cm outside; overlaps: pairs a scene that "
     "share any volume.",
 )
@@ -28,7 +28,7 @@ def layout_table(summaries: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
         rows.append(
             [method, f"{told['scenes']:,}", f"{told['objects']:,}", rate,
              f"{told['scenes_out_of_bounds']:.3f}", f"{told['collisions']:.2f}",
-             _known(told["semantic_integrity"], 3), _known(told["solid_collisions"], 2),
+             _known(told["semantic_integrity"], 3), f"{told['solid_collisions']:.2f}",
              f"{told['unplaced']:,}"]
         )  # fmt: skip
     return rows

@@ -22,8 +22,8 @@ class ComparedScene:
     ``objects`` are boxes as their makers gave them, before anything becomes cells. ``method`` says
     who made the scene. ``is_height_stated`` is False where ``wall_height_m`` is only a guess, so
     that nothing can be too high. ``unplaced`` names what the method wanted and found no place for,
-    ``skipped`` says what could not be read. ``collided``: pairs of solid parts that meet, where
-    more than boxes is known; None where it is not.
+    ``skipped`` says what could not be read. ``collided`` counts the pairs of a run whose solid
+    parts meet, by its own cells; of a layout it is None.
     """
 
     name: str

@@ -1,10 +1,12 @@
-"""Our own reconstructions: what was placed, in the rooms that are truly there where they are known.
+"""Our own reconstructions: what was placed, in the true rooms where they are known.
 
 Without a truth the rooms are those that the run itself found, which flatters it; with one, its
-rooms are carried into the run's frame. Furniture of templates is more than boxes, so beside the
-boxes their solid parts count too: a chair under a table does not meet it.
+rooms are carried into the run's frame, and only the openings stay those that the run found.
+Furniture of templates is more than boxes, so beside the boxes their solid parts count too: a chair
+under a table does not meet it.
 """
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -44,7 +46,9 @@ class Format:
             raise ValueError(f"has {len(placed):,} placements; at most {MOST_OBJECTS:,} are read")
         rooms = read_rooms(path, grid)
         if how.truth is not None:
+            found = tuple(opening for room in rooms for opening in room.openings)
             rooms = true_rooms(path, how.truth, scan_to_room)
+            rooms = (replace(rooms[0], openings=found), *rooms[1:]) if rooms else rooms
         if not rooms:
             raise InputError(path, "tells of no room; run w2m reconstruct again")
         met = len(collisions(placed, grid=grid))
