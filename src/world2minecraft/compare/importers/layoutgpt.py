@@ -5,7 +5,7 @@ length 270px, max width 252px``; an object is ``[category, {length, width, heigh
 depth, orientation}]``. ``left``, ``top`` and ``depth`` are the centre, sizes are full. ``left``
 runs along 3D-FRONT's x and ``top`` along its z, which seen from above runs down the page; so y is
 the room's width less ``top``, and nothing is mirrored. At 0 degrees a front looks along ``top``:
-of the published wardrobes three quarters then have their back to the wall at ``top`` 0.
+so four fifths of the published beds and nightstands have their back to the nearest wall.
 
 **Pixels.** The published files are in pixels and hold no metres, so a scale is assumed: 256 pixels
 are 3.5 m. With it their desks are 0.75 m high and their chairs 0.89 m. Files in metres are read as
