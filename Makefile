@@ -52,7 +52,8 @@ demo: $(STAMP)  ## Scan the embedded room and build it as a Minecraft world in O
 	@$(BIN)/python -m world2minecraft.cli demo
 
 docs: $(STAMP)  ## Build the site of the docs into site/, strictly.
-	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs --quiet build --strict
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet --strict
+	@echo "site/index.html; to search in it too: $(BIN)/python -m http.server --directory site"
 
 forge:  ## Build SceneForge's page from its TypeScript (needs Node 20 and npm).
 	@cd src/world2minecraft/forge/web && npm ci --no-audit --no-fund --silent && npm run --silent build
