@@ -55,6 +55,13 @@ def test_errors_of_a_docstring_stand_apart():
     assert apart in docstrings.as_markdown(text)
 
 
+def test_arguments_that_are_told_together_stand_apart():
+    text = "Do.\n\nArgs:\n    one: a, b: c.\n    two, three: as there,\n        too.\n    four: d."
+    read = docstrings.as_markdown(text)
+    assert read.startswith("Do.\n\nArgs:\n    one: a, b: c.\n    two: as there,\n        too.\n")
+    assert "    three: as there,\n        too.\n    four: d." in read
+
+
 def test_shapes_are_no_links():
     assert docstrings.as_markdown("the pose [4][4], a[0][1]") == "the pose `[4][4]`, a[0][1]\n"
 

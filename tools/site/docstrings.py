@@ -1,7 +1,8 @@
 """Griffe extension: docstrings as Markdown reads them.
 
 Examples (``>>> ...``) become code, and not quotations of quotations; what a function raises, which
-the code tells in one running text, becomes one item an error.
+the code tells in one running text, becomes one item an error; arguments that are told together
+become one item each.
 """
 
 import re
@@ -11,6 +12,8 @@ from typing import Any
 import griffe
 
 RAISES = re.compile(r"^Raises:\n((?:[ ]{4}.*\n?|\n(?=[ ]{4}))+)", re.MULTILINE)
+ARGS = re.compile(r"^Args:\n((?:[ ]{4}.*\n?|\n(?=[ ]{4}))+)", re.MULTILINE)
+TOGETHER = re.compile(r"^[ ]{4}(\w+(?:, \w+)+)(: .*\n?(?:[ ]{8}.*\n?)*)", re.MULTILINE)
 SHAPE = re.compile(r"(?<= )(\[\d+\]\[\d+\])")
 NEXT_ERROR = re.compile(r"(?:^|(?<=[.;]) )(?=[A-Z]\w+: )")
 
@@ -27,6 +30,7 @@ class Docstrings(griffe.Extension):
 def as_markdown(text: str) -> str:
     """Return a docstring with its examples fenced and its errors apart."""
     split = RAISES.sub(lambda found: "Raises:\n" + _apart(found[1]), text)
+    split = ARGS.sub(lambda found: "Args:\n" + TOGETHER.sub(_each, found[1]), split)
     literal = SHAPE.sub(r"`\1`", split)  # Which Markdown takes for a link.
     literal = re.sub(r"::\n\n(?=[ ]{4})", ":\n\n", literal)
     return "\n".join(_fenced(literal.splitlines()))
@@ -35,6 +39,11 @@ def as_markdown(text: str) -> str:
 def _apart(errors: str) -> str:
     running = " ".join(line.strip() for line in errors.splitlines() if line.strip())
     return "".join(f"    {one.strip()}\n" for one in NEXT_ERROR.split(running) if one.strip())
+
+
+def _each(told: re.Match[str]) -> str:
+    words = told[2] if told[2].endswith("\n") else f"{told[2]}\n"
+    return "".join(f"    {name}{words}" for name in told[1].split(", "))
 
 
 def _fenced(lines: list[str]) -> Iterator[str]:
