@@ -1,10 +1,11 @@
 """A scene of a small flat: names, rooms, doors, goals and distances on foot."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from world2minecraft.errors import UnknownNameError, UsageError
@@ -12,6 +13,7 @@ from world2minecraft.vln.floor import LEVEL, REACH, distance_over
 from world2minecraft.vln.landmarks import colour_name
 from world2minecraft.vln.scene import camera_of, open_scene
 from world2minecraft.vln.values import Stance
+from world2minecraft.walk.straight import lattice_of, straight_m
 
 
 def test_things_have_names_that_tell_them_apart(flat):
@@ -61,13 +63,19 @@ def test_goals_are_before_the_thing_and_in_its_room(flat):
     assert max(np.hypot(max(0, 3 - x, x - 6), max(0, 7 - z)) for x, _, z in goals) <= 2.0
 
 
-def test_the_field_is_dijkstra_over_the_steps(flat):
+def test_the_field_is_dijkstra_over_all_places_that_see_each_other(flat):
     goals = flat.goals_at(flat.landmark("upright piano"))
-    graph = flat.graph
-    links = csr_array((graph.edge_m, graph.edge_to, graph.edge_start), (len(graph),) * 2)
-    places = [graph.nearest(goal) for goal in goals]
-    slow = dijkstra(links.T, indices=places).min(axis=0)
-    np.testing.assert_allclose(flat.field_m(goals), slow)
+    graph, lattice = flat.ways, lattice_of(flat.ways)
+    low = np.flatnonzero(graph.feet[:, 1] == 65)
+    links = np.zeros((len(low), len(low)))
+    for (a, here), (b, there) in combinations(enumerate(low.tolist()), 2):
+        way = straight_m(lattice, here, there)
+        links[a, b] = links[b, a] = way if np.isfinite(way) else 0
+    places = [low.tolist().index(graph.nearest(goal)) for goal in goals]
+    slow = dijkstra(links, indices=places).min(axis=0)
+    np.testing.assert_allclose(flat.way_field_m(goals)[low], slow, rtol=0.005)
+    own = flat.way_field_m(goals)[[graph.nearest(feet) for feet in flat.graph.feet]]
+    np.testing.assert_array_equal(flat.field_m(goals), own)
 
 
 def test_distances_between_places_join_the_field(flat):
@@ -80,10 +88,10 @@ def test_distances_between_places_join_the_field(flat):
 
 @given(x=st.floats(-1, 20), y=st.sampled_from([64.0, 65.0, 65.25, 66.0]), z=st.floats(-1, 11))
 def test_the_table_of_the_floor_finds_what_a_look_at_all_places_does(flat, x, y, z):
-    field = flat.field_m(flat.goals_at(flat.landmark("table")))
-    apart = flat.graph.feet - [x, y, z]
+    field = flat.way_field_m(flat.goals_at(flat.landmark("table")))
+    apart = flat.ways.feet - [x, y, z]
     level = np.abs(apart[:, 1]) <= LEVEL * flat.scale
-    near = level & (np.hypot(apart[:, 0], apart[:, 2]) <= REACH * flat.graph.spacing)
+    near = level & (np.hypot(apart[:, 0], apart[:, 2]) <= REACH * flat.ways.spacing)
     ways = np.linalg.norm(apart, axis=1) * flat.metres_per_block + field
     slow = ways[near].min(initial=np.inf)
     assert distance_over(flat.floor, field, x, y, z) == pytest.approx(slow)

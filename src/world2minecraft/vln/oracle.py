@@ -22,7 +22,7 @@ from world2minecraft.vln.scene import VlnScene
 from world2minecraft.vln.search import searched
 from world2minecraft.vln.values import Move, MoveSet, Stance
 
-ORACLE_VERSION = "w2m-oracle-1"
+ORACLE_VERSION = "w2m-oracle-2"
 GOAL_M = 0.25  # It stops so near to a goal: half of the least radius of success,
 GOAL_STEPS = 0.75  # or so many steps, where steps are long.
 TURN_M = 0.01  # What a turn counts: of ways of one length the straighter is taken.
@@ -66,7 +66,7 @@ def expert(
         <Move.STOP: 0>
     """
     how = named_set(move_set)
-    field = scene.field_m(goals)
+    field = scene.way_field_m(goals)
     if not np.isfinite(scene.distance_m(stance.feet, goals)):
         return None
     step = forward_blocks(scene, how)

@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import apply, focal_px_of_fov, invert
@@ -34,7 +35,8 @@ from world2minecraft.walk.body import EYE
 from world2minecraft.walk.columns import Solid
 from world2minecraft.walk.doors import doors_opened
 from world2minecraft.walk.graph import WalkGraph, WalkRule, solid_of, walk_graph
-from world2minecraft.walk.paths import distances_m, parts
+from world2minecraft.walk.paths import parts
+from world2minecraft.walk.straight import Lattice, lattice_of, straight_distances_m
 
 BODIES = (1.0, 0.6, 0.4)  # Of a person: one who fits is chosen; a cluttered scan has small ones.
 LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a smaller body is tried.
@@ -88,9 +90,23 @@ class VlnScene:
         return np.array(self.volume.corner, np.int64)
 
     @cached_property
+    def ways(self) -> WalkGraph:
+        """The graph again, with the places at corners where shortest ways bend."""
+        return walk_graph(self.volume, WalkRule(scale=self.scale, at_corners=True))
+
+    @cached_property
     def floor(self) -> Floor:
-        """The graph as a table, for places between its own."""
-        return floor_of(self.graph)
+        """The ways as a table, for places between their own."""
+        return floor_of(self.ways)
+
+    @cached_property
+    def _lattice(self) -> Lattice:
+        return lattice_of(self.ways)
+
+    @cached_property
+    def _own_places(self) -> np.ndarray:
+        """The place in the ways of each place of the graph, int64 [N]."""
+        return np.asarray(KDTree(self.ways.feet).query(self.graph.feet)[1])
 
     @cached_property
     def render_scene(self) -> BlockScene:
@@ -175,14 +191,21 @@ class VlnScene:
     def field_m(self, goals: Sequence[tuple[float, float, float]]) -> np.ndarray:
         """Return how far it is on foot from each place to the nearest goal, float64 [N].
 
-        Infinite where no way leads. The last fields are kept: one serves a whole episode.
+        Ways are straight wherever a body can walk straight. Infinite where none leads.
+        """
+        return self.way_field_m(goals)[self._own_places]
+
+    def way_field_m(self, goals: Sequence[tuple[float, float, float]]) -> np.ndarray:
+        """Return the same for each place of ``ways``.
+
+        The last fields are kept: one serves a whole episode.
         """
         key = tuple(map(tuple, goals))
         if key in self._fields:
             self._fields.move_to_end(key)
             return self._fields[key]
-        places = np.array(sorted({self.graph.nearest(goal) for goal in goals}))
-        field = distances_m(self.graph, places, backward=True)
+        places = np.array(sorted({self.ways.nearest(goal) for goal in goals}))
+        field, _ = straight_distances_m(self.ways, self._lattice, places)
         self._fields[key] = field
         if len(self._fields) > MOST_FIELDS:
             self._fields.popitem(last=False)
@@ -192,12 +215,12 @@ class VlnScene:
         self, feet: tuple[float, float, float], goals: Sequence[tuple[float, float, float]]
     ) -> float:
         """Return how far it is on foot from a place, also one between those of the graph."""
-        field = self.field_m(goals)
+        field = self.way_field_m(goals)
         over = distance_over(self.floor, field, *(float(value) for value in feet))
         if np.isfinite(over) or not np.isfinite(field).any():
             return float(over)
-        nearest = self.graph.nearest(feet)  # Off the floor: on furniture, or in the air.
-        apart = np.linalg.norm(self.graph.feet[nearest] - np.asarray(feet))
+        nearest = self.ways.nearest(feet)  # Off the floor: on furniture, or in the air.
+        apart = np.linalg.norm(self.ways.feet[nearest] - np.asarray(feet))
         return float(field[nearest] + apart * self.metres_per_block)
 
     def room_at(self, feet: tuple[float, float, float]) -> int:

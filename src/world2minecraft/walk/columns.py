@@ -36,17 +36,19 @@ class Stands(NamedTuple):
     ground: np.ndarray  # uint8 [C, MOST_FLOORS], the class of what is under the feet
 
 
-def stands_of(solid: Solid, per_block: int, half: float, height: float) -> Stands:
+def stands_of(
+    solid: Solid, columns: tuple[np.ndarray, np.ndarray], half: float, height: float
+) -> Stands:
     """Return where a body stands in each column of a volume.
 
     Args:
         solid: what stops a body.
-        per_block: columns a block along x and z; the first is in the middle of the first cell.
+        columns: where they are along x and along z, float64, in cells from the volume's corner.
         half: half the body's width, in blocks.
         height: how high it is, in blocks.
     """
-    wide, deep = (per_block * (solid.kinds.shape[axis] - 1) + 1 for axis in (0, 2))
-    count = max(wide, 0) * max(deep, 0)
+    xs, zs = columns
+    count = len(xs) * len(zs)
     stands = Stands(
         np.zeros(count, np.int32),
         np.zeros((count, MOST_FLOORS), np.int32),
@@ -55,16 +57,15 @@ def stands_of(solid: Solid, per_block: int, half: float, height: float) -> Stand
     )
     need = int(np.ceil(height * FINE - 1e-6))
     if count:
-        _fill(solid, per_block, deep, half, need, stands)
+        _fill(solid, xs, zs, half, need, stands)
     return stands
 
 
 @njit
-def _fill(solid, per_block, deep, half, need, stands):
+def _fill(solid, xs, zs, half, need, stands):
     masks = np.zeros(solid.kinds.shape[1] + 2, np.int32)
     for column in range(len(stands.counts)):
-        x = 0.5 + (column // deep) / per_block
-        z = 0.5 + (column % deep) / per_block
+        x, z = xs[column // len(zs)], zs[column % len(zs)]
         box = (x - half + TOUCH, z - half + TOUCH, x + half - TOUCH, z + half - TOUCH)
         _mask(solid, box, masks)
         _gaps(solid, box, masks, need, column, stands)

@@ -22,6 +22,7 @@ from world2minecraft.walk.world import BlockWorld
 JUMP_HEIGHT = 1.25  # Blocks; the game's jump reaches 1.2522.
 SLIM = 0.4  # Of a player's scale: where cluttered scans leave no floor, a camera still fits.
 DROP = 3.0  # Blocks: from higher a fall hurts.
+COARSE_M = 0.15  # Smaller blocks need no columns at their corners.
 SPACING_M = 0.25  # Between columns, or finer where a body is narrower.
 _LIQUIDS = ("minecraft:water", "minecraft:lava", "minecraft:fire")
 _FURNITURE = (int(SemanticClass.CHAIR), int(SemanticClass.FURN))  # From the first to the last.
@@ -33,7 +34,8 @@ class WalkRule:
 
     ``scale`` None takes the volume's blocks a metre. ``on_furniture`` lets one stand on what is
     labelled chair to furniture, and on beds, as the game does; where nothing is labelled one may
-    anyway.
+    anyway. ``at_corners`` adds the columns in which a body's side touches that of a block, where
+    shortest ways bend; not where blocks are so small that it matters little.
     """
 
     scale: float | None = None
@@ -42,6 +44,7 @@ class WalkRule:
     drop: float = DROP
     on_furniture: bool = False
     opens_doors: bool = True
+    at_corners: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +61,7 @@ class WalkGraph:
     edge_m: np.ndarray  # float64 [E], metres of the room
     scale: float  # of the player
     blocks_per_metre: float
-    spacing: float  # blocks from a column to the next
+    spacing: float  # blocks from a column to the next, at most
 
     def __len__(self) -> int:
         return len(self.feet)
@@ -117,18 +120,20 @@ def walk_graph(volume: BlockVolume, rule: WalkRule | None = None) -> WalkGraph:
     scale = volume.blocks_per_metre if how.scale is None else how.scale
     width, height = WIDTH * scale, HEIGHT * scale
     per_block = columns_per_block(volume.blocks_per_metre, width)
-    stands = stands_of(solid_of(volume, how.opens_doors), per_block, width / 2, height)
+    half = width / 2 if how.at_corners and 1 / volume.blocks_per_metre >= COARSE_M else None
+    xs, zs = (_columns(volume.states.shape[axis], per_block, half) for axis in (0, 2))
+    stands = stands_of(solid_of(volume, how.opens_doors), (xs, zs), width / 2, height)
     if not how.on_furniture:
         stands = _without_furniture(stands)
-    deep = per_block * (volume.states.shape[2] - 1) + 1
+    deep = len(zs)
     column, level = np.nonzero(np.arange(stands.floor.shape[1]) < stands.counts[:, None])
     first = np.concatenate([[0], np.cumsum(stands.counts)]).astype(np.int64)
     climb = (JUMP_HEIGHT if how.jump else how.step) * scale * FINE + 1e-6
     limits = (climb, how.drop * scale * FINE + 1e-6, how.step * scale * FINE + 1e-6)
     need = int(np.ceil(height * FINE - 1e-6))
     start, to = _steps(stands.counts, stands.floor, stands.ceiling, first, deep, need, limits)
-    feet = np.stack([column // deep, np.zeros(len(column)), column % deep], axis=1) / per_block
-    feet += np.add(volume.corner, [0.5, 0.0, 0.5])
+    feet = np.stack([xs[column // deep], np.zeros(len(column)), zs[column % deep]], axis=1)
+    feet += np.array(volume.corner)
     feet[:, 1] += stands.floor[column, level] / FINE
     ceiling = stands.ceiling[column, level]
     rooms = np.where(ceiling == SKY, np.inf, (ceiling - stands.floor[column, level]) / FINE)
@@ -138,6 +143,16 @@ def walk_graph(volume: BlockVolume, rule: WalkRule | None = None) -> WalkGraph:
         feet, rooms, stands.ground[column, level], start, to, length_m, scale,
         volume.blocks_per_metre, 1 / per_block,
     )  # fmt: skip
+
+
+def _columns(count: int, per_block: int, half: float | None) -> np.ndarray:
+    """Return where columns are along a side of so many cells, float64, in cells."""
+    even = 0.5 + np.arange(per_block * (count - 1) + 1 if count else 0) / per_block
+    if half is None:
+        return even
+    touching = np.add.outer(np.arange(count + 1), [-half, half]).ravel()
+    touching = touching[(touching > 0.5) & (touching < count - 0.5)]
+    return np.unique(np.round(np.concatenate([even, touching]), 9))
 
 
 def columns_per_block(blocks_per_metre: float, width: float) -> int:

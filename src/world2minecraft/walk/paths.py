@@ -99,11 +99,11 @@ def _search(start, to, cost, sources, goal, heuristic):
     size = 0
     for source in sources:
         away[source] = 0.0
-        size = _push(keys, values, size, heuristic[source], source)
+        size = push(keys, values, size, heuristic[source], source)
     done = np.zeros(len(away), np.bool_)
     while size > 0:
         here = values[0]
-        size = _pop(keys, values, size)
+        size = pop(keys, values, size)
         if done[here]:
             continue
         done[here] = True
@@ -113,12 +113,12 @@ def _search(start, to, cost, sources, goal, heuristic):
             there, length = to[edge], away[here] + cost[edge]
             if length < away[there]:
                 away[there], before[there] = length, here
-                size = _push(keys, values, size, length + heuristic[there], there)
+                size = push(keys, values, size, length + heuristic[there], there)
     return away, before
 
 
 @njit
-def _push(keys, values, size, key, value):
+def push(keys, values, size, key, value):
     """Put a value into a heap; of equal keys the smaller value comes first."""
     n = size
     while n > 0:
@@ -132,7 +132,7 @@ def _push(keys, values, size, key, value):
 
 
 @njit
-def _pop(keys, values, size):
+def pop(keys, values, size):
     """Take the first value out of a heap."""
     size -= 1
     key, value, n = keys[size], values[size], 0
