@@ -38,6 +38,9 @@ def test_a_server_that_can_is_held_to_the_schema():
     told = server.requests[0]["response_format"]["json_schema"]
     assert (told["name"], told["strict"], told["schema"]) == ("colour", True, SCHEMA)
     assert "Reply" in server.requests[0]["messages"][-1]["content"]
+    for asked in server.requests:  # LLaMA-Factory's server refuses two turns of one side.
+        roles = [turn["role"] for turn in asked["messages"] if turn["role"] != "system"]
+        assert roles == ["user", "assistant"] * (len(roles) // 2) + ["user"]
 
 
 def test_a_refused_rung_is_left_for_good_and_costs_no_repair():
@@ -69,7 +72,7 @@ def test_a_bad_reply_is_shown_again_with_what_is_wrong():
     assert formed.value == "green"
     assert [one.problem for one in formed.tries] == ["colour must be red or green"] * 2 + [""]
     last = server.requests[2]["messages"]
-    assert [turn["role"] for turn in last] == ["user", "user"] + ["assistant", "user"] * 2
+    assert [turn["role"] for turn in last] == ["user"] + ["assistant", "user"] * 2
     assert last[-2]["content"] == '{"colour": "blue"}'
     assert last[-1]["content"].startswith("That cannot be used: colour must be red or green.")
 

@@ -38,7 +38,7 @@ class OpenField:
     def distance_m(self, stance, goals):
         return min(math.dist(stance.feet, goal) for goal in goals)
 
-    def expert(self, stance, goals):
+    def expert(self, stance, goals, facing=None):
         moves = []
         while self.distance_m(stance, goals) > 0.2:
             x, _, z = goals[0]
@@ -52,6 +52,9 @@ class OpenField:
     @property
     def imagined(self):
         return self
+
+    def plan(self, stances):
+        return np.full((20, 20, 3), min(len(stances), 255), np.uint8)
 
     def to_room_m(self, feet):
         return np.asarray(feet, float)[:, [0, 2, 1]]

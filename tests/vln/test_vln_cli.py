@@ -1,10 +1,14 @@
 """``w2m vln run``, ``evaluate`` and ``table`` from end to end, in a small flat."""
 
+import base64
 import io
 import json
+from threading import Thread
+from urllib.request import Request, urlopen
 
 import numpy as np
 import pytest
+from PIL import Image
 from tests.models.scripted_server import NO_SCHEMA, scripted
 from vln_sets import next_action, next_view, write_pictures
 
@@ -15,6 +19,7 @@ from world2minecraft.vln.records import read_episodes, write_items
 from world2minecraft.vln.running.asking import named_in
 from world2minecraft.vln.running.picking import picked_items
 from world2minecraft.vln.running.trace import read_trace
+from world2minecraft.vln.scene import camera_of
 from world2minecraft.vln.values import Stance
 
 
@@ -35,6 +40,56 @@ def test_the_oracle_finds_the_piano_on_film(flat_path, tmp_path, capsys):
     assert episode.goal_name == "upright piano"
     assert cli.run(["vln", "table", str(out)]) == 0
     assert capsys.readouterr().out.splitlines()[1].startswith("oracle")
+
+
+def test_the_oracle_ends_with_its_eyes_on_the_goal(flat_path, flat, tmp_path):
+    out = tmp_path / "run"
+    words = ["vln", "run", str(flat_path), "Go to the piano", "--out", str(out), "--no-video"]
+    assert cli.run(words) == 0
+    (episode,) = read_episodes(out)
+    last = Stance(**read_trace(out / "trace.jsonl")[-1]["stance"])
+    x, _, z = episode.facing
+    wanted = np.degrees(np.arctan2(-(x - last.x), z - last.z))
+    assert abs((wanted - last.yaw_deg + 180) % 360 - 180) <= 7.5 + 1e-6
+    seen = flat.picture(last, camera_of(64, 48, 79.0), outputs=("instance",)).instance
+    assert (seen == flat.landmark("piano").number).mean() > 0.1
+
+
+def test_a_person_walks_the_same_episode(flat_path, tmp_path, capsys, monkeypatch):
+    """The keys of the oracle's moves, pressed on the page that the command opens."""
+    first, second = tmp_path / "oracle", tmp_path / "human"
+    words = ["vln", "run", str(flat_path), "Go to the piano", "--no-video", "--out"]
+    assert cli.run([*words, str(first)]) == 0
+    made = [move for one in read_trace(first / "trace.jsonl")[1:-1] for move, _ in one["made"]]
+    keys = {"FORWARD": "w", "LEFT": "a", "RIGHT": "ArrowRight", "STOP": "%20"}
+
+    def person(link):
+        base, _, token = link.partition("/?token=")
+        for move in made:
+            asked = Request(f"{base}/key?token={token}&key={keys[move]}", method="POST")
+            urlopen(asked, timeout=10).close()
+
+    monkeypatch.setattr("webbrowser.open", lambda link: Thread(target=person, args=[link]).start())
+    assert cli.run([*words, str(second), "--agent", "human"]) == 0
+    assert "walk here: http://127.0.0.1:" in capsys.readouterr().out
+    one, other = (json.loads((run / "result.json").read_text()) for run in (first, second))
+    assert other["agent"] == "human" and other["summary"] == one["summary"]
+    assert len(list((second / "views").iterdir())) == len(made)
+
+
+def test_a_model_is_shown_the_plan_and_small_pictures(flat_path, tmp_path):
+    words = ["vln", "run", str(flat_path), "Go to the piano", "--no-video", "--model", "tiny"]
+    with scripted(["Actions: FORWARD", "Actions: STOP"]) as server:
+        more = ["--agent", server.url, "--map", "plan", "--max-pixels", "10000", "--history", "0"]
+        assert cli.run([*words, *more, "--out", str(tmp_path / "run")]) == 0
+        asked = list(server.requests)
+    parts = asked[-1]["messages"][-1]["content"]
+    urls = [part["image_url"]["url"] for part in parts if part["type"] == "image_url"]
+    said = "".join(part.get("text", "") for part in parts)
+    assert len(urls) == 2 and "A plan of the building" in said
+    for url in urls:
+        image = Image.open(io.BytesIO(base64.b64decode(url.partition(",")[2])))
+        assert image.width * image.height <= 10_000
 
 
 def test_a_model_is_recorded_and_replayed(flat_path, tmp_path, capsys):
@@ -82,7 +137,11 @@ GOLDEN = [
     (["SCENE"], 2, 'error: say what to do, such as w2m vln run OUT "Go to the table"'),
     (["SCENE", "Go to the piano", "--agent", "oracl"], 2, "did you mean 'oracle'?"),
     (["SCENE", "Go to the piano", "--start", "1,2"], 2, "--start is X,Y,Z or X,Y,Z,YAW, not '1,2'"),
-    (["SCENE", "Go to the piano", "--map", "globe"], 2, "--map is none or text, not 'globe'"),
+    (
+        ["SCENE", "Go to the piano", "--map", "globe"],
+        2,
+        "no map is named 'globe'; known: none, plan, text",
+    ),
     (["SCENE", "Go to the piano", "--moves", "leap"], 2, "set of moves"),
     (["SCENE", "Go to the piano", "--agent", "gemini"], 2, "export GEMINI_API_KEY="),
     (["nowhere", "Go to the piano"], 3, "nowhere"),

@@ -18,6 +18,7 @@ w2m forge                       a page to start from: drop a capture on it
 w2m forge IMG_2041.MOV          a capture: see what is in it, then make the room
 w2m forge OUT --capture scan    a run, and where its photos lie
 w2m forge OUT --no-browser      print the link, and open nothing
+w2m forge OUT --walk            walk there with an agent's eyes and steps
 """
 
 Host = Annotated[
@@ -37,6 +38,10 @@ Home = Annotated[
 PhotosOf = Annotated[
     Path | None, typer.Option("--capture", help="Where the photos of the run lie.")
 ]
+Walk = Annotated[
+    bool,
+    typer.Option("--walk", help="Walk in any world as agents do, by the keyboard; edit nothing."),
+]
 MaxUpload = Annotated[
     int, typer.Option("--max-upload", metavar="MB", min=1, help="Of one dropped capture.")
 ]
@@ -55,6 +60,7 @@ def run(
     capture: PhotosOf = None,
     max_upload: MaxUpload = 512,
     no_browser: NoBrowser = False,
+    walk: Walk = False,
 ) -> None:
     """Serve the editor of one room and open it in the browser, until Ctrl+C.
 
@@ -72,6 +78,7 @@ def run(
         capture: what the run was made of, where its folder does not say so; remembered.
         max_upload: the most megabytes that a dropped capture may hold.
         no_browser: whether to open no browser.
+        walk: whether to walk in the world rather than edit it.
 
     Raises:
         UsageError: the words contradict each other, or the port is taken.
@@ -84,6 +91,9 @@ def run(
     from world2minecraft.forge.serve import ForgeServer
     from world2minecraft.forge.sources import DEMO_OUT
 
+    if walk:
+        _walk(source, no_browser)
+        return
     if demo and source is not None:
         raise UsageError("--demo is a room of its own; leave out the file, or --demo")
     dropped = source is not None and is_capture(source)
@@ -98,6 +108,29 @@ def run(
         print(f"note: your demo room is kept in {place.parent}")
     _tell(server, editor)
     server.run(lambda: None if no_browser else _open(server.link))
+
+
+def _walk(source: Path | None, no_browser: bool) -> None:
+    """Let a person walk in a world on the page that shows what agents see."""
+    from world2minecraft.cli.outcome import compiling_note
+    from world2minecraft.errors import UsageError
+    from world2minecraft.vln.agents.human import VIEW_WIDTH_PX
+    from world2minecraft.vln.scene import open_scene
+    from world2minecraft.vln.strolling import stroll
+    from world2minecraft.vln.window import Window
+
+    if source is None:
+        raise UsageError("say where to walk, such as w2m forge OUT --walk")
+    compiling_note()
+    scene = open_scene(source)
+    window = Window(VIEW_WIDTH_PX)
+    print(f"walk here: {window.link}\nCtrl+C ends it.", flush=True)
+    if not no_browser:
+        _open(window.link)
+    try:
+        stroll(scene, window)
+    finally:
+        window.close()
 
 
 def _tell(server: "ForgeServer", editor: "Editor | None") -> None:

@@ -72,6 +72,7 @@ def run(
     prices: option.Prices = None,
     timeout: option.Timeout = 60.0,
     temperature: option.Temperature = 0.0,
+    max_pixels: option.MaxPixels = option.MAX_PIXELS,
     replay: option.Replay = None,
 ) -> None:
     """Ask a model the items of a set, and tell its accuracy with intervals.
@@ -104,7 +105,7 @@ def run(
         chat = option.opened_chat(
             agent, target, model, key_env, max_usd, max_calls, prices, timeout, temperature, replay
         )
-        answerer: Any = ModelAnswerer(chat, place, style)
+        answerer: Any = ModelAnswerer(chat, place, style, most_px=max_pixels)
     else:
         answerer, items = _baseline(agent, every, items, place)
         training = "baseline"
@@ -147,7 +148,8 @@ def _say(target: Path, items: "list[Item]", chat: Any) -> None:
 
     print()
     print(text_of(answers_table([read_result(target)])))
-    print("percent right, with the interval (Wilson, 95 %); 3! are three replies without a letter")
+    print("percent right, with the interval (Wilson, 95 %); 3! are three replies without a letter,")
+    print("3 failed three items that the server did not answer; both count as wrong")
     if chat is not None:
         print(f"asked: {option.cost_line(chat)}")
     print(f"\n  read   {target / 'answers.jsonl'}: each of {len(items):,} replies")

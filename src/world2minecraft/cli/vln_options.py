@@ -27,6 +27,13 @@ Prices = Annotated[
     Path | None,
     typer.Option("--prices", help="A YAML file of prices; see docs."),
 ]
+MaxPixels = Annotated[
+    int,
+    typer.Option(
+        "--max-pixels", metavar="N", help="Of a picture that a model sees; larger ones are shrunk."
+    ),
+]
+MAX_PIXELS = 1_048_576  # models.chat_pictures.MOST_PX, which a test holds it to.
 Timeout = Annotated[
     float, typer.Option("--timeout", help="Seconds that one attempt may take.", min=0.1)
 ]

@@ -15,6 +15,7 @@ w2m vln run OUT "Go to the table"                        the oracle shows the wa
 w2m vln run OUT "Go to the piano" --agent gemini --max-usd 0.20
 w2m vln run OUT "Find the bed" --agent openai:gpt-4.1 --map text --chunk 2
 w2m vln run OUT "Go to the piano" --agent http://localhost:8000/v1 --model qwen2.5-vl
+w2m vln run OUT "Go to the piano" --agent human          walk yourself, by the keyboard
 w2m vln run SET --agent random --count 50 --no-video     the episodes of a set
 w2m vln run OUT "Go to the piano" --server localhost:25565     on a game server where OUT stands
 w2m vln run OUT "Go to the piano" --agent gemini --replay RUN/replies.jsonl
@@ -33,8 +34,8 @@ Sentence = Annotated[
 AgentName = Annotated[
     str,
     typer.Option(
-        "--agent", help="oracle, shortest, random, forward, stop; gemini, openai, qwen, local, "
-        "each with :MODEL if wanted; or the address of a server, http://HOST/v1.",
+        "--agent", help="oracle, shortest, random, forward, stop; human (you); gemini, openai, "
+        "qwen, local, each with :MODEL if wanted; or the address of a server, http://HOST/v1.",
     ),
 ]  # fmt: skip
 Out = Annotated[
@@ -53,7 +54,16 @@ Moves = Annotated[
 MaxSteps = Annotated[int, typer.Option("--max-steps", help="Moves that an agent has.", min=1)]
 Chunk = Annotated[int, typer.Option("--chunk", help="Moves that a model gives at once, 1 to 4.")]
 History = Annotated[int, typer.Option("--history", help="Views of before that a model sees.")]
-Map = Annotated[str, typer.Option("--map", help="none, or text: where it was, in words.")]
+Map = Annotated[
+    str,
+    typer.Option(
+        "--map",
+        help="none; text: where it was, in words; plan: the house from above, its way drawn.",
+    ),
+]
+NoBrowser = Annotated[
+    bool, typer.Option("--no-browser", help="Of a human: print the link, and open nothing.")
+]
 Count = Annotated[int | None, typer.Option("--count", help="Walk so many episodes.", min=1)]
 Seed = Annotated[int, typer.Option("--seed", help="Of agents that draw.")]
 Server = Annotated[
@@ -89,6 +99,8 @@ def run(
     prices: option.Prices = None,
     timeout: option.Timeout = 60.0,
     temperature: option.Temperature = 0.0,
+    max_pixels: option.MaxPixels = option.MAX_PIXELS,
+    no_browser: NoBrowser = False,
     replay: option.Replay = None,
 ) -> None:
     """Let an agent walk by an instruction, and score it beside Stop, Random and the oracle.
@@ -115,25 +127,28 @@ def run(
         )  # fmt: skip
         return chats[0]
 
-    walker = agent_of(agent, chat, chunk=chunk, history=history, map_kind=_map(map_kind))
+    how: dict[str, Any] = {"map_kind": map_kind, "most_px": max_pixels}
+    walker = agent_of(agent, chat, chunk=chunk, history=history, **how)
     wish = Wish(instruction, goal, _stance(start), moves, max_steps)
     grounds = _Grounds(server)
     try:
         episodes = _episodes(scene, wish, count, grounds)
+        _invite(walker, no_browser)
         told = _walk(folder, episodes, grounds, walker, seed, video, chats)
     finally:
         grounds.close()
+        for person in _people(walker):
+            person.close()
     _say(folder, told, episodes, video, chats)
 
 
 class _Grounds:
-    """Opens each scene once, and keeps its plan; of a server that holds it where one is named."""
+    """Opens each scene once; of a server that holds it where one is named."""
 
     def __init__(self, server: str) -> None:
         self._server, self._bodies = server, list[Any]()
         self._scenes: dict[str, Any] = {}
         self._grounds: dict[tuple[str, str], Any] = {}
-        self._plans: dict[str, Any] = {}
 
     def scene(self, path: str) -> Any:
         from world2minecraft.vln.scene import open_scene
@@ -167,14 +182,6 @@ class _Grounds:
             else:
                 self._grounds[key] = SceneGround(scene, episode.move_set)
         return self._grounds[key]
-
-    def plan(self, episode: "Episode") -> Any:
-        from world2minecraft.vln.running.film import SIDE_PX
-        from world2minecraft.vln.running.plan import PlanMap
-
-        if episode.scene not in self._plans:
-            self._plans[episode.scene] = PlanMap(self.scene(episode.scene).volume, SIDE_PX)
-        return self._plans[episode.scene]
 
 
 def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "list[Episode]":
@@ -210,9 +217,9 @@ def _walk(
 
     def watching(episode: "Episode", ground: Any) -> list[Any]:
         place = folder / _place(episode, episodes)
-        found: list[Any] = [shown, TraceWriter(place)]
+        found: list[Any] = [shown, TraceWriter(place), *_people(walker)]
         if video:
-            films[:] = [Film(place / FILM_FILE, ground, grounds.plan(episode))]
+            films[:] = [Film(place / FILM_FILE, ground, ground.plans)]
         return [*found, *films]
 
     with live() as shown:
@@ -227,6 +234,23 @@ def _walk(
     if chats:
         facts |= {"model": chats[0].name, "cost": chats[0].ledger.told()}
     return write_course(folder, walks, beside, facts)
+
+
+def _invite(walker: Any, no_browser: bool) -> None:
+    """Tell a person where to walk, and open the page."""
+    import webbrowser
+
+    for person in _people(walker):
+        print(f"walk here: {person.window.link}", flush=True)
+        if not no_browser:
+            webbrowser.open(person.window.link)
+
+
+def _people(walker: Any) -> list[Any]:
+    """Return the walker in a list where it is a person, who hears how the walks went."""
+    from world2minecraft.vln.agents.human import HumanAgent
+
+    return [walker] if isinstance(walker, HumanAgent) else []
 
 
 def _place(episode: "Episode", episodes: "list[Episode]") -> str:
@@ -248,14 +272,6 @@ def _say(
         print(f"\n  look   {place / 'walk.mp4'}")
     print(f"  read   {place / 'trace.jsonl'}: each view, thought and move")
     print(f"  next   w2m vln table {folder}")
-
-
-def _map(text: str) -> Any:
-    from world2minecraft.errors import UsageError
-
-    if text not in ("none", "text"):
-        raise UsageError(f"--map is none or text, not {text!r}")
-    return text
 
 
 def _stance(text: str) -> "Stance | None":

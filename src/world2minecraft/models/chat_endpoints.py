@@ -2,7 +2,7 @@
 
 ``gemini``, ``openai`` and ``qwen`` are clouds, each with its key in a variable of the environment;
 ``local`` is a server on this machine, such as vLLM's or LLaMA-Factory's. A model may follow a
-name: ``gemini:gemini-2.5-pro``.
+name: ``gemini:gemini-3.5-flash-lite``.
 """
 
 import os
@@ -44,15 +44,15 @@ class Endpoint:
 ENDPOINTS = {
     "gemini": Endpoint(
         "https://generativelanguage.googleapis.com/v1beta/openai/",
-        "gemini-2.5-flash",
+        "gemini-3.8-flash",
         "GEMINI_API_KEY",
     ),
     "openai": Endpoint(
-        "https://api.openai.com/v1", "gpt-4o", "OPENAI_API_KEY", "max_completion_tokens"
+        "https://api.openai.com/v1", "gpt-4.1", "OPENAI_API_KEY", "max_completion_tokens"
     ),
     "qwen": Endpoint(
         "https://dashscope-intl.aliyuncs.com/compatible-mode/v1",
-        "qwen2.5-vl-72b-instruct",
+        "qwen3-vl-plus",
         "DASHSCOPE_API_KEY",
     ),
     "local": Endpoint("http://localhost:8000/v1"),

@@ -100,7 +100,7 @@ def ask_form(
         ``ChatModel.ask``; a reply that is no reply counts as an unreadable one.
     """
     tries: list[Try] = []
-    asked = turns if form.is_said else (*turns, Turn("user", (form.words,)))
+    asked = turns if form.is_said else _with_words(turns, form.words)
     left, rung = repairs, max(model.rung, form.rung)
     while True:
         try:
@@ -118,6 +118,16 @@ def ask_form(
             return Formed(value, tuple(tries))
         left -= 1
         asked = (*asked, *_repair(tried, form))
+
+
+def _with_words(turns: tuple[Turn, ...], words: str) -> tuple[Turn, ...]:
+    """Return turns that end with some words, in the user's last turn where that ends them.
+
+    Chat templates of many models, and LLaMA-Factory's server, take no two turns of one side.
+    """
+    if turns and turns[-1].role == "user":
+        return (*turns[:-1], Turn("user", (*turns[-1].parts, f"\n{words}")))
+    return (*turns, Turn("user", (words,)))
 
 
 def _once(

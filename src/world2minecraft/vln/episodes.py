@@ -155,6 +155,7 @@ def episode_of(
         trajectory_id=episode_id,
         split=split,
         oracle_version=ORACLE_VERSION,
+        facing=target.point,
     )
 
 

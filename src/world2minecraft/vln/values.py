@@ -85,7 +85,8 @@ class Episode:
     """A way to go in a scene, and what is told of it.
 
     ``reference`` is the expert's way, dense, a stance a move; ``moves`` are its moves, STOP at the
-    end. ``goals`` are feet, world blocks: success is being near one of them, on foot.
+    end. ``goals`` are feet, world blocks: success is being near one of them, on foot. An expert
+    who got there turns to ``facing``.
     """
 
     episode_id: str
@@ -102,6 +103,7 @@ class Episode:
     split: str = "train"
     max_steps: int = 500
     oracle_version: str = ""  # of the follower that made ``moves``
+    facing: tuple[float, float, float] | None = None  # the thing itself, world blocks
 
     def __post_init__(self):
         _known("set of moves", self.move_set, MOVE_SETS)

@@ -1,11 +1,12 @@
-"""A window to watch and to play an environment: a page of this machine's browser.
+"""A window to watch walks and to walk oneself: a page of this machine's browser.
 
-The page shows the frames as they come (a stream of JPEGs, as web cameras send them) and sends back
-the keys that are pressed. Only this machine can open it, and only with the link's token. No
-display server and no GL is needed.
+The page shows the frames as they come (a stream of JPEGs, as web cameras send them) with a few
+words, and sends back the keys that are pressed. Only this machine can open it, and only with the
+link's token. No display server and no GL is needed.
 """
 
 import io
+import json
 import queue
 import secrets
 import threading
@@ -21,13 +22,32 @@ MOST_WAITING = 64  # Keys; what nobody reads is dropped.
 IDLE_S = 5.0  # A page that saw no frame for so long gets the last again.
 SCALE = 3  # Of a frame on the page.
 _PAGE = """<!doctype html><meta charset="utf-8"><title>World2Minecraft</title>
-<style>body{{margin:2em auto;max-width:60em;font:16px sans-serif;background:#16181d;color:#eee;
-text-align:center}}img{{image-rendering:pixelated;width:{width}px;max-width:100%}}</style>
-<p id="text">Arrow keys or W, A, D walk and turn; space says that you are there.</p>
+<style>body{{margin:1em auto;max-width:60em;font:16px sans-serif;background:#16181d;color:#eee;
+text-align:center}}img{{image-rendering:pixelated;
+width:min(100%,{width}px);max-height:72vh;object-fit:contain}}
+#said{{white-space:pre-line;font-size:1.25em;min-height:3.6em;margin:0.5em}}#keys{{color:#999}}</style>
+<p id="said" role="status"></p>
 <img src="/frames?token={token}" alt="what the agent sees">
-<script>addEventListener("keydown", e => {{ if (e.key.startsWith("Arrow") || e.key === " ")
-e.preventDefault(); fetch("/key?token={token}&key=" + encodeURIComponent(e.key), {{method: "POST"}})
-}})</script>"""
+<p id="keys">Arrow keys or W, A, D walk and turn; space says that you are there.</p>
+<script>
+addEventListener("keydown", e => {{
+  if (e.repeat || e.ctrlKey || e.metaKey || e.altKey) return
+  const key = e.key.length === 1 ? e.key.toLowerCase() : e.key
+  if (key.startsWith("Arrow") || key === " ") e.preventDefault()
+  fetch("/key?token={token}&key=" + encodeURIComponent(key), {{method: "POST"}}).catch(() => {{}})
+}})
+const listen = async () => {{
+  for (let number = -1; ;) {{
+    const told = await (await fetch("/text?token={token}&after=" + number)).json()
+    if (!told.open) break
+    number = told.number
+    document.getElementById("said").textContent = told.text
+  }}
+}}
+listen().catch(() => {{}}).finally(() => {{
+  document.getElementById("keys").textContent = "The program has ended; close this page."
+}})
+</script>"""
 
 
 class Window:
@@ -37,6 +57,7 @@ class Window:
         self.keys: queue.Queue[str] = queue.Queue(MOST_WAITING)
         self._token, self._width_px = secrets.token_urlsafe(16), width_px * SCALE
         self._frame, self._number, self._changed = b"", 0, threading.Condition()
+        self._text = ""
         self._is_open = True
         self._server = ThreadingHTTPServer((LOOPBACK, 0), _handler_of(self))
         self._server.daemon_threads = True
@@ -47,12 +68,19 @@ class Window:
         """What a browser opens."""
         return f"http://{LOOPBACK}:{self._server.server_address[1]}/?token={self._token}"
 
-    def show(self, frame: np.ndarray) -> None:
-        """Show a frame, uint8 [H, W, 3], on all pages that are open."""
+    def show(self, frame: np.ndarray, text: str | None = None) -> None:
+        """Show a frame, uint8 [H, W, 3], and words where there are new ones, on all open pages."""
         stream = io.BytesIO()
         Image.fromarray(frame).save(stream, "JPEG", quality=88)
         with self._changed:
             self._frame, self._number = stream.getvalue(), self._number + 1
+            self._text = self._text if text is None else text
+            self._changed.notify_all()
+
+    def say(self, text: str) -> None:
+        """Show words beside the frame that is there."""
+        with self._changed:
+            self._text, self._number = text, self._number + 1
             self._changed.notify_all()
 
     def close(self) -> None:
@@ -77,6 +105,13 @@ class Window:
             self._changed.wait_for(lambda: self._number > number or not self._is_open, IDLE_S)
             return (self._frame if self._is_open else b""), self._number
 
+    def words(self, number: int) -> bytes:
+        """Wait as ``after`` does, and return the words as JSON for the page."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._number > number or not self._is_open, IDLE_S)
+            told = {"number": self._number, "text": self._text, "open": self._is_open}
+        return json.dumps(told).encode()
+
 
 def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
     """Return the class that answers for a window."""
@@ -90,6 +125,10 @@ def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
                 self._send("text/html; charset=utf-8", window.page())
             elif asked[0] == "/frames":
                 self._stream()
+            elif asked[0] == "/text":
+                after = asked[1].get("after", [""])[0][:12]
+                number = int(after) if after.isascii() and after.isdigit() else -1
+                self._send("application/json", window.words(number))
             else:
                 self.send_error(404)
 

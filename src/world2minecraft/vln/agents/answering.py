@@ -10,6 +10,7 @@ from world2minecraft.files import read_bytes
 from world2minecraft.models.chat import ChatModel
 from world2minecraft.models.chat_forms import ask_form
 from world2minecraft.models.chat_messages import Picture, Turn
+from world2minecraft.models.chat_pictures import MOST_PX, capped, check_most_px
 from world2minecraft.models.chat_wire import BusyServerError, RefusedQuestionError
 from world2minecraft.vln.agents.answer_form import STYLES, answer_form, ending
 from world2minecraft.vln.agents.model import told_of
@@ -48,12 +49,22 @@ class ModelAnswerer:
         model: whom to ask.
         folder: of the set; images are read from it and held against their sums.
         style: one of ``STYLES``.
+        most_px: pixels of a picture that it is shown; larger ones are made smaller.
     """
 
-    def __init__(self, model: ChatModel, folder: str | Path, style: str = "letter"):
+    def __init__(
+        self,
+        model: ChatModel,
+        folder: str | Path,
+        style: str = "letter",
+        *,
+        most_px: int = MOST_PX,
+    ):
         if style not in STYLES:
             raise UnknownNameError("style of question", style, STYLES)
+        check_most_px(most_px)
         self.name, self.model, self.folder, self.style = model.name, model, Path(folder), style
+        self.most_px = most_px
 
     def answer(self, item: Item) -> Answer:
         """Ask an item.
@@ -88,4 +99,7 @@ class ModelAnswerer:
         picture = Picture(data, kinds[0])
         if picture.sha256 != item.sha256.get(name):
             raise DamagedFileError(path, f"is not the image that item {item.item_id} was made of")
-        return picture
+        try:
+            return capped(picture, self.most_px)
+        except ValueError as error:
+            raise DamagedFileError(path, str(error)) from error

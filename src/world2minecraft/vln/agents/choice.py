@@ -5,11 +5,12 @@ from collections.abc import Callable
 from world2minecraft.errors import UnknownNameError
 from world2minecraft.models.chat import ChatModel
 from world2minecraft.models.chat_endpoints import ENDPOINTS, is_endpoint
+from world2minecraft.models.chat_pictures import MOST_PX
 from world2minecraft.registry import Registry
 from world2minecraft.vln.agents.model import HISTORY, ModelAgent
 from world2minecraft.vln.agents.step_form import MOST_MOVES
 from world2minecraft.vln.agents.values import Agent
-from world2minecraft.vln.agents.words import MapKind
+from world2minecraft.vln.agents.words import MAPS, MapKind
 
 # Other packages add a class without parameters through the entry points world2minecraft.agent.
 AGENTS = Registry(
@@ -20,6 +21,7 @@ AGENTS = Registry(
         "random": "world2minecraft.vln.agents.simple:RandomAgent",
         "forward": "world2minecraft.vln.agents.simple:ForwardAgent",
         "stop": "world2minecraft.vln.agents.simple:StopAgent",
+        "human": "world2minecraft.vln.agents.human:HumanAgent",
     },
 )
 BESIDE = ("stop", "random", "oracle")  # Told beside every result: what it is worth.
@@ -32,14 +34,17 @@ def agent_of(
     chunk: int = MOST_MOVES,
     history: int = HISTORY,
     map_kind: MapKind = "none",
+    most_px: int = MOST_PX,
 ) -> Agent:
     """Return an agent by its name, or the model that ``chat`` opens for a server's.
 
     Raises:
-        UnknownNameError: no agent and no server is called so.
+        UnknownNameError: no agent, no server or no map is called so.
     """
+    if map_kind not in MAPS:
+        raise UnknownNameError("map", map_kind, MAPS)
     if is_endpoint(text):
-        return ModelAgent(chat(), chunk=chunk, history=history, map_kind=map_kind)
+        return ModelAgent(chat(), chunk=chunk, history=history, map_kind=map_kind, most_px=most_px)
     if text not in AGENTS.names():
         raise UnknownNameError("agent", text, [*AGENTS.names(), *ENDPOINTS])
     return AGENTS.load(text)()

@@ -11,15 +11,23 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.errors import UsageError
+from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.models.chat import ChatModel
 from world2minecraft.models.chat_forms import Try, ask_form
 from world2minecraft.models.chat_messages import Picture
+from world2minecraft.models.chat_pictures import MOST_PX, at_most, check_most_px
 from world2minecraft.models.chat_wire import BusyServerError, RefusedQuestionError
 from world2minecraft.vln.agents.step_form import MOST_MOVES, step_form
 from world2minecraft.vln.agents.trail import trail_text
 from world2minecraft.vln.agents.values import Decision, Sight, Task
-from world2minecraft.vln.agents.words import MOVE_NAMES, MapKind, Moment, moment_turn, system_turn
+from world2minecraft.vln.agents.words import (
+    MAPS,
+    MOVE_NAMES,
+    MapKind,
+    Moment,
+    moment_turn,
+    system_turn,
+)
 from world2minecraft.vln.values import Move, Stance
 
 JPEG_QUALITY = 85
@@ -36,7 +44,9 @@ class ModelAgent:
         model: whom to ask.
         chunk: how many moves it may give at once, 1 to 4.
         history: how many views of before it is shown, 0 to 8.
-        map_kind: ``text`` tells it in words where it was.
+        map_kind: ``text`` tells it in words where it was; ``plan`` shows it a plan of the building
+            with its way, which is more than its eyes know.
+        most_px: pixels of a picture that it is shown; larger ones are made smaller.
     """
 
     is_privileged = is_blind = False
@@ -48,15 +58,18 @@ class ModelAgent:
         chunk: int = MOST_MOVES,
         history: int = HISTORY,
         map_kind: MapKind = "none",
+        most_px: int = MOST_PX,
     ):
         if not 1 <= chunk <= MOST_MOVES:
             raise UsageError(f"a model gives 1 to {MOST_MOVES} moves at once, not {chunk}")
         if not 0 <= history <= MOST_HISTORY:
             raise UsageError(f"a model is shown 0 to {MOST_HISTORY} views of before, not {history}")
-        if map_kind not in ("none", "text"):
-            raise UsageError(f"a map is none or text, not {map_kind!r}")
+        if map_kind not in MAPS:
+            raise UnknownNameError("map", map_kind, MAPS)
+        check_most_px(most_px)
         self.name, self.model = model.name, model
         self.chunk, self.history, self.map_kind = chunk, history, map_kind
+        self.most_px = most_px
         self._form = step_form(chunk)
         self._task: Task | None = None
         self._forget()
@@ -97,10 +110,18 @@ class ModelAgent:
         told_map = ""
         if self.map_kind == "text":
             told_map = trail_text(self._stances, task.metres_per_block)
+        plan = None
+        if self.map_kind == "plan":
+            if task.plan is None:
+                raise UsageError("no plan of this scene can be drawn; ask for another map")
+            plan = self._picture(task.plan(self._stances))
         return Moment(
-            sight.step, Picture(jpeg(sight.colour)), tuple(self._views), tuple(self._done),
-            self._progress, told_map, self._refused,
+            sight.step, self._picture(sight.colour), tuple(self._views), tuple(self._done),
+            self._progress, told_map, self._refused, plan,
         )  # fmt: skip
+
+    def _picture(self, colour: np.ndarray) -> Picture:
+        return Picture(jpeg(at_most(colour, self.most_px)))
 
     def _forget(self) -> None:
         self._views: list[Picture] = []

@@ -4,6 +4,7 @@ An agent is a class with ``begin`` and ``decide``. Most see pictures alone; one 
 ``is_privileged`` is given a ``Guide`` to the whole scene besides, as baselines and experts need.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -32,7 +33,10 @@ class Guide(Protocol):
 
 @dataclass(frozen=True)
 class Task:
-    """What an agent is told before it starts. ``step_m`` is how far FORWARD goes."""
+    """What an agent is told before it starts. ``step_m`` is how far FORWARD goes.
+
+    ``plan`` draws the building from above with a way through it, uint8 [H, W, 3].
+    """
 
     instruction: str
     move_set: MoveSet
@@ -41,6 +45,7 @@ class Task:
     metres_per_block: float
     seed: int = 0
     guide: Guide | None = None  # of privileged agents alone
+    plan: Callable[[Sequence[Stance]], np.ndarray] | None = None  # of those who ask for a map
 
 
 @dataclass(frozen=True, eq=False)

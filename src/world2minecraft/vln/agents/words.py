@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from world2minecraft.models.chat_messages import Picture, Turn
 from world2minecraft.vln.agents.values import Task
 from world2minecraft.vln.values import Move
 
-MapKind = Literal["none", "text"]
+MapKind = Literal["none", "text", "plan"]
+MAPS: tuple[MapKind, ...] = get_args(MapKind)
 MOVE_NAMES = {
     Move.FORWARD: "FORWARD",
     Move.LEFT: "LEFT",
@@ -16,6 +17,10 @@ MOVE_NAMES = {
     Move.STOP: "STOP",
 }
 MOST_DONE = 16  # Last moves that are told.
+PLAN_WORDS = (
+    "\nA plan of the building from above. The red arrow is you and points where you look, the blue "
+    "dot is where you started, the orange line is the way you took:"
+)
 
 
 @dataclass(frozen=True)
@@ -29,6 +34,7 @@ class Moment:
     progress: str = ""
     map_text: str = ""
     refused: str = ""  # why the last decision was none
+    plan: Picture | None = None
 
 
 def system_turn(task: Task, most: int) -> Turn:
@@ -64,6 +70,8 @@ def moment_turn(task: Task, moment: Moment) -> Turn:
     parts: list[str | Picture] = ["\n".join(lines)]
     if moment.before:
         parts += ["\nYou saw before, oldest first:", *moment.before]
+    if moment.plan is not None:
+        parts += [PLAN_WORDS, moment.plan]
     parts += ["\nYou see now:", moment.view]
     return Turn("user", tuple(parts))
 

@@ -12,11 +12,11 @@ from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.vln.environment.acting import Acting, Continuous, Discrete
 from world2minecraft.vln.environment.drawing import Drawing
 from world2minecraft.vln.environment.senses import USUAL, Eyes, Senses
-from world2minecraft.vln.environment.window import Window
 from world2minecraft.vln.episodes import score
 from world2minecraft.vln.moves import named_set
 from world2minecraft.vln.scene import VlnScene, open_scene
 from world2minecraft.vln.values import Episode, MoveSet, Stance
+from world2minecraft.vln.window import Window
 
 ACTIONS = ("discrete", "continuous")
 MOST_STEPS = {"discrete": 500, "continuous": 5_000}  # Habitat's 500; 250 s of the game.
@@ -148,7 +148,7 @@ class VlnEnv(gymnasium.Env):
         if self.render_mode == "rgb_array":
             return frame
         self.window = self.window or Window(frame.shape[1])
-        self.window.show(frame)
+        self.window.show(frame, self._told())
         return None
 
     def close(self) -> None:
@@ -162,6 +162,13 @@ class VlnEnv(gymnasium.Env):
         if by_keys:
             return Continuous(self.scene)
         return Discrete(self.scene, move_set, sliding)
+
+    def _told(self) -> str:
+        """Return what is said beside the frame."""
+        lines = [self._playing.instruction.text, f"Move {self.steps} of at most {self.max_steps}."]
+        if self._is_over:
+            lines.append(f"This walk is over, {self._distance_m:.2f} m from the goal.")
+        return "\n".join(lines)
 
     @property
     def _playing(self) -> Episode:

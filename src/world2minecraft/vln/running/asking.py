@@ -1,17 +1,21 @@
 """An episode of a sentence: "Go to the piano", told in a scene, with the goal that it names."""
 
+import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from world2minecraft.errors import InputError, UsageError
+from world2minecraft.vln.episodes import target_of
 from world2minecraft.vln.landmarks import Landmark
+from world2minecraft.vln.moves import wrapped_yaw
 from world2minecraft.vln.scene import VlnScene
 from world2minecraft.vln.values import Episode, Instruction, Stance
 
 MAX_INSTRUCTION = 4000
+YAW_STEP_DEG = 15.0  # A turn of most sets of moves.
 
 
 @dataclass(frozen=True)
@@ -38,7 +42,7 @@ def episode_of(scene: VlnScene, wish: Wish) -> Episode:
     goals = scene.goals_at(target)
     if not goals:
         raise InputError(scene.path, f"nobody can stand before the {target.name}")
-    start = scene.start if wish.start is None else _standing(scene, wish.start)
+    start = _looking_in(scene) if wish.start is None else _standing(scene, wish.start)
     if scene.distance_m(start.feet, goals) == float("inf"):
         raise InputError(scene.path, f"no way leads from the start to the {target.name}")
     return Episode(
@@ -52,6 +56,7 @@ def episode_of(scene: VlnScene, wish: Wish) -> Episode:
         move_set=wish.move_set,
         max_steps=wish.max_steps,
         split="val_unseen",
+        facing=target_of(scene, target, goals).point,
     )
 
 
@@ -94,6 +99,14 @@ def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
         for n in range(1, len(words)):
             ends.setdefault(" ".join(words[n:]), []).append(one)
     return {**ends, **nouns, **names}
+
+
+def _looking_in(scene: VlnScene) -> Stance:
+    """Return the scene's start, looking to the middle of the floor and not at the nearest wall."""
+    start = scene.start
+    x, _, z = scene.graph.feet[scene.main_places].mean(axis=0) - np.array(start.feet)
+    yaw_deg = math.degrees(math.atan2(-x, z))
+    return replace(start, yaw_deg=wrapped_yaw(YAW_STEP_DEG * round(yaw_deg / YAW_STEP_DEG)))
 
 
 def _standing(scene: VlnScene, wished: Stance) -> Stance:

@@ -15,12 +15,12 @@ from world2minecraft.render.output.moving import FrameWriter, moving_picture
 from world2minecraft.vln.agents.values import Decision, Sight
 from world2minecraft.vln.agents.words import MOVE_NAMES
 from world2minecraft.vln.running.ground import Ground
-from world2minecraft.vln.running.plan import PlanMap
+from world2minecraft.vln.running.plan import SIDE_PX, PlanMap
 from world2minecraft.vln.running.walking import Walk
 from world2minecraft.vln.values import Episode, Move, Stance
 
 FILM_FILE = "walk.mp4"
-VIEW_PX, SIDE_PX = (640, 480), 320
+VIEW_PX = (640, 480)
 BAND_PX = 56  # For the instruction, above.
 SIZE_PX = (VIEW_PX[0] + SIDE_PX, VIEW_PX[1] + BAND_PX)
 RATE_HZ = 6.0

@@ -32,9 +32,12 @@ class Ground(Protocol):
         ...
 
     def expert(
-        self, stance: Stance, goals: Sequence[tuple[float, float, float]]
+        self,
+        stance: Stance,
+        goals: Sequence[tuple[float, float, float]],
+        facing: tuple[float, float, float] | None = None,
     ) -> tuple[Move, ...]:
-        """Return the oracle's moves, STOP at their end."""
+        """Return the oracle's moves; they end by turning to ``facing``, and with STOP."""
         ...
 
     def to_room_m(self, feet: np.ndarray) -> np.ndarray:
@@ -46,12 +49,17 @@ class Ground(Protocol):
         """The same ground for moves that are only thought of; itself, where none is for real."""
         ...
 
+    def plan(self, stances: Sequence[Stance]) -> np.ndarray:
+        """Return a plan of the scene with the way that was walked, uint8 [H, W, 3]."""
+        ...
+
 
 class GroundGuide:
     """What the privileged know of an episode on a ground."""
 
     def __init__(self, ground: Ground, episode: Episode):
         self._ground, self._goals = ground.imagined, episode.goals
+        self._facing = episode.facing
 
     def distance_m(self, stance: Stance) -> float:
         """Return how far it is on foot to the nearest goal."""
@@ -63,4 +71,4 @@ class GroundGuide:
 
     def expert(self, stance: Stance) -> tuple[Move, ...]:
         """Return the oracle's moves from here."""
-        return self._ground.expert(stance, self._goals)
+        return self._ground.expert(stance, self._goals, self._facing)

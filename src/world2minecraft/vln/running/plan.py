@@ -1,5 +1,6 @@
 """A plan of a scene with the way that was walked drawn into it, a storey at a time."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,18 +9,38 @@ from PIL import Image, ImageDraw
 from world2minecraft.render.cutaway import storeys_of
 from world2minecraft.render.preview import plan_view
 from world2minecraft.types import BlockVolume
+from world2minecraft.vln.scene import VlnScene
 from world2minecraft.vln.values import Stance
 
 WAY, HERE, GOAL, BEGIN = (235, 90, 20), (200, 20, 30), (20, 130, 60), (40, 80, 200)
 PAPER = (244, 243, 240)
+SIDE_PX = 320
+MARGIN_M = 1.0  # Around the floor: walls, and furniture along them.
 FINE = 2  # A plan is drawn so many times larger and then made small.
+
+
+def plan_of(scene: VlnScene, size_px: int = SIDE_PX) -> "PlanMap":
+    """Return the plans of a scene, cut to the rooms that one can stand in and what is near them.
+
+    A garden as large as the house would leave half of the picture to the house.
+    """
+    floor = scene.graph.feet[scene.main_places][:, [0, 2]]
+    margin = MARGIN_M * scene.blocks_per_metre
+    (x0, z0), (x1, z1) = floor.min(axis=0) - margin, floor.max(axis=0) + margin
+    return PlanMap(scene.volume, size_px, (float(x0), float(z0), float(x1), float(z1)))
 
 
 class PlanMap:
     """Plans of the storeys of a volume, each drawn once."""
 
-    def __init__(self, volume: BlockVolume, size_px: int):
-        self.size_px = size_px
+    def __init__(
+        self,
+        volume: BlockVolume,
+        size_px: int,
+        box: tuple[float, float, float, float] | None = None,
+    ):
+        """Take a volume and the part to draw: least x and z, most x and z, world blocks."""
+        self.size_px, self._box = size_px, box
         self._storeys = storeys_of(volume)
         self._drawn: dict[int, tuple[Image.Image, float, tuple[float, float]]] = {}
 
@@ -57,20 +78,36 @@ class PlanMap:
         if storey not in self._drawn:
             volume = self._storeys[storey]
             side = self.size_px * FINE
-            x_blocks, _, z_blocks = volume.states.shape
-            most = max(x_blocks, z_blocks)
-            image = Image.fromarray(plan_view(volume, max(1, side // most)))
+            x0, z0, x1, z1 = self._cut(volume)
+            most = max(x1 - x0, z1 - z0)
+            fine = max(1, side // most)
+            image = Image.fromarray(plan_view(volume, fine))
+            image = image.crop((x0 * fine, z0 * fine, x1 * fine, z1 * fine))
             scale = side / most
             image = image.resize(
-                (max(1, round(x_blocks * scale)), max(1, round(z_blocks * scale))),
+                (max(1, round((x1 - x0) * scale)), max(1, round((z1 - z0) * scale))),
                 Image.Resampling.LANCZOS,
             )
             square = Image.new("RGB", (side, side), PAPER)
             offset = ((side - image.width) // 2, (side - image.height) // 2)
             square.paste(image, offset)
-            corner = (volume.corner[0] - offset[0] / scale, volume.corner[2] - offset[1] / scale)
+            corner = (
+                volume.corner[0] + x0 - offset[0] / scale,
+                volume.corner[2] + z0 - offset[1] / scale,
+            )
             self._drawn[storey] = (square, scale, corner)
         return self._drawn[storey]
+
+    def _cut(self, volume: BlockVolume) -> tuple[int, int, int, int]:
+        """Return the columns of a storey to draw: from x, from z, to x, to z."""
+        wide, _, deep = volume.states.shape
+        if self._box is None:
+            return 0, 0, wide, deep
+        x0, z0, x1, z1 = self._box
+        left, top = math.floor(x0) - volume.corner[0], math.floor(z0) - volume.corner[2]
+        right, foot = math.ceil(x1) - volume.corner[0], math.ceil(z1) - volume.corner[2]
+        found = (max(0, left), max(0, top), min(wide, right), min(deep, foot))
+        return found if found[0] < found[2] and found[1] < found[3] else (0, 0, wide, deep)
 
 
 def _dot(

@@ -1,6 +1,7 @@
 """A scene as the ground of episodes: its own moves, oracle, distances and pictures."""
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from world2minecraft.types import Camera
 from world2minecraft.vln.moves import forward_blocks, moved, named_set
 from world2minecraft.vln.oracle import expert
 from world2minecraft.vln.running.ground import Ground
+from world2minecraft.vln.running.plan import PlanMap, plan_of
 from world2minecraft.vln.scene import VlnScene, camera_of
 from world2minecraft.vln.values import Move, MoveSet, Stance
 
@@ -46,10 +48,13 @@ class SceneGround:
         return self.scene.distance_m(stance.feet, goals)
 
     def expert(
-        self, stance: Stance, goals: Sequence[tuple[float, float, float]]
+        self,
+        stance: Stance,
+        goals: Sequence[tuple[float, float, float]],
+        facing: tuple[float, float, float] | None = None,
     ) -> tuple[Move, ...]:
         """Return the oracle's moves; STOP alone where it knows no way."""
-        way = expert(self.scene, stance, goals, self.move_set)
+        way = expert(self.scene, stance, goals, self.move_set, facing=facing)
         return (Move.STOP,) if way is None else way.moves
 
     def to_room_m(self, feet: np.ndarray) -> np.ndarray:
@@ -60,3 +65,12 @@ class SceneGround:
     def imagined(self) -> Ground:
         """Itself: no move here is for real."""
         return self
+
+    @cached_property
+    def plans(self) -> PlanMap:
+        """The plans of the scene's storeys, cut to its rooms."""
+        return plan_of(self.scene)
+
+    def plan(self, stances: Sequence[Stance]) -> np.ndarray:
+        """Return a plan of the storey with the way that was walked, without goals."""
+        return np.asarray(self.plans.picture(stances, ()))

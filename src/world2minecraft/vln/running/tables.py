@@ -158,6 +158,7 @@ def _cell(told: Any) -> str:
     if told is None:
         return "-"
     invalid = f" {int(told['invalid'])}!" if told["invalid"] else ""
+    invalid += f" {int(told['failed'])} failed" if told.get("failed") else ""
     low, high = 100 * told["low"], 100 * told["high"]
     return f"{100 * told['share']:.1f} [{low:.0f}, {high:.0f}] n={int(told['total'])}{invalid}"
 

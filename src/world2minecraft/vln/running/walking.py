@@ -77,7 +77,7 @@ def walk_episode(
     agent.begin(
         Task(
             episode.instruction.text, ground.move_set, ground.step_m, episode.max_steps,
-            ground.metres_per_block, seed, guide,
+            ground.metres_per_block, seed, guide, ground.plan,
         )
     )  # fmt: skip
     for observer in observers:
@@ -175,7 +175,7 @@ def reference_m(ground: Ground, episode: Episode) -> np.ndarray:
     stances = list(episode.reference)
     if not stances:
         stances = [episode.start]
-        for move in ground.expert(episode.start, episode.goals):
+        for move in ground.expert(episode.start, episode.goals, episode.facing):
             if move != Move.STOP:
                 stances.append(ground.imagined.after(stances[-1], move)[0])
     return ground.to_room_m(np.array([one.feet for one in stances]))

@@ -1,0 +1,62 @@
+"""Pictures for models: never over the cap, their shape kept, and nothing else changed."""
+
+import io
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+from world2minecraft.cli.vln_options import MAX_PIXELS
+from world2minecraft.errors import UsageError
+from world2minecraft.models.chat_messages import Picture
+from world2minecraft.models.chat_pictures import (
+    LEAST_PX,
+    MOST_PX,
+    at_most,
+    capped,
+    check_most_px,
+)
+
+
+def png(width, height):
+    stream = io.BytesIO()
+    Image.new("RGBA", (width, height), (200, 20, 30, 128)).save(stream, "PNG")
+    return Picture(stream.getvalue(), "image/png")
+
+
+@given(
+    width=st.integers(1, 400), height=st.integers(1, 400), most=st.integers(LEAST_PX, 40_000)
+)  # fmt: skip
+def test_no_picture_is_over_the_cap_nor_made_larger(width, height, most):
+    small = at_most(np.zeros((height, width, 3), np.uint8), most)
+    assert small.shape[0] * small.shape[1] <= most
+    if width * height <= most:
+        assert small.shape[:2] == (height, width)
+    elif min(width, height) >= 40:
+        assert small.shape[1] / small.shape[0] == pytest.approx(width / height, rel=0.2)
+        assert small.shape[0] * small.shape[1] > 0.8 * most
+
+
+def test_a_small_file_stays_as_it_is_and_a_large_one_becomes_a_jpeg():
+    own = png(30, 20)
+    assert capped(own, 784) is own
+    small = capped(png(300, 200), 15_000)
+    image = Image.open(io.BytesIO(small.data))
+    assert small.kind == "image/jpeg" and image.format == "JPEG" and image.size == (150, 100)
+    assert capped(png(300, 200), 15_000) == small
+
+
+def test_what_is_no_picture_is_told():
+    with pytest.raises(ValueError, match="is no picture that can be opened"):
+        capped(Picture(b"\x89PNG no more"), 1000)
+
+
+def test_a_cap_is_one_token_at_least():
+    with pytest.raises(UsageError, match="a picture for a model has 784 pixels or more, not 10"):
+        check_most_px(10)
+
+
+def test_the_command_has_the_same_cap():
+    assert MAX_PIXELS == MOST_PX
