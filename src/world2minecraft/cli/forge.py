@@ -92,8 +92,7 @@ def run(
     from world2minecraft.forge.sources import DEMO_OUT
 
     if walk:
-        _walk(source, no_browser)
-        return
+        return _walk(source, no_browser)
     if demo and source is not None:
         raise UsageError("--demo is a room of its own; leave out the file, or --demo")
     dropped = source is not None and is_capture(source)

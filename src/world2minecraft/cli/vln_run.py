@@ -1,5 +1,7 @@
 """``w2m vln run``: an agent walks by an instruction, live in the terminal and on film."""
 
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -130,15 +132,9 @@ def run(
     how: dict[str, Any] = {"map_kind": map_kind, "most_px": max_pixels}
     walker = agent_of(agent, chat, chunk=chunk, history=history, **how)
     wish = Wish(instruction, goal, _stance(start), moves, max_steps)
-    grounds = _Grounds(server)
-    try:
+    with closing(_Grounds(server)) as grounds, _invited(walker, no_browser):
         episodes = _episodes(scene, wish, count, grounds)
-        _invite(walker, no_browser)
         told = _walk(folder, episodes, grounds, walker, seed, video, chats)
-    finally:
-        grounds.close()
-        for person in _people(walker):
-            person.close()
     _say(folder, told, episodes, video, chats)
 
 
@@ -236,14 +232,20 @@ def _walk(
     return write_course(folder, walks, beside, facts)
 
 
-def _invite(walker: Any, no_browser: bool) -> None:
-    """Tell a person where to walk, and open the page."""
+@contextmanager
+def _invited(walker: Any, no_browser: bool) -> Iterator[None]:
+    """Tell a person where to walk and open the page, which is there while the block runs."""
     import webbrowser
 
-    for person in _people(walker):
-        print(f"walk here: {person.window.link}", flush=True)
-        if not no_browser:
-            webbrowser.open(person.window.link)
+    try:
+        for person in _people(walker):
+            print(f"walk here: {person.window.link}", flush=True)
+            if not no_browser:
+                webbrowser.open(person.window.link)
+        yield
+    finally:
+        for person in _people(walker):
+            person.close()
 
 
 def _people(walker: Any) -> list[Any]:

@@ -10,6 +10,7 @@ import json
 import queue
 import secrets
 import threading
+from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -105,8 +106,9 @@ class Window:
             self._changed.wait_for(lambda: self._number > number or not self._is_open, IDLE_S)
             return (self._frame if self._is_open else b""), self._number
 
-    def words(self, number: int) -> bytes:
-        """Wait as ``after`` does, and return the words as JSON for the page."""
+    def words(self, after: str) -> bytes:
+        """Wait as ``after`` does for a number that the page says; return the words as JSON."""
+        number = int(after[:12]) if after.isascii() and after.isdigit() else -1
         with self._changed:
             self._changed.wait_for(lambda: self._number > number or not self._is_open, IDLE_S)
             told = {"number": self._number, "text": self._text, "open": self._is_open}
@@ -126,9 +128,7 @@ def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
             elif asked[0] == "/frames":
                 self._stream()
             elif asked[0] == "/text":
-                after = asked[1].get("after", [""])[0][:12]
-                number = int(after) if after.isascii() and after.isdigit() else -1
-                self._send("application/json", window.words(number))
+                self._send("application/json", window.words(asked[1].get("after", [""])[0]))
             else:
                 self.send_error(404)
 
@@ -165,14 +165,12 @@ def _handler_of(window: Window) -> type[BaseHTTPRequestHandler]:
             self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
             self.end_headers()
             number = 0
-            try:
+            with suppress(OSError):  # The page was closed.
                 while True:
                     frame, number = window.after(number)
                     if not frame:
                         return
                     head = f"--frame\r\nContent-Type: image/jpeg\r\nContent-Length: {len(frame)}"
                     self.wfile.write(head.encode() + b"\r\n\r\n" + frame + b"\r\n")
-            except OSError:
-                return  # The page was closed.
 
     return Handler
