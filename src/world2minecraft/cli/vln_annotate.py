@@ -37,7 +37,7 @@ def run(folder: Folder, out: Out = None, port: Port = None, no_browser: NoBrowse
     server = annotation_server(desk, port)
     print(f"{len(desk.walks)} walks; what is written is kept in {desk.out}")
     print(f"SceneForge: {server.link}", flush=True)
-    print(f"next: w2m vln build ... --annotations {desk.out}")
+    print(f"next: w2m vln reword {folder} --annotations {desk.out}")
     print("Ctrl+C stops it; everything written is kept.", flush=True)
     server.run(lambda: None if no_browser else _open(server.link))
 

@@ -79,7 +79,7 @@ def _say_baselines(rows: "list[BaselineRow]", is_held: bool) -> None:
         low, high = row.accuracy.low, row.accuracy.high
         flag = "  FLAG: needs no picture" if row.is_flagged else ""
         print(
-            f"  {row.task:<12}{row.name:<10}{row.accuracy.share:6.3f}  "
+            f"  {row.task:<12}{row.name:<16}{row.accuracy.share:6.3f}  "
             f"[{low:.3f}, {high:.3f}]  of {row.accuracy.total:,}, chance {row.chance:.3f}{flag}"
         )
     print()

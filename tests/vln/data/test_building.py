@@ -134,6 +134,7 @@ def test_a_set_split_as_the_paper_has_no_unseen_scene(one_worker):
 def test_scenes_are_made_once(tmp_path, monkeypatch):
     few = partial(made_scenes.scan_room, frames=6, width=160, height=120)
     monkeypatch.setattr(made_scenes, "scan_room", few)
+    monkeypatch.setattr(made_scenes, "TRIES", 1)
     told = []
     room, house = made_scenes.make_scenes(tmp_path, 1, 1, 3, 1, told_to(told))
     assert (composition_of(room), composition_of(house)) == ("base", "extend")
@@ -148,6 +149,24 @@ def test_scenes_are_made_once(tmp_path, monkeypatch):
     assert told == []
     with pytest.raises(UsageError, match="rooms and houses can be made, not -1, 0"):
         made_scenes.make_scenes(tmp_path, -1, 0)
+
+
+def test_a_room_without_a_way_is_made_again(tmp_path, monkeypatch):
+    made, ways = [], iter([False, False, True])
+
+    def make(out, kind, chance):
+        out.mkdir()
+        (out / "report.json").touch()
+        made.append((kind, chance))
+
+    class Guide:
+        has_goals = property(lambda _: next(ways))
+
+    monkeypatch.setattr(made_scenes, "_make_room", make)
+    monkeypatch.setattr(made_scenes, "open_scene", lambda out: out)
+    monkeypatch.setattr(made_scenes, "Tourist", lambda scene: Guide())
+    assert [one.name for one in made_scenes.make_scenes(tmp_path, 1, 0, 2)] == ["bed_01"]
+    assert made == [("bed", 2_001), ("bed", 1_002_001), ("bed", 2_002_001)]
 
 
 def test_a_build_without_a_scene_says_what_to_do(tmp_path, capsys):

@@ -16,7 +16,7 @@ from world2minecraft.vln.data.baselines import baselines
 from world2minecraft.vln.data.building import BuildRule, build_set, composition_of
 from world2minecraft.vln.data.histograms import write_histograms
 from world2minecraft.vln.data.keyframes import Mark
-from world2minecraft.vln.data.leaks import leaks_of
+from world2minecraft.vln.data.leaks import leaks_of, without_shared_pictures
 from world2minecraft.vln.data.letters import LetterDeck
 from world2minecraft.vln.data.next_action import action_steps
 from world2minecraft.vln.data.quotas import cut
@@ -97,6 +97,13 @@ def test_leaks_are_found():
     assert leaks.instructions == ("Go to the bed.",)
     assert not leaks.is_clean
     assert leaks_of([clean[0], action("a", split="val_seen")]).images
+
+
+def test_what_shows_a_picture_of_train_is_not_scored_on():
+    same, other = action("a", split="val_seen"), action("c", split="val_seen")
+    items = [action("a"), same, other, action("b")]
+    assert without_shared_pictures(items) == [items[0], other, items[3]]
+    assert leaks_of(without_shared_pictures(items)).images == ()
 
 
 def test_words_that_give_the_answer_away_are_flagged(tmp_path):
@@ -237,6 +244,11 @@ def test_figures_and_pictures_of_a_set(small_set, tmp_path):
     rows = baselines(built.items, out)
     assert json.dumps(figures(statistics, leaks, rows))
     assert {row.name for row in rows} >= {"uniform", "majority", "blind", "repeat", "nearest"}
+    graded = {row.name: row.accuracy for row in rows if row.name.startswith("nearest ")}
+    (nearest,) = [row.accuracy for row in rows if row.name == "nearest"]
+    assert sum(one.total for one in graded.values()) == nearest.total
+    assert sum(one.hits for one in graded.values()) == nearest.hits
+    assert sum(statistics.ranks.values()) == statistics.grades.total()
     write_histograms(built.items, tmp_path / "h.png")
     with Image.open(tmp_path / "h.png") as image:
         assert image.size == (1076, 556)

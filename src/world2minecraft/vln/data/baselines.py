@@ -14,6 +14,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, UnknownNameError
+from world2minecraft.vln.data.next_view import GRADES
 from world2minecraft.vln.scores import Rate, rate
 from world2minecraft.vln.values import TASKS, Item
 
@@ -49,7 +50,8 @@ def baselines(items: Sequence[Item], folder: str | Path) -> list[BaselineRow]:
     uniform draws a letter; majority takes the commonest letter, or action, of train; blind has
     learned from the words of train which action they go with; repeat does the last action again;
     nearest takes the picture most like the present one; odd and alike know the choices alone, and
-    take the picture least or most like the others; oracle is told.
+    take the picture least or most like the others; oracle is told. What nearest scores is told by
+    grade too, such as "nearest hard".
 
     Args:
         items: of a set.
@@ -66,10 +68,21 @@ def baselines(items: Sequence[Item], folder: str | Path) -> list[BaselineRow]:
         if not held:
             continue
         chance = float(np.mean([1 / len(item.options) for item in held]))
-        for name, answers in _answers(task, train, held, Path(folder)).items():
-            hits = sum(a == item.answer for a, item in zip(answers, held, strict=True))
-            rows.append(BaselineRow(name, task, rate(hits, len(held)), chance))
+        found = _answers(task, train, held, Path(folder))
+        rows += [_row(name, task, held, answers, chance) for name, answers in found.items()]
+        for grade in GRADES if "nearest" in found else ():
+            own = [n for n, item in enumerate(held) if item.extra.get("grade") == grade]
+            answers = [found["nearest"][n] for n in own]
+            if own:
+                rows.append(_row(f"nearest {grade}", task, [held[n] for n in own], answers, chance))
     return rows
+
+
+def _row(
+    name: str, task: str, held: Sequence[Item], answers: Sequence[str], chance: float
+) -> BaselineRow:
+    hits = sum(a == item.answer for a, item in zip(answers, held, strict=True))
+    return BaselineRow(name, task, rate(hits, len(held)), chance)
 
 
 def baseline_letters(

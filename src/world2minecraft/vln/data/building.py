@@ -19,7 +19,7 @@ from world2minecraft.files import write_json
 from world2minecraft.progress import Progress, silent
 from world2minecraft.vln.data.asking import items_of
 from world2minecraft.vln.data.crew import SceneJob, work_jobs
-from world2minecraft.vln.data.leaks import Leaks, leaks_of
+from world2minecraft.vln.data.leaks import Leaks, leaks_of, without_shared_pictures
 from world2minecraft.vln.data.quotas import COMPOSITIONS, PAPER_WALKS, cut_as_the_paper
 from world2minecraft.vln.data.recorded import At, streams_of
 from world2minecraft.vln.data.scene_work import MADE_BY, SceneWork, WorkRule
@@ -133,7 +133,7 @@ def build_set(
     works = work_jobs(jobs, workers, progress)
     if how.paper_split:
         _split_as_the_paper(works, how.work.seed)
-    items = items_of(works, how.work.seed)
+    items = without_shared_pictures(items_of(works, how.work.seed))
     items = cut_as_the_paper(items, how.paper_split) if how.paper_size else items
     if not items:
         raise UsageError("no scene gave an item: they lack things to go to, or floor to walk on")

@@ -34,6 +34,15 @@ def leaks_of(items: Sequence[Item]) -> Leaks:
     )
 
 
+def without_shared_pictures(items: Sequence[Item]) -> list[Item]:
+    """Return items but for those to be scored on that show a picture of train.
+
+    Two tours of one scene may come to the very same place.
+    """
+    train = _sums([item for item in items if item.split == "train"])
+    return [item for item in items if item.split == "train" or not train & _sums([item])]
+
+
 def _sums(items: Sequence[Item]) -> set[str]:
     return {value for item in items for value in item.sha256.values()}
 

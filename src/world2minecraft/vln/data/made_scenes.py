@@ -2,7 +2,8 @@
 
 A room goes the whole way of a real capture: a virtual depth camera scans it, with that camera's
 faults, and ``w2m reconstruct`` makes a run of it, so that a set can hold real and generated rooms
-side by side. What is there already is taken as it is.
+side by side. Where nothing is left to walk between, another room of the kind is made. What is there
+already is taken as it is.
 """
 
 import shutil
@@ -17,9 +18,12 @@ from world2minecraft.parameters import Parameters
 from world2minecraft.progress import Progress, silent
 from world2minecraft.rooms import BASE_KINDS, generate_room, scan_room
 from world2minecraft.rooms.worlds import house_of, write_house
+from world2minecraft.vln.data.touring import Tourist
+from world2minecraft.vln.scene import open_scene
 
 SCENES_FOLDER = "scenes"  # Of a set.
-MOST_MADE = 1_000
+MOST_MADE, MOST_CHANCES = 1_000, 1_000_000
+TRIES = 5  # Of a room in which a scan leaves no way between things.
 _FINISHED = {"room": "report.json", "house": "house.json"}  # What is written last.
 
 
@@ -81,8 +85,18 @@ def _make(order: _Order, tick: Callable[[int], None]) -> None:
     else:
         kind = BASE_KINDS[(order.number - 1) % len(BASE_KINDS)]
         chance = order.seed * MOST_MADE + order.number  # Rooms of two seeds differ.
-        shutil.rmtree(out / "capture", ignore_errors=True)  # Of one that was broken off.
-        scan_room(generate_room(chance, kind=kind), out / "capture", seed=chance)
-        make_run(out / "capture", out, Parameters())
-        shutil.rmtree(out / "capture")
+        for again in range(TRIES):
+            if again:  # It was made right here.
+                shutil.rmtree(out)
+            _make_room(out, kind, chance + again * MOST_CHANCES)
+            if Tourist(open_scene(out)).has_goals:
+                break
     tick(1)
+
+
+def _make_room(out: Path, kind: str, chance: int) -> None:
+    """Generate a room, scan it and reconstruct it."""
+    shutil.rmtree(out / "capture", ignore_errors=True)  # Of one that was broken off.
+    scan_room(generate_room(chance, kind=kind), out / "capture", seed=chance)
+    make_run(out / "capture", out, Parameters())
+    shutil.rmtree(out / "capture")

@@ -14,7 +14,7 @@ with nearly the same hash. Nor is it one that was shown before.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -105,7 +105,9 @@ def view_question(
     shuffled = [places[n] for n in rng.permutation(len(places))]
     plan = [Slot(kind, n < count) for n, kind in enumerate(FOUND_OF[grade])]
     slots = Taker(album, pictures[step], right).filled(plan, shuffled, MOST_FAR[grade])
-    ranks.came(sum(slot.nearer and slot.picture is not None for slot in slots))
+    if grade != "easy":  # Where no such picture could be taken another will do.
+        slots = [slot if slot.picture else replace(slot, nearer=False) for slot in slots]
+    ranks.came(sum(slot.nearer for slot in slots))
     return ViewQuestion(trajectory_id, step, grade, tuple(slots))
 
 

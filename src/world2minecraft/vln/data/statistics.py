@@ -66,6 +66,7 @@ class SetStatistics:
     actions: Counter[str]  # right answers of Next-Action
     kinds: Counter[str]  # of wrong pictures
     grades: Counter[str]
+    ranks: Counter[str]  # wrong pictures that are nearer to the present one than the right one
     levels: Counter[str]  # of instructions, by item
     scenes: dict[str, int]  # how many, by part
 
@@ -88,6 +89,7 @@ def statistics_of(items: Sequence[Item]) -> SetStatistics:
         {task: _evenness(items, task) for task in TASKS},
         Counter(str(i.extra.get("gold", "")) for i in items if i.task == "next_action"),
         Counter(wrong), Counter(str(item.extra.get("grade", "")) for item in views),
+        Counter(str(item.extra.get("nearer", "")) for item in views),
         Counter(item.instruction.level for item in items),
         {part: len({i.scene_id for i in items if _is_of(i, part)}) for part in PARTS},
     )  # fmt: skip

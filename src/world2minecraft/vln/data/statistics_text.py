@@ -52,6 +52,7 @@ def _balance(statistics: SetStatistics) -> list[str]:
     lines.append(f"{'right actions':28}{_counted(statistics.actions)}")
     lines.append(f"{'wrong pictures':28}{_counted(statistics.kinds)}")
     lines.append(f"{'grades':28}{_counted(statistics.grades)}")
+    lines.append(f"{'nearer than the right one':28}{_counted(statistics.ranks)}")
     lines.append(f"{'levels of instructions':28}{_counted(statistics.levels)}")
     return lines
 
@@ -84,6 +85,7 @@ def figures(statistics: SetStatistics, leaks: Leaks, rows: Sequence[BaselineRow]
         "actions": dict(statistics.actions),
         "wrong_pictures": dict(statistics.kinds),
         "grades": dict(statistics.grades),
+        "nearer": dict(statistics.ranks),
         "levels": dict(statistics.levels),
         "scenes": statistics.scenes,
         "leaks": {name: len(value) for name, value in asdict(leaks).items()},
