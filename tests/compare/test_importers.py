@@ -1,6 +1,7 @@
 """The same bedroom in three forms is one scene; what others write wrong is said."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -216,3 +217,25 @@ def test_other_ways_to_go_wrong(tmp_path):
     with pytest.raises(DamagedFileError, match="is no scene of w2m compare"):
         read_layouts_of(tmp_path)
     assert issubclass(LimitError, InputError)
+
+
+def test_another_package_adds_a_format(tmp_path, monkeypatch):
+    """By an entry point; its name must be one that packages may use."""
+    (bedroom,) = read_layouts_of(as_gpt(tmp_path))
+
+    class Ours:
+        def is_mine(self, path, told):
+            return path.suffix == ".json" and told == ["mine"]
+
+        def read(self, path, told, how):
+            return [bedroom]
+
+    groups = []
+
+    def entry_points(group):
+        groups.append(group)
+        return [SimpleNamespace(name="mine", load=Ours)]
+
+    monkeypatch.setattr("world2minecraft.registry.entry_points", entry_points)
+    assert read_layouts_of(write(tmp_path / "x.json", ["mine"])) == [bedroom]
+    assert set(groups) == {"world2minecraft.layout_format"}

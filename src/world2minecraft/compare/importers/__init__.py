@@ -2,7 +2,7 @@
 
 A format is a module with ``is_mine(path, told)`` (``told`` is the JSON of a file, None for a
 folder) and ``read(path, told, how)``. Packages outside add theirs through the entry point group
-``world2minecraft.layout format``.
+``world2minecraft.layout_format``.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ MOST_BYTES = 256 << 20  # LayoutGPT's 423 bedrooms have 0.9 MB.
 PX_M = 3.5 / 256  # See layoutgpt.py.
 HOME = "world2minecraft.compare.importers"
 FORMATS = Registry(
-    "layout format",
+    "layout_format",
     {
         "stored": f"{HOME}.stored:FORMAT",
         "run": f"{HOME}.runs:FORMAT",
