@@ -97,6 +97,8 @@ def test_a_port_that_is_taken_is_one_line(labels, capsys):
     [
         (["none.npz"], 3, "none.npz"),
         (["--demo", "den.npy"], 2, "--demo is a room of its own; leave out the file, or --demo"),
+        (["--walk"], 2, "say where to walk, such as w2m forge OUT --walk"),
+        (["none", "--walk"], 3, "none"),
         (["--host", "no.such.host.invalid", "--demo"], 2, "cannot listen on no.such.host.invalid"),
     ],
 )

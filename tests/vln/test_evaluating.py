@@ -217,6 +217,19 @@ def write_run(folder, name, training, letter, items=None):
     return folder
 
 
+def test_what_a_server_did_not_answer_stands_in_the_table(tmp_path):
+    said = {2: "!", 3: ""}
+    run = write_run(tmp_path / "a", "tiny", "none", lambda item: said.get(item.step, "A"))
+    result = read_result(run)
+    for task, cells in result["accuracy"].items():
+        cell = cells["combined"]
+        column = 4 if task == "next_view" else 7
+        shown = answers_table([result])[1][column]
+        assert (f" {cell['failed']} failed" in shown) == bool(cell["failed"])
+        assert (f" {cell['invalid']}!" in shown) == bool(cell["invalid"])
+    assert sum(cells["combined"]["failed"] for cells in result["accuracy"].values()) > 0
+
+
 def test_each_reply_is_kept_and_the_table_is_the_papers(tmp_path):
     bare = write_run(tmp_path / "a", "tiny", "none", lambda item: "A")
     tuned = write_run(tmp_path / "b", "tiny", "sft", lambda item: item.answer)

@@ -5,7 +5,7 @@ from PIL import ImageFont
 from small_flat import flat_volume
 
 from world2minecraft.vln.running.film import compose, plain, wrapped
-from world2minecraft.vln.running.plan import GOAL, HERE, PlanMap
+from world2minecraft.vln.running.plan import GOAL, HERE, PlanMap, plan_of
 from world2minecraft.vln.values import Stance
 
 
@@ -25,6 +25,22 @@ def test_a_place_is_drawn_where_it_is_on_the_plan():
         assert np.allclose(near(picture, HERE), (10 * x, 45 + 10 * z), atol=3)
         picture = plan.picture([Stance(1.5, 65.0, 1.5)], [(x, 65.0, z)])
         assert np.allclose(near(picture, GOAL), (10 * x, 45 + 10 * z), atol=3)
+
+
+def test_a_plan_is_cut_to_a_part():
+    volume, _, _ = flat_volume()
+    plan = PlanMap(volume, 190, (9.2, 0.5, 18.5, 9.5))  # Columns 9 to 19 and 0 to 10: a square.
+    for x, z in ((11.0, 3.0), (16.0, 6.5)):
+        picture = plan.picture([Stance(x, 65.0, z, -90.0)], ())
+        assert np.allclose(near(picture, HERE), (19 * (x - 9), 19 * z), atol=4)
+    whole = PlanMap(volume, 190).picture([Stance(3.0, 65.0, 3.0)], ())
+    beyond = PlanMap(volume, 190, (40.0, 40.0, 50.0, 50.0)).picture([Stance(3.0, 65.0, 3.0)], ())
+    np.testing.assert_array_equal(beyond, whole)  # Nothing lies there: all is drawn.
+
+
+def test_a_plan_of_a_scene_shows_its_rooms(flat):
+    x0, z0, x1, z1 = plan_of(flat)._box
+    assert x0 < 1 and z0 < 1 and x1 > 18 and z1 > 8  # Both rooms with their walls.
 
 
 def test_the_arrow_points_where_one_looks():
