@@ -69,7 +69,11 @@ def test_the_wheel_holds_the_built_page_and_not_what_it_is_built_of(tmp_path, mo
     building = pytest.importorskip("hatchling.build", reason="hatchling is not installed")
     monkeypatch.chdir(ROOT)
     with ZipFile(tmp_path / building.build_wheel(str(tmp_path))) as wheel:
-        names = {name for name in wheel.namelist() if "/forge/" in name}
+        every = set(wheel.namelist())
+    names = {name for name in every if "/forge/" in name}
+    body = ("body.mjs", "game_rules.mjs", "package.json", "package-lock.json")
+    assert {f"world2minecraft/vln/server/{name}" for name in body} <= every
+    assert "world2minecraft/forge/annotation/page/annotate.js" in every
     page = {name.partition("/static/")[2] for name in names if "/static/" in name}
     assert {"index.html", "index.js"} <= page
     static = ROOT / "src" / "world2minecraft" / "forge" / "static"

@@ -19,7 +19,7 @@ class FakeServer:
     """A server with one player."""
 
     def __init__(self, mode):
-        self.mode, self.holds = mode, 0
+        self.mode, self.holds, self.places = mode, 0, 0
         self.body = SimpleNamespace(
             position=SPAWN, velocity=(0, 0, 0), on_ground=True, hit_wall=False
         )
@@ -44,13 +44,15 @@ class FakeServer:
         changed, self.holds = [], self.holds + 1
         if self.mode == "builder" and self.holds == 3:
             changed = [[5, 66, 5, "minecraft:gold_block"], [500, 66, 5, "minecraft:stone"]]
-        return {"pose": self.pose(), "forced": 0, "changed": changed,
-                "too_many": self.mode == "flood" and self.holds == 3}  # fmt: skip
+        too_many = self.mode == "flood" and self.holds == 3
+        return {"pose": self.pose(), "forced": 0, "changed": changed, "too_many": too_many,
+                "places": self.places}  # fmt: skip
 
     def join(self, told):
         return {"version": "1.20.1", "name": told.get("name", "w2m_walker"), **self.news()}
 
     def place(self, told):
+        self.places += 1
         if self.mode == "no operator":
             return {"moved": False, **self.news()}
         from world2minecraft.walk import Body
@@ -66,7 +68,8 @@ class FakeServer:
             return {"poses": poses, **self.news()}
         from world2minecraft.walk import Body, Keys, step
 
-        if isinstance(self.body, SimpleNamespace):
+        is_late = self.mode == "late" and self.places == 1
+        if isinstance(self.body, SimpleNamespace) or is_late or self.mode == "stubborn":
             self.body = Body(SPAWN, on_ground=True)
         poses = []
         for bits, yaw, _ in told["ticks"]:

@@ -121,6 +121,16 @@ def test_a_player_who_may_not_teleport_is_told_what_to_say():
     )
 
 
+def test_a_server_that_moves_one_to_its_spawn_late_is_told_again():
+    with fake("late") as body:
+        assert body.place((6.0, 65.0, 5.0)).position == (6.0, 65.0, 5.0)
+    with fake("stubborn") as body, pytest.raises(ServerError) as caught:
+        body.place((6.0, 65.0, 5.0))
+    assert str(caught.value) == (
+        "the server moves the player away from where it is put, to 3.0 3.0"
+    )
+
+
 def test_boxes_are_cut_to_what_can_be_read():
     assert checked_box([0, 0, 0, 1, 2, 3]) == (0, 0, 0, 1, 2, 3)
     for wrong in ([0, 0, 0, 0, 2, 3], [0, 0, 0, 1, 2], [0, 0, 0, 1e9, 1, 1]):
@@ -256,6 +266,33 @@ def test_nothing_is_fetched_unasked(monkeypatch, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+def test_the_verb_tells_what_is_missing(monkeypatch, tmp_path, capsys):
+    from world2minecraft import cli
+
+    monkeypatch.setattr(installing, "user_cache_dir", lambda: tmp_path)
+    assert cli.run(["vln", "server"]) == 2
+    assert "fetch it once with w2m vln server --install" in capsys.readouterr().err
+    monkeypatch.setattr(installing.shutil, "which", lambda name: None)
+    assert cli.run(["vln", "server", "--install"]) == 2
+    assert "Node is not installed; a body needs Node 18 or newer" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_interrupted_install_is_none(monkeypatch, tmp_path):
+    """What npm leaves half done is not taken for whole, and its last words are told."""
+    npm = tmp_path / "npm"
+    npm.write_text("#!/bin/sh\nmkdir node_modules\necho no network >&2\nexit 1\n")
+    npm.chmod(0o755)
+    monkeypatch.setattr(installing, "user_cache_dir", lambda: tmp_path / "cache")
+    monkeypatch.setattr(installing, "node", lambda: "node")
+    monkeypatch.setattr(installing.shutil, "which", lambda name: str(npm))
+    with pytest.raises(ServerError, match="npm could not fetch mineflayer: no network"):
+        installing.install()
+    assert not installing.is_installed()
+    npm.write_text("#!/bin/sh\ntest -f package-lock.json && test $1 = ci\n")
+    assert installing.install() == installing.body_folder()
+
+
 def test_it_is_an_environment_of_gymnasium():
     import world2minecraft.vln.environment  # noqa: F401  # It registers.
 
@@ -280,3 +317,5 @@ def test_a_walk_on_a_server_is_run_and_scored_as_any(flat_path):
             walk = walk_episode(ServerGround(scene), episode, agent)
             assert walk.end == "stopped" and walk.score.ne_m < 1.0, name
             assert walk.stances[-1].feet == body.body.position  # For real, not in thought alone.
+            assert walk.score.length_m < 2 * walk.score.shortest_m
+        assert body._bridge.ask("where", 5)["places"] == 2  # Each walk begins once.

@@ -14,7 +14,7 @@ Address = Annotated[
     str, typer.Argument(metavar="[HOST[:PORT]]", help="A server with online-mode=false.")
 ]
 Install = Annotated[
-    bool, typer.Option("--install", help="Fetch mineflayer (MIT) and what it needs, 200 MB.")
+    bool, typer.Option("--install", help="Fetch mineflayer (MIT) and what it needs, 470 MB.")
 ]
 Name = Annotated[str, typer.Option("--name", help="Of the player.")]
 Version = Annotated[str, typer.Option("--version", help="Of the game; the server says it else.")]

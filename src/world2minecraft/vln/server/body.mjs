@@ -7,6 +7,7 @@
 import { createRequire } from 'node:module'
 import path from 'node:path'
 import { deflateSync } from 'node:zlib'
+import { keepToTheGame } from './game_rules.mjs'
 
 const require = createRequire(path.join(path.resolve(process.argv[2]), 'package.json'))
 const say = process.stdout.write.bind(process.stdout)
@@ -17,6 +18,7 @@ const MOST_LINE = 1 << 20
 const MOST_TICKS = 400
 const MOST_CHANGES = 4096 // Then whoever asks reads all blocks again.
 const SETTLE_MS = 3000
+const NEAR = 0.01 // Blocks.
 
 let bot = null
 let gone = null // Why the player is no longer there.
@@ -119,7 +121,7 @@ async function join ({ host, port, name, version, wait_ms: limit }) {
   })
   const reasonText = reason => (typeof reason === 'string' ? reason : JSON.stringify(reason)).slice(0, 500)
   bot.on('kicked', reason => leave(`the server sent the player away: ${reasonText(reason)}`))
-  bot.on('error', error => leave(`no connection: ${error.message || error.code || error}`))
+  bot.on('error', error => leave(`no connection (${error.message || error.code || error}); is the server running there?`))
   bot.on('end', reason => leave(`the connection ended: ${reasonText(reason ?? 'closed')}`))
   bot.on('death', () => { forced++ })
   bot.on('forcedMove', () => { forced++ })
@@ -135,6 +137,7 @@ async function join ({ host, port, name, version, wait_ms: limit }) {
     untilGone(),
     wait(limit).then(() => { throw new Error(`the server let nobody in within ${limit / 1000} s`) })
   ])
+  if (!process.env.W2M_PLAIN_MINEFLAYER) keepToTheGame(bot.physics, require('vec3').Vec3)
   forced = 0
   return { version: bot.version, name: bot.username, mode: bot.game.gameMode, ...news() }
 }
@@ -144,20 +147,17 @@ async function untilGone () {
   throw new Error(gone)
 }
 
-// Says a command and waits until the server has put the player somewhere.
+// Says a command and waits until the server has put the player there.
 async function place ({ x, y, z, wait_ms: limit }) {
   need()
-  const before = forced
-  const { x: x0, y: y0, z: z0 } = bot.entity.position
-  if (Math.hypot(x - x0, y - y0, z - z0) < 1e-6) return { moved: true, ...news() } // No server says so.
-  bot.chat(`/tp ${bot.username} ${x.toFixed(6)} ${y.toFixed(6)} ${z.toFixed(6)}`)
-  for (let waited = 0; waited < limit && forced === before; waited += 50) {
+  const away = () => Math.hypot(x - bot.entity.position.x, y - bot.entity.position.y, z - bot.entity.position.z)
+  if (away() > 1e-6) bot.chat(`/tp ${bot.username} ${x.toFixed(6)} ${y.toFixed(6)} ${z.toFixed(6)}`)
+  for (let waited = 0; waited < limit && away() > NEAR; waited += 50) {
     need()
     await wait(50)
   }
-  const moved = forced > before
   bot.entity.velocity.set(0, 0, 0)
-  return { moved, ...news() }
+  return { moved: away() <= NEAR, ...news() }
 }
 
 // All of the blocks from low to high, both included, of one chunk column.

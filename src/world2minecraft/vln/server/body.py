@@ -25,8 +25,9 @@ MOVE_S = 5.0  # Until a server has done what /tp says.
 STREAM_S = 10.0  # Until a chunk that is near has come.
 SLACK_S = 10.0
 MOST_TICKS = 400  # In one question, as body.mjs has it.
+PLACE_TRIES = 4
 SETTLE_TICKS = 80  # A fall of 20 blocks takes 40.
-NEAR = 0.5  # Blocks: where /tp leads to, as far as a server may round it.
+NEAR = 0.05  # Blocks: where /tp leads to.
 _KEYS = ("forward", "back", "left", "right", "jump", "sneak", "sprint")
 _ADDRESS = re.compile(r"(?P<host>\[[0-9A-Fa-f:.%]+\]|[A-Za-z0-9.-]+)(?::(?P<port>[0-9]{1,5}))?")
 _PLAYER = re.compile(r"[A-Za-z0-9_]{3,16}")
@@ -95,18 +96,28 @@ class ServerBody:
         Raises:
             ServerError: the server does not do so; players need to be operators for /tp.
         """
+        for _ in range(PLACE_TRIES):
+            self._put(feet)
+            self.corrections = 0
+            self.settle(yaw_deg)
+            if not self.corrections and _beside(self.body.position, feet) <= NEAR:
+                return self.body  # A busy server may still move one to its spawn after joining.
+        x, _, z = self.body.position
+        raise ServerError(
+            f"the server moves the player away from where it is put, to {x:.1f} {z:.1f}"
+        )
+
+    def _put(self, feet: tuple[float, float, float]) -> None:
+        """Say /tp, and wait until the player is there."""
         x, y, z = feet
         answer = self._bridge.ask("place", MOVE_S + SLACK_S, x=x, y=y, z=z, wait_ms=MOVE_S * 1e3)
         self._take(answer)
         self.body = _body(answer.get("pose"), Keys())
-        if not answer.get("moved") and math.dist(self.body.position, feet) > NEAR:
+        if not answer.get("moved") or math.dist(self.body.position, feet) > NEAR:
             raise ServerError(
                 f"the server did not put the player at {x:.1f} {y:.1f} {z:.1f}; "
                 f"on its console say: op {self.name}"
             )
-        self.settle(yaw_deg)
-        self.corrections = 0
-        return self.body
 
     def settle(self, yaw_deg: float = 0.0) -> Body:
         """Hold no key until the player stands at rest, and return it."""
@@ -190,6 +201,11 @@ def join(
     except BaseException:
         bridge.close()
         raise
+
+
+def _beside(one: tuple[float, float, float], other: tuple[float, float, float]) -> float:
+    """Return how far places are from each other along the ground, blocks."""
+    return math.hypot(one[0] - other[0], one[2] - other[2])
 
 
 def _bits(keys: Keys) -> int:

@@ -21,7 +21,10 @@ class ServerGround(SceneGround):
         """Make a move; the player is put where it begins, if it stands elsewhere."""
         if stance != self._acting.stance:
             self._acting.begin(stance)
-        return self._acting.made(move) if move != Move.STOP else (stance, False)
+        if move == Move.STOP:
+            return stance, False
+        self._acting.stance, collided = self._acting.made(move)
+        return self._acting.stance, collided
 
     @property
     def imagined(self) -> Ground:
