@@ -173,6 +173,7 @@ def test_the_environment_is_clean_and_its_walker_is_the_games(flat_path):
         assert env.scene.scale == pytest.approx(1.0)
         assert env.scene.blocks_per_metre == 2
         assert {one.noun for one in env.scene.landmarks} >= {"upright piano"}
+        assert env.scene.start.feet == SPAWN
         check_env(env, skip_render_check=True)
 
 

@@ -16,7 +16,7 @@ from world2minecraft.errors import InputError, UsageError
 from world2minecraft.exchange.cutting import trimmed
 from world2minecraft.exchange.labelled import labelled
 from world2minecraft.exchange.scene import read_scene
-from world2minecraft.exchange.source import Source
+from world2minecraft.exchange.source import Source, Start
 from world2minecraft.render.live_scene import LiveScene
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.types import BlockVolume, Layout
@@ -107,7 +107,9 @@ def open_server_scene(
         source = Source(_scaled(trimmed(volume), blocks_per_metre or 1.0), "server", Path(where))
     else:
         path = Path(str(labels))  # What is walked here can be walked there again, without a server.
-        source = Source(_labelled(volume, folder, where), "server", path, folder=folder)
+        scene = read_scene(folder)
+        start = Start(*scene.spawn, scene.spawn_yaw_deg)
+        source = Source(_labelled(volume, folder, where), "server", path, start, folder)
     return ServerScene(source, _scene_id(server, labels), server)
 
 
