@@ -105,6 +105,15 @@ def test_layoutvlm_names_assets_of_one_category_by_letters(tmp_path):
     write(tmp_path / "room.json", task)
     here = {"position": [1, 1, 0.5], "rotation": [0, 0, 0]}
     names = ("lamp_A-0", "lamp_B-0", "chair-0", "chair-1")
+    told = {name: here for name in names}
+    (less,) = read_layouts_of(write(tmp_path / "layout.json", {**told, "chair-1": {}}))
+    assert less.skipped == ("chair-1: 'position'",) and not less.unplaced
+    del told["chair-1"]
+    (none,) = read_layouts_of(write(tmp_path / "layout.json", told))
+    assert none.unplaced == ("chair-1",)
+    own = {"x-0": here, "y-0": here, "z-0": here}
+    (by_own_names,) = read_layouts_of(write(tmp_path / "layout.json", own))
+    assert by_own_names.unplaced == ("chair-1",) and len(by_own_names.objects) == 3
     path = write(tmp_path / "layout.json", {name: here for name in names})
     (scene,) = read_layouts_of(path)
     assert [item.size_m[2] for item in scene.objects] == [0.5, 1.5, 0.9, 0.9]

@@ -71,11 +71,11 @@ class Format:
                 objects.append(_object(key, one, assets))
             except (KeyError, TypeError, ValueError, IndexError) as error:
                 skipped.append(f"{clean_name(key)}: {error}")
-        unplaced = [clean_name(key) for key in dict(_names(task, how.assets)) if key not in told]
+        names = _names(task, how.assets)
+        unplaced = [clean_name(name) for name, own in names if not {name, own} & set(told)]
         room = _room(task["boundary"])
         name = place.parent.name if place.name == LAYOUT_FILE else place.stem
-        missing = max(0, len(task.get("assets", {})) - len(told))
-        return [ComparedScene(name, METHOD, (room,), tuple(objects), tuple(unplaced[:missing]),
+        return [ComparedScene(name, METHOD, (room,), tuple(objects), tuple(unplaced),
                               tuple(skipped))]  # fmt: skip
 
 
