@@ -138,7 +138,7 @@ def test_scenes_are_made_once(tmp_path, monkeypatch):
     told = []
     room, house = made_scenes.make_scenes(tmp_path, 1, 1, 3, 1, told_to(told))
     assert (composition_of(room), composition_of(house)) == ("base", "extend")
-    assert (room.name, house.name) == ("bed_01", "house_01")
+    assert (room.name, house.name) == ("bed_01_s3", "house_01_s3")
     assert not (room / "capture").exists()
     assert [words[:3] for words in told] == [("scenes", n, 2) for n in range(3)]
     del told[:]
@@ -165,7 +165,8 @@ def test_a_room_without_a_way_is_made_again(tmp_path, monkeypatch):
     monkeypatch.setattr(made_scenes, "_make_room", make)
     monkeypatch.setattr(made_scenes, "open_scene", lambda out: out)
     monkeypatch.setattr(made_scenes, "Tourist", lambda scene: Guide())
-    assert [one.name for one in made_scenes.make_scenes(tmp_path, 1, 0, 2)] == ["bed_01"]
+    assert [one.name for one in made_scenes.make_scenes(tmp_path, 1, 0, 2)] == ["bed_01_s2"]
+    assert [one.name for one in made_scenes.make_scenes(tmp_path, 0, 0)] == []
     assert made == [("bed", 2_001), ("bed", 1_002_001), ("bed", 2_002_001)]
 
 

@@ -48,7 +48,8 @@ def make_scenes(
     """Make runs of generated rooms, and houses; return their folders, rooms first.
 
     Args:
-        folder: where; ``living_01``, ``bed_02`` ... and ``house_01`` ... go below it.
+        folder: where; ``bed_01``, ``dining_02`` ... and ``house_01`` ... go below it, and with
+            another seed than 0 ``bed_01_s7`` and so on.
         rooms: how many rooms, of the kinds in turn; a longer series begins with a shorter one.
         houses: how many houses.
         seed: another seed, other scenes.
@@ -60,13 +61,11 @@ def make_scenes(
     """
     if not (0 <= rooms <= MOST_MADE and 0 <= houses <= MOST_MADE):
         raise UsageError(f"0 to {MOST_MADE:,} rooms and houses can be made, not {rooms}, {houses}")
-    place = Path(folder)
-    orders = [
-        _Order(str(place / f"{BASE_KINDS[n % len(BASE_KINDS)]}_{n + 1:02d}"), "room", n + 1, seed)
-        for n in range(rooms)
-    ]
+    place, mark = Path(folder), f"_s{seed}" if seed else ""  # Seeds share no folder.
+    names = [f"{BASE_KINDS[n % len(BASE_KINDS)]}_{n + 1:02d}{mark}" for n in range(rooms)]
+    orders = [_Order(str(place / name), "room", n, seed) for n, name in enumerate(names, 1)]
     orders += [
-        _Order(str(place / f"house_{n + 1:02d}"), "house", n + 1, seed) for n in range(houses)
+        _Order(str(place / f"house_{n:02d}{mark}"), "house", n, seed) for n in range(1, houses + 1)
     ]
     left = [one for one in orders if not (Path(one.folder) / _FINISHED[one.what]).is_file()]
     if left:
