@@ -147,7 +147,8 @@ def before_walls(
     walls = inside & np.isin(labels, WALLS)
     if not walls.any():
         return inside
-    first = _first_depth(*pixels[walls].T, depth_m[walls], region.voxel_m, camera)
+    u, v = pixels[walls].T
+    first = _first_depth(u, v, depth_m[walls], region.voxel_m, camera)
     last_m = first[pixels[..., 1], pixels[..., 0]] + WALL_CELLS * region.voxel_m
     return inside & (depth_m <= last_m)
 

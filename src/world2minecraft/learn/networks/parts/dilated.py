@@ -14,13 +14,13 @@ from torch.nn import functional
 class DilatedConv3d(nn.Conv3d):
     """A convolution of stride 1 that keeps the shape; weights are those of ``nn.Conv3d``."""
 
-    def forward(self, cells: Tensor) -> Tensor:
+    def forward(self, input: Tensor) -> Tensor:
         """Return [B, D, X, Y, Z] for [B, C, X, Y, Z]."""
         if max(self.dilation) == 1 or not (self.training and torch.is_grad_enabled()):
-            return super().forward(cells)
-        sides, steps = cells.shape[2:], self.dilation
+            return super().forward(input)
+        sides, steps = input.shape[2:], self.dilation
         kept = [kernel // 2 for kernel in self.kernel_size]
-        found = functional.conv3d(families(cells, steps), self.weight, self.bias, padding=kept)
+        found = functional.conv3d(families(input, steps), self.weight, self.bias, padding=kept)
         return joined(found, steps, sides)
 
 

@@ -13,12 +13,12 @@ from torch import Tensor, nn
 class GroupNorm(nn.GroupNorm):
     """``nn.GroupNorm`` with the same weights, quicker to train in bfloat16."""
 
-    def forward(self, values: Tensor) -> Tensor:
+    def forward(self, input: Tensor) -> Tensor:
         """Return [B, C, ...] of the same shape and dtype."""
-        layout, trains = _layout(values), self.training and torch.is_grad_enabled()
-        if values.dtype != torch.bfloat16 or layout == torch.contiguous_format or not trains:
-            return super().forward(values)
-        packed = values.contiguous(memory_format=layout)
+        layout, trains = _layout(input), self.training and torch.is_grad_enabled()
+        if input.dtype != torch.bfloat16 or layout == torch.contiguous_format or not trains:
+            return super().forward(input)
+        packed = input.contiguous(memory_format=layout)
         return _Normalised.apply(packed, self.weight, self.bias, self.num_groups, self.eps)
 
 
