@@ -121,3 +121,9 @@ def test_numba_is_reached_through_jit_alone(path):
     ]
     names += [node.module or "" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
     assert not [name for name in names if name == "numba.njit" or name == "numba"]
+
+
+def test_no_two_test_files_have_one_name():
+    """pytest collects a folder of tests by bare names: the second of two would not run."""
+    names = [path.name for path in Path(__file__).parent.rglob("test_*.py")]
+    assert sorted(names) == sorted(set(names))

@@ -60,7 +60,7 @@ def rounded(values: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
 
     Example:
         >>> whole, scales = rounded(np.float32([[0.5, -1.27], [0.0, 0.0]]), 0)
-        >>> whole.tolist(), scales.round(4).tolist()
+        >>> whole.tolist(), [round(float(scale), 4) for scale in scales]
         ([[50, -127], [0, 0]], [0.01, 1.0])
     """
     others = tuple(n for n in range(values.ndim) if n != axis % values.ndim)

@@ -22,7 +22,7 @@ def forward_keys(length: float, yaw_deg: float) -> list[Keys]:
     Example:
         >>> keys = forward_keys(1.0, 90.0)
         >>> len(keys), sum(one.sneak for one in keys), keys[-1].forward
-        (15, 2, False)
+        (17, 9, False)
     """
     walking, sneaking = _ticks(min(max(length, 0.0), MOST_BLOCKS))
     held = [_WALK] * walking + [_SNEAK] * sneaking
