@@ -59,6 +59,7 @@ ROWS: tuple[tuple[str, ...], ...] = (
     ("learn",),
     ("vln",),
     ("compare",),
+    ("paper",),
     ("forge",),
     ("cli",),
 )

@@ -66,6 +66,8 @@ VERBS: dict[str, str] = {
     "compare build": "Build layouts of other methods as Minecraft worlds, faults and all.",
     "compare judge": "Let a vision-language model grade built rooms, all shown alike.",
     "compare describe": "Say a room in the words that text-to-layout methods start from.",
+    "paper": "Print the paper's tables, with ours beside and how it was measured.",
+    "paper figure": "Draw a room as the paper does: photo, world, cells, construction.",
     "doctor": "Check that this machine can run the program.",
 }
 

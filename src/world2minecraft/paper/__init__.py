@@ -1,0 +1,13 @@
+"""The tables of the paper, each with what we measured beside it, or with what we lack for it.
+
+``tables`` holds them as printed, a YAML file each, with notes where the paper contradicts itself.
+``measured.yaml`` holds our figures, each with what it was measured on, the command, and the page
+that tells it. ``from_program`` reads what the program itself knows: the mapping of classes, the
+recipes of fine-tuning, the sizes. ``layout`` puts all of it into one table, ``writing`` prints it.
+"""
+
+from world2minecraft.paper.filling import filled
+from world2minecraft.paper.reading import read_results, read_table, table_names
+from world2minecraft.paper.values import Ours, PaperTable
+
+__all__ = ["Ours", "PaperTable", "filled", "read_results", "read_table", "table_names"]

@@ -1,0 +1,211 @@
+"""The paper's figures of a run of one's own: reality beside what was made of it, and a walk.
+
+A row a view: the photo, the world from the same pose, the predicted cells in the colours of their
+classes, and the construction, both from outside without ceiling and near walls. Below, where a
+walk is given, what its agent saw from step to step.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from world2minecraft.classes import CLASS_COLOURS, OBJECT_CLASSES, UNKNOWN
+from world2minecraft.errors import CaptureError, InputError
+from world2minecraft.exchange.poses import read_poses
+from world2minecraft.exchange.room import read_room
+from world2minecraft.files import read_json
+from world2minecraft.geometry.undistort import undistorted
+from world2minecraft.render.lamps import NEUTRAL, PAPER
+from world2minecraft.render.picture import render_volume
+from world2minecraft.render.scene import BlockScene, prepare_scene
+from world2minecraft.render.views.cameras import camera_of
+from world2minecraft.render.views.frames import DrawOptions, frames_of
+from world2minecraft.render.views.opened import OpenedBuild
+from world2minecraft.render.views.orbit import orbit_shots
+from world2minecraft.render.views.turntable import OPEN_ELEVATION_DEG
+from world2minecraft.report.scene import read_built
+from world2minecraft.scan.images import read_colour
+from world2minecraft.scan.judged import judge_capture
+from world2minecraft.scan.options import parse_options
+from world2minecraft.types import AIR, BlockVolume, Camera, OccupancyGrid
+
+VIEWS, STEPS = 3, 6  # Rows, and pictures of a walk.
+CELL_PX = (480, 360)
+HEAD_PX, GAP_PX = 34, 8
+SCOUT_PX = (64, 48)
+FOV_DEG = 30.0
+HEADS = ("Reality", "Minecraft", "Prediction", "Construction")
+MATTER = "minecraft:white_concrete"  # Takes the light; its colour comes from the class.
+
+Pixels = np.ndarray  # uint8 [H, W, 3]
+
+
+def reconstruction_figure(run: Path, capture: Path, walk: Path | None = None) -> Pixels:
+    """Return the figure, uint8 [H, W, 3].
+
+    Args:
+        run: the folder of a finished reconstruction.
+        capture: what it was made of.
+        walk: the folder of a ``w2m vln run``; its strip comes below.
+
+    Raises:
+        CaptureError: the capture has no posed photo that the run used.
+        InputError: a file is missing or damaged.
+    """
+    grid, scan_to_room = read_room(run / "room.npz")
+    built = read_built(run / "build")
+    scene = prepare_scene(built)
+    photos = _photos(run, capture, scan_to_room, scene)
+    start_deg = OpenedBuild(built).best_start_deg(OPEN_ELEVATION_DEG)
+    columns = [
+        [photo for photo, _, _ in photos],
+        [_drawn(scene, camera, pose) for _, camera, pose in photos],
+        [_coloured(*pair) for pair in _outside(volume_of_cells(grid), start_deg)],
+        [colour for colour, _ in _outside(built, start_deg)],
+    ]
+    rows = [[_fitted(column[n], CELL_PX) for column in columns] for n in range(len(photos))]
+    strip = _strip(walk, len(HEADS)) if walk is not None else []
+    return _page(rows, strip)
+
+
+def volume_of_cells(grid: OccupancyGrid) -> BlockVolume:
+    """Return occupied cells as one white block each, with their classes, for the renderer."""
+    occupied = (grid.labels != 0) & (grid.labels != UNKNOWN)
+    labels = np.where(occupied, grid.labels, 0).astype(np.uint8)
+    turned = [np.ascontiguousarray(a[:, ::-1].transpose(0, 2, 1)) for a in (labels, grid.instance)]
+    side, deep = grid.voxel_m, grid.labels.shape[1]
+    block_to_room = np.eye(4)
+    block_to_room[:3, :3] = [[side, 0, 0], [0, 0, -side], [0, side, 0]]
+    block_to_room[:3, 3] = grid.origin_m + np.array([0, deep * side, 0])
+    states = (turned[0] != 0).astype(np.uint16)
+    return BlockVolume(states, (AIR, MATTER), turned[0], turned[1], (0, 0, 0), block_to_room)
+
+
+def _photos(
+    run: Path, capture: Path, scan_to_room: np.ndarray, scene: BlockScene
+) -> list[tuple[Pixels, Camera, np.ndarray]]:
+    """Return photos with cameras and poses: of each third of the frames the one that shows most."""
+    used = set(map(str, read_json(run / "scan.json").get("frames_used", ())))
+    changes = _changes(run)
+    placed = []
+    for frame in judge_capture(capture, parse_options({})).frames:
+        camera, pose = frame.colour_camera, frame.camera_to_world
+        if frame.colour_path and camera and pose is not None and frame.name in used:
+            to_room = scan_to_room @ changes.get(frame.name, np.eye(4)) @ pose
+            placed.append((frame.colour_path, camera, to_room))
+    if not placed:
+        raise CaptureError(capture, f"has no posed photo that {run.name} was made of")
+    count = min(VIEWS, len(placed))
+    edges = [n * len(placed) // count for n in range(count + 1)]
+    found = []
+    for start, end in pairwise(edges):
+        path, camera, pose = max(placed[start:end], key=lambda one: _shown(scene, *one[1:]))
+        small = _small_camera(camera)
+        found.append((undistorted(read_colour(path), camera, small), small, pose))
+    return found
+
+
+def _shown(scene: BlockScene, camera: Camera, pose: np.ndarray) -> int:
+    """Return how many pixels of a small picture of the world show objects."""
+    tiny = camera.resized(SCOUT_PX[0], SCOUT_PX[1])
+    semantic = _present(render_volume(scene, tiny, pose, outputs=("semantic",)).semantic)
+    return int(np.isin(semantic, OBJECT_CLASSES).sum())
+
+
+def _small_camera(camera: Camera) -> Camera:
+    """Return a camera of a cell's width without distortion, of the same angles."""
+    width = CELL_PX[0]
+    scale = width / camera.width_px
+    return Camera(
+        width, round(camera.height_px * scale), camera.fx_px * scale, camera.fy_px * scale,
+        camera.cx_px * scale, camera.cy_px * scale,
+    )  # fmt: skip
+
+
+def _changes(run: Path) -> dict[str, np.ndarray]:
+    """Return how the run corrected poses, by frame; nothing where it did not."""
+    try:
+        found = read_poses(run / "poses.npz")
+    except InputError:
+        return {}
+    return dict(zip(found.names, found.pose_change, strict=True))
+
+
+def _drawn(scene: BlockScene, camera: Camera, pose: np.ndarray) -> Pixels:
+    picture = render_volume(scene, camera, pose, light=NEUTRAL, samples=2)
+    return _present(picture.colour)
+
+
+def _outside(volume: BlockVolume, start_deg: float) -> Iterator[tuple[Pixels, np.ndarray]]:
+    """Return pictures from as many sides as there are views, twice as large, with their classes."""
+    build = OpenedBuild(volume)
+    camera = camera_of(2 * CELL_PX[0], 2 * CELL_PX[1], vertical_fov_deg=FOV_DEG)
+    shots = orbit_shots(
+        build.whole, camera, VIEWS, elevation_deg=OPEN_ELEVATION_DEG, start_deg=start_deg
+    )
+    how = DrawOptions(outputs=("colour", "semantic"), light=NEUTRAL, background=PAPER)
+    for shot in shots:
+        scene = prepare_scene(build.seen_by(shot.camera_to_room))
+        picture = next(iter(frames_of(scene, [shot], how)))
+        yield _present(picture.colour), _present(picture.semantic)
+
+
+def _coloured(colour: Pixels, semantic: np.ndarray) -> Pixels:
+    """Return white matter in the colours of its classes, light and shade kept."""
+    table = np.array(CLASS_COLOURS, np.float32) / 255
+    known = np.where(semantic < len(table), semantic, 0)
+    return np.rint(colour * table[known]).astype(np.uint8)
+
+
+def _present(pixels: np.ndarray | None) -> np.ndarray:
+    if pixels is None:
+        raise RuntimeError("the renderer gave no picture")
+    return pixels
+
+
+def _strip(walk: Path, across: int) -> list[Pixels]:
+    """Return what an agent saw, first and last step among it, to fill the width of the page."""
+    paths = sorted((walk / "views").glob("*.jpg"))
+    if not paths:
+        raise InputError(walk, "holds no views of a walk; name a folder of w2m vln run")
+    count = min(STEPS, len(paths))
+    chosen = [paths[n * (len(paths) - 1) // max(count - 1, 1)] for n in range(count)]
+    width = (across * (CELL_PX[0] + GAP_PX) - GAP_PX * STEPS) // STEPS
+    size = (width, width * CELL_PX[1] // CELL_PX[0])
+    return [_fitted(read_colour(path), size) for path in chosen]
+
+
+def _fitted(pixels: Pixels, size: tuple[int, int]) -> Pixels:
+    """Return a picture of a size, cut about its middle where its shape is another."""
+    height, width = pixels.shape[:2]
+    scale = max(size[0] / width, size[1] / height)
+    wide, tall = (
+        min(round(one / scale), most) for one, most in zip(size, (width, height), strict=True)
+    )
+    left, top = (width - wide) // 2, (height - tall) // 2
+    cut = Image.fromarray(pixels[top : top + tall, left : left + wide])
+    return np.asarray(cut.resize(size, Image.Resampling.LANCZOS))
+
+
+def _page(rows: Sequence[Sequence[Pixels]], strip: Sequence[Pixels]) -> Pixels:
+    """Return pictures in rows under their heads, the strip below."""
+    width = len(HEADS) * (CELL_PX[0] + GAP_PX) + GAP_PX
+    tall = HEAD_PX + len(rows) * (CELL_PX[1] + GAP_PX)
+    extra = HEAD_PX + strip[0].shape[0] + GAP_PX if strip else 0
+    page = Image.new("RGB", (width, tall + extra), "white")
+    pen, font = ImageDraw.Draw(page), ImageFont.load_default(20)
+    for n, head in enumerate(HEADS):
+        middle = GAP_PX + n * (CELL_PX[0] + GAP_PX) + CELL_PX[0] // 2
+        pen.text((middle, HEAD_PX // 2), head, "black", font, anchor="mm")
+        for row, pictures in enumerate(rows):
+            place = (GAP_PX + n * (CELL_PX[0] + GAP_PX), HEAD_PX + row * (CELL_PX[1] + GAP_PX))
+            page.paste(Image.fromarray(pictures[n]), place)
+    for n, picture in enumerate(strip):
+        left = GAP_PX + n * (picture.shape[1] + GAP_PX)
+        page.paste(Image.fromarray(picture), (left, tall + HEAD_PX))
+    if strip:
+        pen.text((width // 2, tall + HEAD_PX // 2), "The agent's way", "black", font, anchor="mm")
+    return np.asarray(page)

@@ -1,0 +1,113 @@
+"""A table of the paper as text for the terminal, Markdown, LaTeX or JSON values."""
+
+import textwrap
+from collections.abc import Mapping
+from typing import Any
+
+from world2minecraft.dataset.statistics.tables import escape
+from world2minecraft.paper.layout import Grid, grid_of
+from world2minecraft.paper.values import Ours, PaperTable
+from world2minecraft.vln.running.tables import markdown_of
+
+CELL_WIDTH = 36  # Longer cells are broken into lines.
+NOTE_WIDTH = 100
+
+
+def as_text(table: PaperTable, ours: Mapping[str, Ours]) -> str:
+    """Return a table for the terminal, with its title above and its notes below."""
+    grid = grid_of(table, ours)
+    broken = [[textwrap.wrap(cell, CELL_WIDTH) or [""] for cell in row] for row in _indented(grid)]
+    widths = [max(len(line) for row in broken for line in row[n]) for n in range(len(grid.rows[0]))]
+    lines = [
+        "  ".join(
+            _line(cell, n).ljust(width) if column < grid.left else _line(cell, n).rjust(width)
+            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in broken
+        for n in range(max(len(cell) for cell in row))
+    ]
+    notes = [
+        textwrap.fill(note, NOTE_WIDTH, subsequent_indent="    ", break_on_hyphens=False)
+        for note in grid.notes
+    ]
+    return "\n".join([_title(table), "", *lines, "", *notes])
+
+
+def as_markdown(table: PaperTable, ours: Mapping[str, Ours]) -> str:
+    """Return a table as Markdown, its notes as a list below."""
+    grid = grid_of(table, ours)
+    notes = [f"- {note}" for note in grid.notes]
+    return "\n".join([f"**{_title(table)}**", "", markdown_of(grid.rows), "", *notes])
+
+
+def as_latex(table: PaperTable, ours: Mapping[str, Ours]) -> str:
+    """Return a table for ``booktabs``; our rows are in italics, notes stand below."""
+    grid = grid_of(table, ours)
+    width = len(grid.rows[0])
+    kinds = "l" * grid.left + "r" * (width - grid.left)
+    kinds = "l" + "p{3cm}" * (width - 1) if table.is_beside else kinds
+    lines = [r"\begin{table}", rf"\caption{{{escape(table.about)}}}"]
+    lines += [rf"\begin{{tabular}}{{{kinds}}}", r"\toprule"]
+    for n, row in enumerate(grid.rows):
+        cells = [escape(cell.strip()) for cell in row]
+        cells = [rf"\textit{{{cell}}}" if cell and n in grid.ours else cell for cell in cells]
+        lines.append(" & ".join(_guarded(cells)) + r" \\")
+        lines += [r"\midrule"] if n == 0 else []
+    lines += [r"\bottomrule", r"\end{tabular}", ""]
+    lines += [rf"{{\footnotesize {escape(note)}\par}}" for note in grid.notes]
+    return "\n".join([*lines, r"\end{table}"])
+
+
+def as_values(table: PaperTable, ours: Mapping[str, Ours]) -> dict[str, Any]:
+    """Return a table as JSON values; keys of rows and columns are those that results take."""
+    return {
+        "table": table.name,
+        "number": table.number,
+        "title": table.title,
+        "columns": dict(table.titles),
+        "results_go_to": list(table.fillable),
+        "rows": [
+            {
+                "row": row.key,
+                "printed": dict(zip(table.columns, row.cells, strict=True)),
+                "is_printed": row.is_printed,
+                "notes": dict(row.notes),
+                "ours": _ours_values(ours.get(row.key)),
+                "needs": [
+                    {"columns": list(lack.columns), "what": lack.what, "command": lack.command}
+                    for lack in table.lacks
+                    if lack.covers(row.key)
+                ],
+            }
+            for row in table.rows
+        ],
+    }
+
+
+def _ours_values(told: Ours | None) -> dict[str, Any] | None:
+    if told is None:
+        return None
+    return {
+        "cells": dict(told.cells),
+        "data": told.data,
+        "command": told.command,
+        "page": told.page,
+    }
+
+
+def _title(table: PaperTable) -> str:
+    return f"Table {table.number} of the paper. {table.title}"
+
+
+def _indented(grid: Grid) -> list[list[str]]:
+    """Return the rows, the indent of ours kept through the breaking of lines."""
+    return [[cell.replace("  ours", "\u00a0\u00a0ours") for cell in row] for row in grid.rows]
+
+
+def _line(cell: list[str], number: int) -> str:
+    return cell[number].replace("\u00a0", " ") if number < len(cell) else ""
+
+
+def _guarded(cells: list[str]) -> list[str]:
+    r"""Keep a bracket at the start of a row from being read as an option of ``\\``."""
+    return [f"{{}}{cell}" if cell.startswith("[") else cell for cell in cells]
