@@ -33,12 +33,20 @@ def assert_rotation(rotation):
     assert np.linalg.det(rotation) == pytest.approx(1)
 
 
+def assert_transform(transform):
+    """It is 4x4, so that products of transforms chain, and moves no point into the distance."""
+    assert transform.shape == (4, 4)
+    assert transform[3].tolist() == [0, 0, 0, 1]
+
+
 # Transforms.
 
 
 @given(rigid(), clouds)
 def test_inverse_takes_points_back(transform, points):
     for inverse in (co.invert(transform), co.invert_rigid(transform)):
+        assert_transform(inverse)
+        np.testing.assert_allclose(inverse @ transform, np.eye(4), atol=1e-9)
         np.testing.assert_allclose(
             co.apply(inverse, co.apply(transform, points)), points, atol=1e-9
         )
@@ -60,6 +68,7 @@ def test_apply_keeps_leading_axes():
 @given(degrees)
 def test_a_turn_about_z_is_a_rotation_that_keeps_up(yaw):
     turn = co.rotation_about_z(yaw)
+    assert_transform(turn)
     assert_rotation(turn[:3, :3])
     assert np.array_equal(turn[:3, 2], [0, 0, 1])
 
@@ -96,6 +105,7 @@ def test_look_at_sees_its_target_straight_ahead(eye, target):
     if distance < 0.1:
         return
     pose = co.look_at(eye, target)
+    assert_transform(pose)
     assert_rotation(pose[:3, :3])
     seen = co.apply(co.invert_rigid(pose), target)
     np.testing.assert_allclose(seen, [0, 0, distance], atol=1e-6 * (1 + distance))
@@ -105,6 +115,14 @@ def test_look_at_sees_its_target_straight_ahead(eye, target):
 @pytest.mark.parametrize("up", [1.0, -1.0])
 def test_look_at_straight_up_or_down_is_still_a_rotation(up):
     assert_rotation(co.look_at(np.zeros(3), np.array([0, 0, up]))[:3, :3])
+
+
+@pytest.mark.parametrize("up", [1.0, -1.0])
+def test_looking_straight_up_or_down_is_where_tilting_from_ahead_ends(up):
+    """Who looks along +x and tilts to the zenith, or the nadir, ends in the same picture."""
+    almost = co.look_at(np.zeros(3), np.array([1e-5, 0, up]))
+    straight = co.look_at(np.zeros(3), np.array([0, 0, up]))
+    np.testing.assert_allclose(straight, almost, atol=1e-4)
 
 
 # Grids.
@@ -163,6 +181,7 @@ def test_a_room_is_never_mirrored(x_min, y_max, scale):
 @given(metres, metres, scales)
 def test_the_corner_of_the_room_stands_where_it_must(x_min, y_max, scale):
     transform = co.room_to_block(np.array([x_min, y_max]), scale)
+    assert_transform(transform)
     corner = co.apply(transform, np.array([x_min, y_max, 0.0]))
     np.testing.assert_allclose(corner, co.ROOM_CORNER_BLOCK, atol=1e-9)
 
@@ -242,6 +261,7 @@ def test_a_room_yaw_and_its_game_yaw_look_the_same_way(yaw):
 @given(degrees, pitches, vectors)
 def test_the_game_camera_is_right_handed(yaw, pitch, eye):
     pose = co.camera_to_block_of_game_pose(eye, yaw, pitch)
+    assert_transform(pose)
     assert_rotation(pose[:3, :3])
     assert np.array_equal(pose[:3, 3], eye)
     assert pose[1, 0] == pytest.approx(0)  # The image's right is level,
@@ -339,12 +359,33 @@ def test_a_camera_that_is_carried_sees_the_same(eye, yaw, pitch, scale, point):
     block_to_room = co.block_to_room(np.array([1.0, 2.0]), scale)
     camera_to_block = co.camera_to_block_of_game_pose(eye, yaw, pitch)
     camera_to_room = co.carry_camera(camera_to_block, block_to_room)
+    assert_transform(camera_to_room)
     assert_rotation(camera_to_room[:3, :3])
     in_blocks = co.apply(co.invert_rigid(camera_to_block), point)
     in_room = co.apply(co.invert_rigid(camera_to_room), co.apply(block_to_room, point))
     np.testing.assert_allclose(in_room * scale, in_blocks, atol=1e-6)
     back = co.carry_camera(camera_to_room, co.invert(block_to_room))
     np.testing.assert_allclose(back, camera_to_block, atol=1e-6)
+
+
+@given(rigid(), rigid(), scales)
+def test_any_frame_may_carry_a_camera(camera_to_a, a_to_b, scale):
+    """However the frames are turned to each other: its axes stay as long, its place moves."""
+    a_to_b[:3, :3] *= scale
+    camera_to_b = co.carry_camera(camera_to_a, a_to_b)
+    assert_transform(camera_to_b)
+    assert_rotation(camera_to_b[:3, :3])
+    ahead = co.apply(a_to_b, camera_to_a[:3, 3] + camera_to_a[:3, 2])
+    np.testing.assert_allclose(
+        co.apply(co.invert_rigid(camera_to_b), ahead), [0, 0, scale], atol=1e-6
+    )
+
+
+@given(rigid())
+def test_a_camera_that_leans_or_hangs_upside_down_has_a_pitch_that_a_neck_can_take(pose):
+    _, yaw, pitch = co.game_pose_of_camera_to_block(pose)
+    assert -180 <= yaw < 180
+    assert -90 <= pitch <= 90
 
 
 @pytest.mark.parametrize(("scale", "eye"), [(1.0, 1.62), (4.0, 6.48)])
