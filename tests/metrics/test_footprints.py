@@ -82,6 +82,19 @@ def test_a_share_outside():
     assert outside_share(box(9, 9), ROOM, 0.1) == 1.0
 
 
+@given(boxes)
+def test_the_share_outside_is_what_clipping_leaves(one):
+    room = box(2.0, 1.5, size=(4.0, 3.0, 1.0))
+    shared = shared_area_m2(one, room) / np.prod(one.size_m[:2])
+    assert outside_share(one, ROOM, 0.0) == pytest.approx(1 - shared, abs=0.03)
+
+
+def test_a_triangle_has_an_area_and_a_line_has_none():
+    triangle = np.array([[0, 0], [4, 0], [0, 3]], float)
+    assert area_m2(triangle) == area_m2(triangle[::-1]) == 6.0
+    assert area_m2(triangle[:2]) == area_m2(triangle[:0]) == 0.0
+
+
 def test_a_corner_of_an_l_is_outside_though_all_corners_are_within():
     across = box(1.0, 1.0, size=(2.6, 0.2, 1.0), yaw=135)
     assert inside_polygon(plan_corners_m(across), ELL, 0.0).all()

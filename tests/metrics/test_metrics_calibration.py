@@ -21,6 +21,12 @@ def test_a_case_counted_by_hand():
     ]
 
 
+def test_the_table_is_told_to_a_hundredth_of_a_percent_and_its_edges_to_a_thousandth():
+    counts = count_calibration(np.array([0.4, 0.5, 0.61]), np.array([True, False, False]), bins=3)
+    row = {"from": 0.333, "to": 0.667, "cells": 3, "confidence": 0.5033, "right": 0.3333}
+    assert counts.rows() == [row]
+
+
 def test_edges_belong_to_the_bin_above_and_one_to_the_last():
     counts = count_calibration(np.array([0.0, 0.1, 0.2, 0.3, 1.0]), np.ones(5, bool))
     assert counts.cells.tolist() == [1, 1, 1, 1, 0, 0, 0, 0, 0, 1]

@@ -8,8 +8,10 @@ from hypothesis import strategies as st
 from world2minecraft.metrics.layout import (
     collisions,
     floaters,
+    inside_polygon,
     out_of_bounds,
     overlap_depth_m,
+    overlapping_boxes,
     plan_corners_m,
 )
 from world2minecraft.types import LayoutObject, Placement
@@ -66,6 +68,12 @@ def test_touching_is_no_collision_and_stacking_neither():
     assert collisions(things) == [(0, 3), (1, 3)]
 
 
+def test_an_overlap_that_is_forgiven_to_the_millimetre_is_none():
+    things = [box(0, 0), box(0.75, 0)]
+    assert overlapping_boxes(things, 0.25) == []
+    assert overlapping_boxes(things, 0.249) == [(0, 1)]
+
+
 def test_runs_of_one_object_do_not_collide():
     def run(object_id, x):
         return Placement(
@@ -94,6 +102,52 @@ def test_out_of_bounds_in_an_l_shaped_room():
     assert out_of_bounds(things, L_ROOM, 2.5) == [1, 2, 4, 5, 6]
     assert out_of_bounds(things, L_ROOM[::-1], 2.5) == [1, 2, 4, 5, 6]
     assert 5 not in out_of_bounds(things, L_ROOM)
+
+
+@pytest.mark.parametrize(
+    ("z", "size", "outside"),
+    [
+        (2.03, 1.0, False),  # 3 cm into the ceiling.
+        (2.05, 1.0, True),  # 5 cm.
+        (0.47, 1.0, False),  # 3 cm into the floor.
+        (0.45, 1.0, True),
+        (1.25, 2.5, False),  # From floor to ceiling.
+        (1.25, 2.6, True),
+    ],
+)
+@pytest.mark.parametrize("floor_z_m", [0.0, 2.8])
+def test_a_box_may_reach_4_cm_into_floor_and_ceiling(z, size, outside, floor_z_m):
+    one = box(1, 1, size=(0.5, 0.5, size), z=z + floor_z_m)
+    assert out_of_bounds([one], L_ROOM, 2.5, floor_z_m=floor_z_m) == ([0] if outside else [])
+
+
+def test_a_room_may_have_three_corners():
+    triangle = np.array([[0, 0], [4, 0], [0, 4]], float)
+    inside = box(0.6, 0.6), box(2.3, 0.6), box(2.5, 2.5)
+    assert out_of_bounds(inside, triangle) == [2]
+    assert out_of_bounds([box(2.5, 0.6, size=(1.2, 1.0, 1.0))], triangle) == [0]
+
+
+def test_a_side_that_cuts_a_corner_is_out_though_all_corners_are_in():
+    across = box(2, 2, size=(2.6, 0.2, 1), yaw_deg=135)
+    assert inside_polygon(plan_corners_m(across), L_ROOM, 0.0).all()
+    assert out_of_bounds([across], L_ROOM) == [0]
+
+
+def test_what_lies_in_line_with_a_wall_but_beyond_it_is_outside():
+    beyond = [(-1, 0), (5, 0), (0, -1), (0, 5), (4, 3), (3, 4), (-1, 4), (4, -1)]
+    for outline in (L_ROOM, L_ROOM[::-1]):
+        assert not inside_polygon(np.array(beyond, float), outline, 0.04).any()
+        assert inside_polygon(L_ROOM, outline, 0.0).all(), "the corners belong to the room"
+
+
+@pytest.mark.parametrize("turns", [0, 1, 2, 3])
+def test_a_quarter_turn_is_a_yaw_of_90_degrees(turns):
+    size_m, center_m = np.array([0.6, 1.0, 0.9]), np.array([1.0, 2.0, 0.45])
+    placed = Placement(1, 10, "counter", center_m, size_m, turns, 0.9)
+    yawed = LayoutObject(10, center_m, size_m, 90.0 * turns)
+    np.testing.assert_allclose(plan_corners_m(placed), plan_corners_m(yawed), atol=1e-12)
+    assert overlap_depth_m(placed, yawed) == pytest.approx(0.6)
 
 
 def test_an_outline_needs_three_corners():

@@ -7,7 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.metrics.objects import count_objects, match_objects, turn_between_deg
+from world2minecraft.metrics.objects import (
+    ObjectCounts,
+    count_objects,
+    match_objects,
+    turn_between_deg,
+)
 from world2minecraft.types import LayoutObject, Placement
 
 
@@ -78,6 +83,38 @@ def test_scenes_add_up():
     assert (both.turns_right, both.turns_asked) == (1, 1)
 
 
+@given(THINGS, THINGS)
+def test_a_scene_of_nothing_adds_nothing_and_absent_classes_have_no_f1(found, true):
+    counts = count_objects(found, true)
+    more = counts + ObjectCounts()
+    assert (more.turns_right, more.turns_asked) == (counts.turns_right, counts.turns_asked)
+    assert more.class_f1.tolist() == counts.class_f1.tolist()
+    assert not counts.class_f1[[1, 6, 7, 11]].any()
+
+
+@pytest.mark.parametrize(("x", "matches"), [(0.5, 1), (0.5000001, 0)])
+def test_what_lies_just_as_far_as_allowed_matches(x, matches):
+    assert len(match_objects([thing(5, 0.0)], [thing(5, x)], distance_m=0.5)) == matches
+
+
+def test_one_is_matched_among_many_that_lie_elsewhere():
+    many = [thing(5, 9.0 + n) for n in range(9)]
+    assert match_objects([thing(5, 0.25)], [*many, thing(5, 0.0)]) == [(0, 9)]
+    assert match_objects([*many, thing(5, 0.0)], [thing(5, 0.25)]) == [(9, 0)]
+
+
+def test_more_matches_go_before_nearer_ones():
+    """Five that are each 29 cm off, though four of them would lie on another's place."""
+    found, true = ([thing(5, 0.29 * (n + m)) for n in range(5)] for m in (0, 1))
+    assert match_objects(found, true) == [(n, n) for n in range(5)]
+
+
+def test_of_two_that_could_match_the_nearer_one_does():
+    assert match_objects([thing(5, 0.1)], [thing(5, 0.3), thing(5, 0.0)]) == [(0, 1)]
+    crossed = match_objects([thing(5, 0.0), thing(5, 0.2)], [thing(5, 0.25), thing(5, 0.05)])
+    assert crossed == [(0, 1), (1, 0)]
+
+
 def test_placements_are_turned_by_quarters():
     place = Placement(
         object_id=1,
@@ -90,6 +127,8 @@ def test_placements_are_turned_by_quarters():
     )
     assert count_objects([place], [thing(5, 0.0, yaw_deg=90)]).turns_right == 1
     assert count_objects([place], [thing(5, 0.0, yaw_deg=270)]).turns_right == 0
+    for yaw_deg, right in ((44, 0), (45, 1), (135, 1), (136, 0)):
+        assert count_objects([place], [thing(5, 0.0, yaw_deg=yaw_deg)]).turns_right == right
 
 
 @given(st.floats(-720, 720), st.floats(-720, 720))

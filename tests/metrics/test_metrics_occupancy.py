@@ -59,6 +59,23 @@ def test_a_confusion_by_hand():
     assert counts.label_accuracy == pytest.approx(3 / 4)
 
 
+def test_every_class_but_empty_counts_for_right_labels():
+    labels = np.array([1, 11, 0, 0], np.uint8)
+    assert count_occupancy(labels, labels).label_accuracy == 1.0
+    assert count_occupancy(labels, np.array([1, 5, 0, 7], np.uint8)).label_accuracy == 0.5
+
+
+@pytest.mark.parametrize(("precision", "recall"), [(0.0, 0.5), (0.5, 0.0), (0.0, 0.0)])
+def test_without_a_hit_there_is_no_iou(precision, recall):
+    assert iou_of_precision_recall(precision, recall) == 0.0
+
+
+@pytest.mark.parametrize("table", [np.zeros((11, 12), int), np.full((12, 12), -1), np.zeros(144)])
+def test_what_is_no_table_of_counts_is_refused(table):
+    with pytest.raises(ValueError, match="table must be 12 x 12 counts"):
+        OccupancyCounts(table)
+
+
 @given(grids(), grids())
 def test_figures_follow_their_definitions(predicted, truth):
     counts = count_occupancy(predicted, truth)

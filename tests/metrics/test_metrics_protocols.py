@@ -100,6 +100,14 @@ def test_a_scene_is_scored_where_any_frame_looked():
     assert counts.geometry.false_negatives == 0  # Nobody looked at the second cell.
 
 
+def test_cells_outside_of_which_nothing_counts_narrow_a_protocol_s_own():
+    """Of the two cells that ssc scores, and the three of its classes, those that are within."""
+    within = line([1, 1, 1, 0, 0, 0], bool)
+    counts = count_frame(PROTOCOLS["ssc"], line(SAID), known(), within)
+    assert (counts.geometry.cells, counts.classes.cells) == (1, 2)
+    assert count_frame(PROTOCOLS["monoscene"], line(SAID), known(), within).geometry.cells == 3
+
+
 def test_missing_masks_and_names_are_told():
     with pytest.raises(UsageError, match="protocol ssc needs in_frustum, seen, free of each frame"):
         count_frame(PROTOCOLS["ssc"], line(SAID), KnownCells(line(TRUTH)))

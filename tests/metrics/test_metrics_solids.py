@@ -1,11 +1,13 @@
 """Collisions told by what is solid, categories and objects that are kept."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import block_to_room
+from world2minecraft.coordinates import apply, block_to_room, invert
 from world2minecraft.furniture import template, templates_of
 from world2minecraft.metrics.layout import (
     category_integrity,
@@ -15,7 +17,14 @@ from world2minecraft.metrics.layout import (
     overlapping_boxes,
 )
 from world2minecraft.metrics.solids import box_m, depth_m, own_cells, solids_m
-from world2minecraft.types import BlockVolume, Layout, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.types import (
+    BlockVolume,
+    Layout,
+    LayoutObject,
+    ObjectInstance,
+    OccupancyGrid,
+    Placement,
+)
 
 NAMES = ["chair", "dining_table", "sofa", "counter", "bookcase", "desk", "double_bed"]
 
@@ -73,6 +82,20 @@ def test_a_back_through_a_thin_top_is_a_collision_though_the_top_is_thinner_than
     assert collisions([table, through]) == [(0, 1)]
 
 
+def test_beside_a_box_of_which_no_parts_are_known_all_of_it_is_solid():
+    """A chair under a table whose parts are known touches nothing; under a mere box it does."""
+    tucked = put(2, "chair", 0.45, 0, turns=2)
+    table = LayoutObject(8, np.array([0, 0, 0.375]), np.array([0.9, 1.6, 0.75]), 0.0)
+    assert collisions([table, tucked]) == [(0, 1)]
+    assert collisions([tucked, table]) == [(0, 1)]
+
+
+def test_parts_that_meet_by_what_is_forgiven_do_not_collide():
+    boxes = [put(1, "box", 0, 0, size=(1, 1, 1)), put(2, "box", 0.75, 0, size=(1, 1, 1))]
+    assert collisions(boxes, 0.25) == []
+    assert collisions(boxes, 0.249) == [(0, 1)]
+
+
 def test_every_template_collides_with_itself_in_the_same_place():
     for class_id in range(5, 12):
         for one in templates_of(class_id):
@@ -90,6 +113,33 @@ def test_own_cells_are_solid_where_they_lie_and_nowhere_else():
     assert collisions([wide, inner]) == [(0, 1)], "without a grid the whole box is solid"
     over = put(3, "box", 0.84, 0.84, size=(0.4, 0.4, 0.4))
     assert collisions([wide, over], grid=grid) == [(0, 1)]
+
+
+def test_own_cells_are_those_whose_centres_lie_in_the_box_wherever_the_grid_begins():
+    """Slow reading: every cell of the object's number, its centre against the box's sides."""
+    random = np.random.default_rng(3)
+    cells = np.unique(random.integers(0, 20, (400, 3)), axis=0)
+    grid = replace(
+        grid_with({1: [tuple(cell) for cell in cells.tolist()], 2: [(0, 0, 19)]}),
+        origin_m=np.array([-0.8, 1.6, -0.08]),
+    )
+    for turns, x in ((0, -0.31), (1, 0.02), (3, 5.0)):
+        placed = Placement(
+            1, 11, "cells", np.array([x, 2.2, 0.6]), np.array([0.7, 1.03, 0.5]), turns, 0
+        )
+        low, high = box_m(placed)
+        middles = grid.origin_m + (cells + 0.5) * grid.voxel_m
+        inside = ((middles >= low) & (middles <= high)).all(axis=1)
+        assert own_cells(placed, grid).tolist() == cells[inside].tolist()
+        boxes = solids_m(placed, grid)
+        np.testing.assert_allclose(boxes.mean(axis=1), middles[inside], atol=1e-9)
+        np.testing.assert_allclose(boxes[:, 1] - boxes[:, 0], grid.voxel_m, atol=1e-9)
+
+
+def test_what_has_no_solid_part_meets_nothing():
+    some, none = np.array([[[0, 0, 0], [1, 1, 1]]], float), np.zeros((0, 2, 3))
+    assert depth_m(some, none) == depth_m(none, some) == depth_m(none, none) == 0.0
+    assert depth_m(some, some) == 1.0
 
 
 def test_an_object_must_lie_in_one_room_and_on_its_storey():
@@ -135,3 +185,48 @@ def test_an_object_is_kept_where_blocks_of_its_number_and_class_stand():
     assert kept_objects(volume(9), [one], grid) == [], "not in its place"
     assert kept_objects(volume(3, number=2), [one], grid) == []
     assert kept_objects(volume(3, class_id=10), [one], grid) == []
+
+
+def slow_share_shown(volume: BlockVolume, one: ObjectInstance, voxel_m: float) -> float:
+    """Of an object's cells, the share that has its block in its place or one step off."""
+    reach_m = max(voxel_m, 1 / volume.blocks_per_metre)
+    shown = 0
+    for cell in one.cells:
+        middle_m = (cell + 0.5) * voxel_m
+        places = [middle_m]
+        for axis in range(3):
+            places += [middle_m + sign * reach_m * np.eye(3)[axis] for sign in (-1, 1)]
+        blocks = [
+            np.floor(apply(invert(volume.block_to_room), at) - volume.corner) for at in places
+        ]
+        shown += any(
+            (volume.instance[at], volume.semantic[at]) == (one.id, one.class_id)
+            for at in (tuple(int(index) for index in block) for block in blocks)
+            if all(0 <= index < size for index, size in zip(at, volume.states.shape, strict=True))
+        )
+    return shown / len(one.cells)
+
+
+@pytest.mark.parametrize("blocks_per_metre", [4.0, 20.0])
+@given(st.integers(0, 10_000))
+def test_kept_is_what_a_slow_reading_keeps(blocks_per_metre, seed):
+    """Thin blocks of two classes and numbers, some at the edge of the volume; cells beyond it."""
+    random = np.random.default_rng(seed)
+    shape = (8, 5, 7)
+    full = random.random(shape) < 0.08
+    semantic = np.where(full, random.integers(10, 12, shape), 0).astype(np.uint8)
+    instance = np.where(full, random.integers(1, 3, shape), 0).astype(np.uint16)
+    to_room = block_to_room(np.array([0.013, 1.517]), blocks_per_metre)
+    palette = ("minecraft:air", "minecraft:stone")
+    corner = (0, 63, int(random.integers(-1, 3)))
+    volume = BlockVolume(full.astype(np.uint16), palette, semantic, instance, corner, to_room)
+    low, high = np.array([-0.2, 0.3, -0.3]), np.array([8 / blocks_per_metre, 1.6, 1.0])
+    grid = grid_with({})
+    for least in (0.25, 0.5):
+        for number in (1, 2):
+            cells = np.unique(random.integers(low / 0.08, high / 0.08, (6, 3)), axis=0)
+            one = ObjectInstance(
+                number, 11, np.ones(3), np.ones(3), 0, cells.astype(np.int32).clip(0), 1
+            )
+            kept = slow_share_shown(volume, one, 0.08) >= least
+            assert kept_objects(volume, [one], grid, least) == ([0] if kept else [])

@@ -9,6 +9,8 @@ from hypothesis.extra import numpy as stn
 from world2minecraft.metrics.surface import SurfaceCounts, count_surface, free_space_recall
 
 SETS = stn.arrays(np.bool_, (4, 3, 5))
+HOW = [("chebyshev", 0), ("chebyshev", 1), ("chebyshev", 2)]
+HOW += [("euclidean", 0), ("euclidean", 1), ("euclidean", 1.5)]
 
 
 def slow_near(cells, others, within, distance):
@@ -22,7 +24,7 @@ def slow_near(cells, others, within, distance):
     return near
 
 
-@given(SETS, SETS, st.sampled_from([("chebyshev", 1), ("euclidean", 1), ("euclidean", 1.5)]))
+@given(SETS, SETS, st.sampled_from(HOW))
 def test_counts_follow_their_definition(found, true, how):
     distance, within = how
     counts = count_surface(found, true, within_cells=within, distance=distance)
@@ -60,6 +62,14 @@ def test_a_mask_chooses_what_counts_but_not_what_is_near():
     only_last = np.array([[[0, 1, 0, 0]]], bool)
     counts = count_surface(found, true, found_mask=only_last)
     assert (counts.found, counts.found_near, counts.true, counts.true_near) == (1, 1, 2, 1)
+    counts = count_surface(found, true, true_mask=np.array([[[1, 0, 0, 1]]], bool))
+    assert (counts.found, counts.found_near, counts.true, counts.true_near) == (2, 1, 1, 0)
+
+
+@given(SETS, SETS)
+def test_nothing_counted_adds_nothing(found, true):
+    counts = count_surface(found, true)
+    assert counts + SurfaceCounts() == counts
 
 
 def test_figures_by_hand():

@@ -82,6 +82,12 @@ def test_a_quarter_turn_turns_the_result():
     assert np.array_equal(turned, np.rot90(straight, 1, axes=(0, 1)))
 
 
+def test_a_truth_of_the_same_cells_comes_through_as_it_is():
+    fine = random_fine(9, (5, 4, 3))
+    found = carry_truth(fine, 0.08, np.zeros(3), np.eye(4), fine.shape, np.zeros(3), 0.08)
+    np.testing.assert_array_equal(found, fine)
+
+
 def test_scored_are_the_reached_cells_that_the_truth_knows():
     truth = np.array([[[0, 3, 255, 2]]], np.uint8)
     source = np.array([[[1, 0, 1, 2]]], np.uint8)
