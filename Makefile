@@ -22,7 +22,8 @@ ifneq ($(shell $(BIN)/python -c 'print("runs")' 2>/dev/null),runs)
 $(shell rm -f $(STAMP))
 endif
 
-.PHONY: help demo docs forge test test-live test-server test-trainers release-check lint bench setup clean
+.PHONY: help demo docs forge test test-live test-server test-trainers mutants release-check lint bench
+.PHONY: setup clean
 .DEFAULT_GOAL := help
 
 help:  ## Show the targets.
@@ -69,6 +70,14 @@ test-server: $(STAMP)  ## Walk by a player on a real server and hold it against 
 
 test-trainers: $(STAMP)  ## Train on exports with LLaMA-Factory and TRL, on the CPU (fetches 3 GB to .trainers/).
 	@$(BIN)/python -m pytest -m trainers -rP tests/trainers
+
+mutants: $(STAMP)  ## Put small faults into the code: which does no test notice? (ONLY=coordinates for a group)
+	@test -d .mutants/cosmic_ray || if command -v uv >/dev/null 2>&1; then \
+	  uv pip install --quiet --no-deps --target .mutants cosmic-ray==8.7.0 parso==0.8.7; \
+	else \
+	  $(BIN)/python -m pip install --quiet --no-deps --target .mutants cosmic-ray==8.7.0 parso==0.8.7; \
+	fi
+	@$(BIN)/python -m tools.mutants $(if $(ONLY),--only $(ONLY))
 
 release-check: $(STAMP)  ## Build wheel and sdist, install each Python's from the wheel alone, run the demo.
 	@$(BIN)/python tools/release/check.py
