@@ -1,6 +1,7 @@
 """The completion network against the truth of virtual scans it has never seen.
 
-``python -m benchmarks.check_completion [--seeds 3 --rooms 6] [--weights FILE] [--keep FOLDER]``
+``python -m benchmarks.check_completion [--seeds 3 --rooms 6] [--weights FILE] [--keep FOLDER]
+[--json FILE]``
 
 Each seed is a set of rooms of its own (from 8,000 on, which training never takes), scanned with
 the noise that the samples have: the share of fused surface cells that are empty in the truth is
@@ -15,6 +16,7 @@ import argparse
 import resource
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -22,6 +24,7 @@ from rich.table import Table
 from scipy import ndimage
 
 from world2minecraft.classes import CLASS_NAMES, UNKNOWN
+from world2minecraft.files import write_json
 from world2minecraft.label.channels import Sight
 from world2minecraft.label.completion_net import CompletionModel, likeliest
 from world2minecraft.learn.completion.samples import (
@@ -38,6 +41,7 @@ from world2minecraft.metrics.occupancy import (
 
 FIRST_SEED, SEEDS_APART = 8_000, 100
 BANDS = ((0.0, 0.25), (0.25, 0.55), (0.55, 1.0))
+COLUMNS = ("all", "observed", "unseen", "observed, near")
 WHO = ("surface", "geometric", "votes", "completion", "ceiling")
 STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15  # Of ``label/votes.py``.
 ROOT = Path(__file__).resolve().parents[1]
@@ -154,6 +158,7 @@ def main() -> None:
     parser.add_argument("--rooms", type=int, default=6)
     parser.add_argument("--weights", type=Path)
     parser.add_argument("--keep", type=Path, help="a folder for the scans, to run again sooner")
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
     chosen = parser.parse_args()
     model, console = CompletionModel(chosen.weights), Console(width=150)
     per_seed, false, spent = [], [], []
@@ -176,19 +181,35 @@ def main() -> None:
     print(f"a room took {np.median(spent):.2f} s, {np.max(spent):.2f} at most; peak {peak:.0f} MB")
     console.print(score_table(per_seed))
     console.print(class_table(per_seed))
+    if chosen.json:
+        cost = {"median_s": float(np.median(spent)), "peak_mb": peak}
+        write_json(chosen.json, cost | figures_told(per_seed))
+
+
+def figures_told(per_seed: list[Scores]) -> dict[str, Any]:
+    """Return means over the seeds in percent: ``scores`` by scans, who and cells, and classes."""
+    scores: dict[str, Any] = {}
+    keys = sorted({(group, who) for one in per_seed for who, group, _ in one.exact})
+    for group, who in keys:
+        there = [one for one in per_seed if (who, group, "all") in one.exact]
+        for column in COLUMNS:
+            mean = 100 * np.mean([figures(one, who, group, column) for one in there], axis=0)
+            told = scores.setdefault(group, {}).setdefault(who, {})
+            told[column] = {"iou": float(mean[0]), "miou": float(mean[1])}
+    classes = dict(zip(CLASS_NAMES[1:], map(float, class_iou(per_seed, "completion")), strict=True))
+    return {"scores": scores, "observed classes": classes}
 
 
 def score_table(per_seed: list[Scores]) -> Table:
     """Return IoU / mIoU by scans, cells and who answered."""
-    columns = ("all", "observed", "unseen", "observed, near")
-    table = Table("scans", "who", *columns, box=None)
+    table = Table("scans", "who", *COLUMNS, box=None)
     names = sorted({group for scores in per_seed for _, group, _ in scores.exact})
     for group in names:
         for who in WHO:
             if not any((who, group, "all") in scores.exact for scores in per_seed):
                 continue
             cells = []
-            for column in columns:
+            for column in COLUMNS:
                 values = [
                     figures(scores, who, group, column)
                     for scores in per_seed
@@ -217,12 +238,17 @@ def class_table(per_seed: list[Scores]) -> Table:
     """Return the IoU of each class on observed cells of aligned multi-view scans."""
     table = Table("observed, multi", *CLASS_NAMES[1:], box=None)
     for who in ("geometric", "completion"):
-        total = sum(
-            (s.exact.get((who, "multi", "observed"), OccupancyCounts()) for s in per_seed),
-            OccupancyCounts(),
-        )
-        table.add_row(who, *(f"{100 * value:.0f}" for value in total.class_iou[1:]))
+        table.add_row(who, *(f"{value:.0f}" for value in class_iou(per_seed, who)))
     return table
+
+
+def class_iou(per_seed: list[Scores], who: str) -> list[float]:
+    """Return the IoU of each class but empty, in percent, over the observed cells of all seeds."""
+    total = sum(
+        (s.exact.get((who, "multi", "observed"), OccupancyCounts()) for s in per_seed),
+        OccupancyCounts(),
+    )
+    return [100 * float(value) for value in total.class_iou[1:]]
 
 
 if __name__ == "__main__":

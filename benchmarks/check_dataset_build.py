@@ -1,8 +1,10 @@
-"""How fast data sets are made: ``python -m benchmarks.check_dataset_build [--only NAME]``.
+"""How fast data sets are made: ``python -m benchmarks.check_dataset_build``.
 
 - ``small``: the issue's command, 2,000 images of 640x480 of 40 generated houses on all cores.
 - ``large``: a slice at the paper's 1920x1129, told for its 100,165 images.
 - ``labels``: the same slice, labels and masks alone.
+
+``--only NAME`` takes one of them, ``--json FILE`` writes the figures too.
 
 CPU times are of all processes together, by stage; hours are those of two cores. Houses and views
 of the large slices are told apart, since the paper's sets have many more images a house.
@@ -18,6 +20,7 @@ from world2minecraft.dataset.building import TITLES, BuildReport, build_dataset
 from world2minecraft.dataset.engine import opened_engine
 from world2minecraft.dataset.plan import Recipe, house_scenes, plan_dataset
 from world2minecraft.dataset.tours import paper_camera
+from world2minecraft.files import write_json
 from world2minecraft.render.batch.hands import usual_workers
 
 PAPER_IMAGES = 100_165
@@ -32,8 +35,8 @@ def built(folder: Path, houses: int, images: int, recipe: Recipe, jobs: int) -> 
         return build_dataset(folder, plan, engine)
 
 
-def told(title: str, report: BuildReport, images: int) -> None:
-    """Print CPU milliseconds an image by stage, and what so many images take on two cores."""
+def told(title: str, report: BuildReport, images: int) -> dict[str, float]:
+    """Print and return CPU milliseconds an image by stage, and hours of two cores for so many."""
     each = report.milliseconds
     print(f"{title}: {report.made:,} images in {report.seconds:.0f} s")
     for stage, name in TITLES.items():
@@ -41,6 +44,7 @@ def told(title: str, report: BuildReport, images: int) -> None:
         print(f"  {name:18} {each[stage]:7.1f} ms{budget}")
     hours = each["all"] * images / 1000 / 3600 / 2
     print(f"  {'all':18} {each['all']:7.1f} ms: {images:,} images in {hours:.2f} h on two cores")
+    return {**each, "seconds": report.seconds, "hours": hours}
 
 
 def peak_mb() -> float:
@@ -56,27 +60,30 @@ def main() -> int:
     options.add_argument("--houses", type=int, default=40, help="of the small case")
     options.add_argument("--slice", type=int, default=120, help="images of the large cases")
     options.add_argument("--jobs", type=int, default=usual_workers())
+    options.add_argument("--json", type=Path, help="write the figures to this file")
     words = options.parse_args()
-    cases, is_late = words.only or list(CASES), False
+    cases, is_late, kept = words.only or list(CASES), False, {}
     large = Recipe(camera=paper_camera())
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         if "small" in cases:
             report = built(folder / "small", words.houses, words.images, Recipe(), words.jobs)
-            told("640x480", report, words.images)
+            kept["small"] = told("640x480", report, words.images)
             size = sum(path.stat().st_size for path in (folder / "small").rglob("*.tar"))
             print(f"  {size / words.images / 1e3:.0f} kB an image, {peak_mb():.0f} MB a process")
             is_late = report.seconds > 60 * BUDGET_MINUTES
         if "large" in cases:
             report = built(folder / "large", 1, words.slice, large, words.jobs)
-            told("1920x1129", report, PAPER_IMAGES)
+            kept["large"] = told("1920x1129", report, PAPER_IMAGES)
             size = sum(path.stat().st_size for path in (folder / "large").rglob("*.tar"))
             print(f"  {size / words.slice / 1e3:.0f} kB an image, {peak_mb():.0f} MB a process")
             is_late |= report.milliseconds["all"] > BUDGET_ALL_MS
         if "labels" in cases:
             bare = replace(large, pictures=False)
             report = built(folder / "labels", 1, words.slice, bare, words.jobs)
-            told("1920x1129, labels alone", report, PAPER_IMAGES)
+            kept["labels"] = told("1920x1129, labels alone", report, PAPER_IMAGES)
+    if words.json:
+        write_json(words.json, kept)
     return 1 if is_late else 0
 
 

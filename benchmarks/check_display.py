@@ -1,6 +1,6 @@
 """How many display entities does furniture take, and is it exact?
 
-``python -m benchmarks.check_display [--picture display.png]``
+``python -m benchmarks.check_display [--picture display.png] [--json FILE]``
 
 Each design of the library is made at its smallest, usual and largest size, turned by 20 degrees,
 and written as entities. ``wrong`` is, at the usual size, the share of 2 cm cells of its own frame
@@ -21,7 +21,7 @@ from world2minecraft.build.display.builder import most_pieces
 from world2minecraft.build.display.frame import Frame, entities_of
 from world2minecraft.build.display.pieces import pieces_of
 from world2minecraft.coordinates import apply, block_to_room, invert, look_at
-from world2minecraft.files import write_bytes
+from world2minecraft.files import write_bytes, write_json
 from world2minecraft.furniture import TEMPLATES, Template, cells_of, template
 from world2minecraft.geometry.boxes import partition
 from world2minecraft.geometry.covers import few_boxes
@@ -158,11 +158,15 @@ def main() -> None:
     """Print the tables, and draw the picture."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--picture", type=Path)
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
     chosen = parser.parse_args()
     names = list(TEMPLATES.names())
     console = Console(width=110)
-    console.print(design_table([row_of(name) for name in names]))
+    rows = [row_of(name) for name in names]
+    console.print(design_table(rows))
     console.print(shape_table())
+    if chosen.json is not None:
+        write_json(chosen.json, [row._asdict() for row in rows])
     if chosen.picture is not None:
         write_bytes(chosen.picture, as_png(picture(names)))
 

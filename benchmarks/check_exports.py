@@ -1,4 +1,6 @@
-"""Do trainers' own loaders find our labels?  ``python -m benchmarks.check_exports [DATA]``.
+"""Do trainers' own loaders find our labels?
+
+``python -m benchmarks.check_exports [DATA] [--json FILE]``
 
 A data set (40 views of four generated houses where none is named) is exported as NYUv2 and as
 OccScanNet, and read again by a loader that is written from the description of those formats alone
@@ -28,7 +30,7 @@ from world2minecraft.dataset.plan import house_scenes, plan_dataset
 from world2minecraft.dataset.showing import cells_behind
 from world2minecraft.dataset.store import open_store
 from world2minecraft.dataset.values import OccSample
-from world2minecraft.files import read_json
+from world2minecraft.files import read_json, write_json
 
 HOUSES, IMAGES = 4, 40
 NUDGE_M = 0.02  # Behind a surface, as far as ``cells_behind`` looks.
@@ -51,8 +53,8 @@ def count(sample: OccSample, loaded: page_loader.Loaded, matrix: np.ndarray, sum
     sums["pixels with the same label"] += int((found.reshape(-1)[pixels] == own).sum())
 
 
-def check(name: str, samples: list[OccSample], load: Load, console: Console) -> int:
-    """Count all samples of one format, print the table; return how many labels differ."""
+def check(name: str, samples: list[OccSample], load: Load, console: Console) -> Counter:
+    """Count all samples of one format, print the table; return the counts."""
     sums: Counter = Counter()
     for sample in samples:
         loaded = load(sample)
@@ -61,14 +63,16 @@ def check(name: str, samples: list[OccSample], load: Load, console: Console) -> 
     for what, number in sums.items():
         table.add_row(what, f"{number:,}")
     console.print(table, "")
-    return sums["labels that differ"]
+    return sums
 
 
 def main() -> int:
     """Print the tables; return the exit code."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("data", nargs="?", type=Path, help="a data set with pictures")
-    data, wrong = parser.parse_args().data, 0
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
+    chosen = parser.parse_args()
+    data = chosen.data
     with tempfile.TemporaryDirectory() as place:
         if data is None:
             data = Path(place) / "DATA"
@@ -86,9 +90,10 @@ def main() -> int:
             ),
         }
         console = Console(width=110)
-        for name, load in loads.items():
-            wrong += check(name, samples, load, console)
-    return int(wrong > 0)
+        counts = {name: check(name, samples, load, console) for name, load in loads.items()}
+    if chosen.json:
+        write_json(chosen.json, counts)
+    return int(any(sums["labels that differ"] for sums in counts.values()))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Shape fitting on generated rooms, against plain cubes at their best threshold in the same run.
 
-``python -m benchmarks.check_fitting [--first 2000 --rooms 20 --scales 1,2,4,12.5 --pictures DIR]``
+``python -m benchmarks.check_fitting [--first 2000 --rooms 20 --scales 1,2,4,12.5 --pictures DIR]
+[--json FILE]``
 
 Rows: the furniture of a whole room where it stands, from 2 cm voxels and from 8 cm cells; then
 every object in its own frame, in its snapped place. ``--pictures`` writes a page for each scale:
@@ -10,6 +11,7 @@ the same rooms built of cubes and of the calm set, side by side.
 import argparse
 from collections import defaultdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -30,6 +32,7 @@ from benchmarks.fitting_rooms import (
     objects_of,
     solid,
 )
+from world2minecraft.files import write_json
 from world2minecraft.rooms import generate_room
 
 THRESHOLDS = (0.1, 0.3, 0.5, None)
@@ -83,6 +86,16 @@ def table(rows: Rows) -> Table:
     return page
 
 
+def figures(rows: Rows) -> list[dict[str, Any]]:
+    """Return the table's figures: means over the rooms; of what is counted, the sums."""
+    told = []
+    for (scale, name), scores in sorted(rows.items()):
+        mean = Score(*np.mean(scores, axis=0).tolist())
+        counts = {key: sum(getattr(one, key) for one in scores) for key in ("unstable", "loose")}
+        told.append({"scale": scale, "what": name, **mean._asdict(), **counts})
+    return told
+
+
 def _asked(scale: float, name: str) -> tuple[str, str]:
     whole, coarse_iou, thin, single = TARGETS.get(scale, (None,) * 4)
     asked = {
@@ -101,6 +114,7 @@ def main() -> None:
     parser.add_argument("--rooms", type=int, default=20)
     parser.add_argument("--scales", default="1,2,4,12.5")
     parser.add_argument("--pictures", type=Path)
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
     chosen = parser.parse_args()
     scales = [float(text) for text in chosen.scales.split(",")]
     console, rows = Console(width=100), defaultdict(list)
@@ -109,6 +123,8 @@ def main() -> None:
         check_room(seed, scales, rows)
         console.print(f"room {seed}", style="dim")
     console.print(table(rows))
+    if chosen.json:
+        write_json(chosen.json, figures(rows))
     if chosen.pictures:
         for path in fitting_pages.write_pages(chosen.pictures, list(seeds), scales):
             console.print(str(path))

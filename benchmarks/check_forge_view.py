@@ -1,6 +1,7 @@
 """How soon, and how smoothly, does SceneForge draw a scene on software GL?
 
-``python -m benchmarks.check_forge_view [--pictures FOLDER] [--scenes demo room house building]``
+``python -m benchmarks.check_forge_view [--pictures FOLDER] [--scenes demo room house building]
+[--json FILE]``
 
 Needs node (the page is built for this), playwright and a chromium. ``demo`` is the demo room in the
 whole editor, by the bundle that is committed. The other scenes are made here and drawn alone:
@@ -246,7 +247,7 @@ def wake(browser: Any) -> None:
     page.close()
 
 
-def demo_rows(browser: Any, pictures: Path | None) -> Iterator[list[str]]:
+def demo_rows(browser: Any, pictures: Path | None) -> Iterator[dict[str, Any]]:
     """Yield the figures of the demo room in the whole editor: a browser's first page, and a later.
 
     Software GL compiles what it draws shadows, icons and letters with for the first page that has
@@ -263,12 +264,8 @@ def demo_rows(browser: Any, pictures: Path | None) -> Iterator[list[str]]:
             for name in ("demo, first page", "demo"):
                 page = browser.new_context(bypass_csp=True, viewport=SCREEN).new_page()
                 picture = pictures / "demo.png" if pictures else None
-                yield [
-                    name,
-                    "SceneForge",
-                    f"{cells:,}",
-                    *_told(measure(page, server.link, picture)),
-                ]
+                found = measure(page, server.link, picture)
+                yield {"scene": name, "by": "SceneForge", "cells": cells, **found}
                 page.context.close()
         editor.close()
 
@@ -281,17 +278,16 @@ def main() -> None:
     parser.add_argument("--pictures", type=Path)
     parser.add_argument("--scenes", nargs="+", choices=("demo", *SCENES), default=["demo", *SCENES])
     parser.add_argument("--alone", action="store_true", help="without the drawings a voxel")
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
     options = parser.parse_args()
-    columns = ("scene", "drawn by", "cells", "first s", "whole s", "moving ms", "inside ms")
-    table = Table(*columns, "scale", "quads", "MB")
+    rows: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
         build(Path(folder))
         browser = play.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
         wake(browser)
         for name in options.scenes:
             if name == "demo":
-                for row in demo_rows(browser, options.pictures):
-                    table.add_row(*row)
+                rows += demo_rows(browser, options.pictures)
                 continue
             labels = scene_of(SCENES[name])
             server = serve(Path(folder), labels)
@@ -302,15 +298,27 @@ def main() -> None:
                 page = browser.new_page(viewport=SCREEN)
                 picture = options.pictures / f"{name}.png" if options.pictures else None
                 found = measure(page, url + (f"?each={how}" if how else ""), picture)
-                table.add_row(name, how or "SceneForge", f"{(labels > 0).sum():,}", *_told(found))
+                cells = int((labels > 0).sum())
+                rows.append({"scene": name, "by": how or "SceneForge", "cells": cells, **found})
                 page.close()
             server.shutdown()
         browser.close()
-    Console(width=120).print(table)
+    if options.json:
+        options.json.write_text(json.dumps(rows, indent=1) + "\n")
+    Console(width=120).print(table_of(rows))
     Console().print(f"load of the machine: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
 
 
-def _told(found: dict[str, float]) -> list[str]:
+def table_of(rows: list[dict[str, Any]]) -> Table:
+    """Return the figures as a table."""
+    columns = ("scene", "drawn by", "cells", "first s", "whole s", "moving ms", "inside ms")
+    table = Table(*columns, "scale", "quads", "MB")
+    for row in rows:
+        table.add_row(row["scene"], row["by"], f"{row['cells']:,}", *_told(row))
+    return table
+
+
+def _told(found: dict[str, Any]) -> list[str]:
     digits = {"first": 2, "whole": 2, "moving": 0, "inside": 0, "scale": 2, "quads": 0, "mb": 1}
     return [f"{found[key]:,.{n}f}" if key in found else "" for key, n in digits.items()]
 

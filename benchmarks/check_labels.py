@@ -1,6 +1,6 @@
 """Are labels and masks what slow references say, and do they say what the id buffer says?
 
-``python -m benchmarks.check_labels [--frames 200 --size 160 120] [--spoil]``
+``python -m benchmarks.check_labels [--frames 200 --size 160 120] [--spoil] [--json FILE]``
 
 People stand in generated houses. Each frame is drawn by the renderer and labelled; then a caster in
 float64 that knows nothing of the kernels (``tests/render/oracle.py``) casts each pixel anew, and
@@ -18,6 +18,7 @@ three cells wide; where blocks' borders cross cells, some pixels of a cell show 
 import argparse
 import sys
 from collections import Counter
+from pathlib import Path
 
 import numpy as np
 from rich.console import Console
@@ -33,6 +34,7 @@ from world2minecraft.dataset.labels import (
 )
 from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.values import LabelRegion, OccLabels, SceneVoxels
+from world2minecraft.files import write_json
 from world2minecraft.render import Picture, render_volume
 from world2minecraft.render.looks import OwnLooks
 from world2minecraft.types import Camera
@@ -122,6 +124,7 @@ def main() -> int:
     parser.add_argument("--frames", type=int, default=200)
     parser.add_argument("--size", type=int, nargs=2, default=(160, 120))
     parser.add_argument("--spoil", action="store_true", help="prove that the check can fail")
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
     chosen = parser.parse_args()
     console = Console(width=110)
     camera = resized(NYU, chosen.size[0])
@@ -142,6 +145,8 @@ def main() -> int:
         console.print(table, "")
     wrong = sum(number for what, number in counts.items() if "wrong" in what)
     console.print(f"{wrong} cells differ" if wrong else "no cell of any frame differs")
+    if chosen.json:
+        write_json(chosen.json, {"counts": counts, "ids": ids, "wrong": wrong})
     return int(wrong > 0)
 
 

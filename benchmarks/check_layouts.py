@@ -17,6 +17,7 @@ from world2minecraft.compare import ComparedScene, score_scene, summary_of
 from world2minecraft.compare.importers import How, read_layouts_of
 from world2minecraft.compare.table import NOTES, layout_table, other_table
 from world2minecraft.compare.truths import true_scene
+from world2minecraft.files import write_json
 from world2minecraft.vln.running.tables import markdown_of, text_of
 
 EXPECTED = {"reaching_out": 0.138, "scenes_reaching_out": 0.511, "overlaps": 1.57}
@@ -32,6 +33,7 @@ def main(words: list[str]) -> int:
     parser.add_argument("--runs", type=Path)
     parser.add_argument("--clean", action="store_true", help="the clean trials, too")
     parser.add_argument("--markdown", action="store_true")
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
     options = parser.parse_args(words)
     told, missed = {}, 0
     if options.layoutgpt:
@@ -47,6 +49,8 @@ def main(words: list[str]) -> int:
         missed += sum(check_ours(name, row) for name, row in found.items())
     if not told:
         parser.error("give --layoutgpt FILE or --runs DIR")
+    if options.json:
+        write_json(options.json, told)
     write = markdown_of if options.markdown else text_of
     print(write(layout_table(told)), write(other_table(told)), "\n".join(NOTES), sep="\n\n")
     return int(missed > 0)

@@ -7,7 +7,7 @@ Each capture is reconstructed from depth (the reference; for generated rooms noi
 exact poses), from colour with the stated poses, from colour alone, and with OpenCV's StereoSGBM
 in place of our stereo. Printed are, within one voxel: precision, recall over all occupied cells,
 the share of free cells found free, the share of occupied cells called free, the scale's error,
-CPU seconds, wall seconds and peak memory.
+CPU seconds, wall seconds and peak memory. ``--json FILE`` writes them too.
 """
 
 import argparse
@@ -36,22 +36,27 @@ def main() -> None:
     parser.add_argument("--work", type=Path, default=Path("OUT-photos"))
     parser.add_argument("--ways", default="posed,unposed,posed-sgbm,unposed-sgbm")
     parser.add_argument("--every", type=int, default=1, help="take each n-th frame of the kitchen")
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
     chosen = parser.parse_args()
-    ways = chosen.ways.split(",")
+    ways, told = chosen.ways.split(","), {}
     print(" ".join([f"{'capture':24}", *(f"{name[:16]:>16}" for name in COLUMNS)]), end="")
     print(f"{'scale':>9}{'CPU s':>8}{'wall s':>8}{'MB':>7}")
     if chosen.kitchen:
         folder = chosen.work / "kitchen"
         kitchen_inputs(chosen.kitchen, folder, chosen.every)
-        report("kitchen", folder, ways)
+        told["kitchen"] = report("kitchen", folder, ways)
     rows = []
     for seed in range(chosen.first, chosen.first + chosen.seeds):
         folder = chosen.work / f"room-{seed}"
         room_inputs(seed, folder, chosen.frames)
         rows.append(report(f"room {seed}", folder, ways))
     for way in ways if rows else ():
-        mean = {name: np.mean([row[way][name] for row in rows if way in row]) for name in COLUMNS}
+        mine = [row[way] for row in rows if way in row]
+        mean = {name: float(np.mean([row[name] for row in mine])) for name in COLUMNS}
+        told.setdefault("mean", {})[way] = mean
         print(" ".join([f"{'mean, ' + way:24}", *(f"{mean[name]:16.3f}" for name in COLUMNS)]))
+    if chosen.json:
+        chosen.json.write_text(json.dumps(told, indent=1) + "\n")
 
 
 def report(name: str, folder: Path, ways: list[str]) -> dict[str, dict[str, float]]:
@@ -78,6 +83,8 @@ def report(name: str, folder: Path, ways: list[str]) -> dict[str, dict[str, floa
         row = rows[way] = compare(reference, out, carry)
         cells = " ".join(f"{row[column]:16.3f}" for column in COLUMNS)
         off = f"{100 * (1 / scale - 1):+8.1f}%" if scale else " " * 9
+        row |= dict(zip(("CPU s", "wall s", "MB"), cost, strict=True))
+        row |= {"scale off": abs(1 / scale - 1)} if scale else {}
         print(f"{name + ', ' + way:24} {cells}{off}{cost[0]:8.0f}{cost[1]:8.0f}{cost[2]:7.0f}")
     return rows
 

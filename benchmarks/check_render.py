@@ -1,6 +1,6 @@
 """Does the ray caster see what a slow float64 caster sees? Ids, faces and depth, pixel by pixel.
 
-``python -m benchmarks.check_render [--poses 6 --size 320 240] [--spoil]``
+``python -m benchmarks.check_render [--poses 6 --size 320 240] [--spoil] [--json FILE]``
 
 Scenes: a generated room built at 4 and 2 blocks a metre and as display entities, flats full of
 furniture, and a heap of odd models (turned, flat, hollow, perforated boxes, glass). Cameras stand
@@ -13,6 +13,7 @@ fail.
 import argparse
 import sys
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +23,7 @@ from tests.render.oracle import has_face, oracle_picture
 
 from benchmarks.odd_looks import OddLooks, odd_volume
 from benchmarks.render_scenes import camera_of, poses, room, scene_looks, small
+from world2minecraft.files import write_json
 from world2minecraft.render import Picture, prepare_scene, render_volume
 from world2minecraft.render.elements import LookSource
 from world2minecraft.types import BlockVolume, Camera
@@ -117,16 +119,20 @@ def main() -> int:
     parser.add_argument("--poses", type=int, default=6)
     parser.add_argument("--size", type=int, nargs=2, default=(320, 240))
     parser.add_argument("--spoil", action="store_true", help="prove that the check can fail")
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
     chosen = parser.parse_args()
     table = Table("scene", "pixels", "equal ids", "median depth error", "worst", "", box=None)
-    failed = False
+    failed, kept = False, []
     for name, row in results(chosen.poses, tuple(chosen.size), chosen.spoil):
         failed |= not row.holds
+        kept.append({"scene": name, **row._asdict()})
         table.add_row(
             name, f"{row.pixels:,}", f"{row.equal:.4%}", f"{row.median_m:.1e} m",
             f"{row.worst_m:.1e} m", "ok" if row.holds else "WRONG",
         )  # fmt: skip
     Console(width=120).print(table)
+    if chosen.json:
+        write_json(chosen.json, kept)
     return int(failed)
 
 

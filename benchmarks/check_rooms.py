@@ -1,6 +1,7 @@
 """Generated rooms, scanned with the sensor model and rebuilt, against their truth.
 
-``python -m benchmarks.check_rooms [--first 100 --rooms 10 --frames 40 --keep FOLDER]``
+``python -m benchmarks.check_rooms [--first 100 --rooms 10 --frames 40 --keep FOLDER]
+[--json FILE]``
 
 Each room is reconstructed twice: with the ``geometric`` labeller, and with its 2D label images of
 which a tenth is wrong. The table is that of the report; figures are means over the rooms.
@@ -14,6 +15,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from world2minecraft.files import write_json
 from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct
 from world2minecraft.report import write_report
@@ -57,6 +59,7 @@ def main() -> None:
     parser.add_argument("--rooms", type=int, default=10)
     parser.add_argument("--frames", type=int, default=40)
     parser.add_argument("--keep", type=Path)
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
     chosen = parser.parse_args()
     base = chosen.keep or Path(tempfile.mkdtemp())
     rows: dict[str, list[dict[str, float]]] = {"geometric": [], "votes": []}
@@ -71,10 +74,15 @@ def main() -> None:
         for labeller, found in rows.items():
             found.append(score(capture, base / f"{labeller}{seed}", labeller))
             table.add_row(f"{seed} {kind}", labeller, *(f"{found[-1][c]:.3f}" for c in COLUMNS))
-    for labeller, found in rows.items():
-        means = (np.nanmean([row[column] for row in found]) for column in COLUMNS)
-        table.add_row("mean", labeller, *(f"{value:.3f}" for value in means))
+    means = {
+        labeller: {column: float(np.nanmean([row[column] for row in found])) for column in COLUMNS}
+        for labeller, found in rows.items()
+    }
+    for labeller, mean in means.items():
+        table.add_row("mean", labeller, *(f"{value:.3f}" for value in mean.values()))
     Console(width=170).print(table)
+    if chosen.json:
+        write_json(chosen.json, means)
 
 
 if __name__ == "__main__":

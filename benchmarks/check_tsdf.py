@@ -1,6 +1,6 @@
 """A reconstruction against an independent TSDF of the same room.
 
-``python -m benchmarks.check_tsdf FRAMES OUT [--every N --first K]``
+``python -m benchmarks.check_tsdf FRAMES OUT [--every N --first K] [--json FILE]``
 
 FRAMES is a folder of 7-Scenes frames, read here by plain numpy and Pillow, with nothing of the
 program but ``scan_to_room`` of OUT/room.npz. The TSDF (4 cm cells, 12 cm truncation, equal
@@ -10,6 +10,7 @@ reference voxels; and of the reference's free cells the share found free.
 """
 
 import argparse
+import json
 from pathlib import Path
 
 import numpy as np
@@ -105,10 +106,14 @@ def main() -> None:
     parser.add_argument("out", type=Path)
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
     chosen = parser.parse_args()
     frames = read_frames(chosen.frames, chosen.every, chosen.first)
-    for name, value in compare(frames, chosen.out / "room.npz").items():
+    figures = compare(frames, chosen.out / "room.npz")
+    for name, value in figures.items():
         print(f"{name:28} {value:.4f}" if isinstance(value, float) else f"{name:28} {value}")
+    if chosen.json:
+        chosen.json.write_text(json.dumps(figures, indent=1) + "\n")
 
 
 if __name__ == "__main__":
