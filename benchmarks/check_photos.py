@@ -49,7 +49,8 @@ def main() -> None:
     for seed in range(chosen.first, chosen.first + chosen.seeds):
         folder = chosen.work / f"room-{seed}"
         room_inputs(seed, folder, chosen.frames)
-        rows.append(report(f"room {seed}", folder, ways))
+        told[f"room {seed}"] = report(f"room {seed}", folder, ways)
+        rows.append(told[f"room {seed}"])
     for way in ways if rows else ():
         mine = [row[way] for row in rows if way in row]
         mean = {name: float(np.mean([row[name] for row in mine])) for name in COLUMNS}
