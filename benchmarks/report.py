@@ -62,11 +62,14 @@ def main(words: Sequence[str]) -> int:
 
 
 def chosen_runs(areas: Sequence[Area], only: Sequence[str], most_minutes: float) -> list[Run]:
-    """Return the runs that are asked for: by a part of their, their line's or area's name."""
+    """Return the runs that are asked for: by name, or by a part of a line's, run's or area's."""
+    exact = {name for area in areas for name in area.runs} & set(only)
+    parts = [part.lower() for part in only if part not in exact]
 
     def is_meant(area: Area, run: Run) -> bool:
         names = [area.title, run.name, *(line.name for line in lines_of(run.name, areas))]
-        return not only or any(part.lower() in name.lower() for part in only for name in names)
+        is_like = any(part in name.lower() for part in parts for name in names)
+        return not only or run.name in exact or is_like
 
     runs = [run for area in areas for run in area.runs.values() if is_meant(area, run)]
     return [run for run in runs if run.minutes <= most_minutes]
@@ -194,6 +197,8 @@ def listed(areas: Sequence[Area], chosen: Sequence[Run], kept: dict[str, Result]
     told, names = [], {run.name for run in chosen}
     for area in areas:
         runs = [run for run in area.runs.values() if run.name in names]
+        if not runs:
+            continue
         left = sum(run.minutes for run in runs if run.name not in kept)
         minutes = sum(run.minutes for run in runs)
         told.append(f"{area.title}: {minutes:.0f} minutes of one core, {left:.0f} of them not kept")

@@ -308,6 +308,20 @@ def test_the_list_tells_minutes_by_area_and_what_is_kept(few, tmp_path, capsys, 
     assert report.main(["--list", "--only", "sofa"]) == 2
 
 
+def test_runs_are_chosen_by_name_or_by_a_part_of_one():
+    areas = areas_of(yaml.safe_load(TWO_AREAS))
+
+    def names(*only, most=100.0):
+        return [run.name for run in report.chosen_runs(areas, only, most)]
+
+    assert names() == ["cells", "tests", "fast", "quick"]
+    assert names("exact") == ["cells"], "by its line"
+    assert names("SPEED") == ["fast", "quick"], "by its area"
+    assert names("t") == ["cells", "tests", "fast"]
+    assert names("fast", "laws") == ["tests", "fast"]
+    assert names(most=7) == ["cells", "tests", "quick"]
+
+
 def test_newer_results_replace_kept_ones_and_runs_that_are_gone_go(few, tmp_path):
     file = tmp_path / "kept.json"
     for name in ("large", "gone"):
