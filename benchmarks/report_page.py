@@ -101,7 +101,22 @@ def _short(areas: Sequence[Area], results: Mapping[str, Result]) -> str:
                     f"- **{line.name}** ({area.title}): asked is {line.asked}; measured:"
                     f" {measured}.{why}"
                 )
-    return "\n".join(rows or [EMPTY]) + "\n"
+    return "\n".join([*(rows or [EMPTY]), *_known(areas, results)]) + "\n"
+
+
+def _known(areas: Sequence[Area], results: Mapping[str, Result]) -> list[str]:
+    """Name lines that fell short when they were measured before, and were not run here."""
+    rows = [
+        f"- **{line.name}** ({area.title}): {line.short}{_earlier(line)}"
+        for area in areas
+        for line in area.lines
+        if line.short and verdict(line, results.get(line.run)) == "not run"
+    ]
+    return ["", "Fell short when last measured, and was not run here:", "", *rows] if rows else []
+
+
+def _earlier(line: Line) -> str:
+    return f" Earlier figures: [{line.page}]({line.page}.md)." if line.page else ""
 
 
 def _section(area: Area, runs: Mapping[str, Run], results: Mapping[str, Result]) -> str:
