@@ -135,7 +135,7 @@ def measured(run: Run, areas: Sequence[Area], out: Path) -> Result:
         "run": run.name,
         "steps": list(run.steps),
         "figures": figures,
-        "unread": unread,
+        "unread": [_placeless(sentence, work) for sentence in unread],
         "exits": exits,
         "seconds": seconds,
         "cpu_seconds": round(_cpu_s() - before, 1),
@@ -145,9 +145,17 @@ def measured(run: Run, areas: Sequence[Area], out: Path) -> Result:
         "commit": commit,
         "is_changed": is_changed,
         "date": datetime.date.today().isoformat(),
-        "last_words": written.printed[-LAST_CHARACTERS:] if unread else "",
+        "last_words": _placeless(written.printed[-LAST_CHARACTERS:], work) if unread else "",
     }
     return result | {"verdicts": verdicts(result, areas)}
+
+
+def _placeless(text: str, work: Path) -> str:
+    """Return a text without the places of this machine, since results are published."""
+    places = {str(work): "{work}", str(shared_data()): "{shared}", str(ROOT): "{root}"}
+    for place, mark in places.items():
+        text = text.replace(place, mark)
+    return text
 
 
 def words_of(step: str, work: Path, number: int) -> list[str]:

@@ -260,11 +260,13 @@ RUNS = r"""
     good: {steps: ['python -c "import sys; print(sys.argv[1:])" {work}',
                    'python -c "print(''IoU 0.9'')"'], minutes: 1}
     bad: {steps: ['python -c "raise SystemExit(3)"', 'python -c "print(''IoU 0.9'')"'], minutes: 2}
+    none: {steps: ['python -c "import sys; sys.exit(sys.argv[1])" {work}'], minutes: 1}
     large: {steps: ['make demo'], minutes: 90}
     other: {steps: ['make demo'], minutes: 1, needs: [idle]}
   lines:
     - {name: exact, asked: a, run: good, figures: [{what: IoU, text: 'IoU (\S+)', least: 0.8}]}
     - {name: wrong, asked: a, run: bad, figures: [{what: IoU, text: 'IoU (\S+)', least: 0.8}]}
+    - {name: lost, asked: a, run: none, figures: [{what: IoU, file: a.json, at: [0]}]}
     - {name: long, asked: a, run: large}
     - {name: timed, asked: a, run: other}
 """
@@ -285,10 +287,13 @@ def test_runs_are_kept_and_gone_on_with(few, tmp_path, capsys):
     assert "met      exact: IoU 0.9" in told and "broke    wrong" in told
     assert "other: left out, needs idle" in told and "large" not in told
     kept = results_in(tmp_path)
-    assert sorted(kept) == ["bad", "good"]
+    assert sorted(kept) == ["bad", "good", "none"]
     assert kept["good"]["figures"] == {"exact": {"IoU": 0.9}}
     assert kept["bad"]["exits"] == [3], "what comes after a step that fails is not run"
     assert kept["bad"]["unread"] == ["wrong, IoU: nothing is found"]
+    assert "No such file" in kept["none"]["unread"][0]
+    assert kept["none"]["last_words"] == "{work}\n", "no place of this machine is kept"
+    assert str(tmp_path) not in (tmp_path / "none.json").read_text()
     assert str(tmp_path / "work" / "good") in (tmp_path / "work/good/printed-0.txt").read_text()
 
     before = (tmp_path / "good.json").stat().st_mtime_ns
@@ -304,7 +309,7 @@ def test_the_list_tells_minutes_by_area_and_what_is_kept(few, tmp_path, capsys, 
     report.keep(tmp_path, result("large", date="2030-01-02"))
     assert report.main(["--list", "--out", str(tmp_path)]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "Rooms: 94 minutes of one core, 4 of them not kept"
+    assert lines[0] == "Rooms: 95 minutes of one core, 5 of them not kept"
     assert "  large: 90 min, kept of 2030-01-02" in lines
     assert "  other: 1 min, needs idle" in lines
     assert lines[-1] == "all: 1.6 hours of one core, 0.1 of them not kept"
