@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from world2minecraft.cli import vln_options as option
+from world2minecraft.cli import model_options as option
 
 EXAMPLES = """\
 w2m compare describe OUT                                        from what a run found
@@ -40,6 +40,7 @@ Keep = Annotated[Path, typer.Option("--keep", metavar="DIR", help="Where replies
 Photos = Annotated[int, typer.Option("--photos", help="How many photos are shown.", min=1, max=32)]
 
 
+@option.asks_a_model()
 def run(
     scene: Scene,
     method: For = "text",
@@ -48,14 +49,8 @@ def run(
     out: Out = None,
     keep: Keep = Path("described"),
     photos: Photos = 6,
-    model: option.Model = "",
-    key_env: option.KeyEnv = "",
-    max_usd: option.MaxUsd = None,
-    max_calls: option.MaxCalls = None,
-    prices: option.Prices = None,
-    timeout: option.Timeout = 60.0,
-    temperature: option.Temperature = 0.0,
-    replay: option.Replay = None,
+    *,
+    asked: option.ModelOptions,
 ) -> None:
     """Describe a room in words, by rule from its boxes or by a model from its photos.
 
@@ -76,9 +71,7 @@ def run(
     if agent and method != "text":
         raise UsageError("photos tell no sizes: --agent goes with --for text")
     if agent:
-        chat = option.opened_chat(
-            agent, keep, model, key_env, max_usd, max_calls, prices, timeout, temperature, replay
-        )
+        chat = asked.open(agent, keep)
         text = photo_words(scene, photos, chat)
         told = text
     else:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.cli import vln_options as option
+from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
     from world2minecraft.compare.judge import Grades
@@ -40,26 +40,18 @@ Wish = Annotated[
         "--wish", metavar="FILE", help="What the rooms were to be, as w2m compare describe says it."
     ),
 ]
-Temperature = Annotated[
-    float, typer.Option("--temperature", help="Of the replies; below 0 for the server's own.")
-]
 MOST_WISH_BYTES = 16 << 10
 
 
+@option.asks_a_model(option.ModelOptions(temperature=-1.0))
 def run(
     places: Places,
     agent: AgentName,
     out: Out,
     repeats: Repeats = 3,
     wish: Wish = None,
-    model: option.Model = "",
-    key_env: option.KeyEnv = "",
-    max_usd: option.MaxUsd = None,
-    max_calls: option.MaxCalls = None,
-    prices: option.Prices = None,
-    timeout: option.Timeout = 60.0,
-    temperature: Temperature = -1.0,
-    replay: option.Replay = None,
+    *,
+    asked: option.ModelOptions,
 ) -> None:
     """Grade rooms from 1 to 10 for realism, completeness and atmosphere.
 
@@ -76,9 +68,7 @@ def run(
     from world2minecraft.vln.running.tables import text_of
 
     told = read_bytes(wish, MOST_WISH_BYTES).decode("utf-8", "replace") if wish else ""
-    chat = option.opened_chat(
-        agent, out, model, key_env, max_usd, max_calls, prices, timeout, temperature, replay
-    )
+    chat = asked.open(agent, out)
     grades = graded(places, chat, out, told, repeats)
     write_json(
         out / "judged.json",

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from world2minecraft.cli import vln_options as option
+from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
     from world2minecraft.vln.values import Item
@@ -53,6 +53,7 @@ Training = Annotated[
 Jobs = Annotated[int, typer.Option("--jobs", help="Questions at a time.", min=1)]
 
 
+@option.asks_a_model()
 def run(
     folder: Set,
     agent: AgentName,
@@ -65,15 +66,9 @@ def run(
     style: Style = "letter",
     training: Training = "none",
     jobs: Jobs = 1,
-    model: option.Model = "",
-    key_env: option.KeyEnv = "",
-    max_usd: option.MaxUsd = None,
-    max_calls: option.MaxCalls = None,
-    prices: option.Prices = None,
-    timeout: option.Timeout = 60.0,
-    temperature: option.Temperature = 0.0,
     max_pixels: option.MaxPixels = option.MAX_PIXELS,
-    replay: option.Replay = None,
+    *,
+    asked: option.ModelOptions,
 ) -> None:
     """Ask a model the items of a set, and tell its accuracy with intervals.
 
@@ -94,7 +89,7 @@ def run(
 
     if training not in TRAININGS:
         raise UnknownNameError("training", training, TRAININGS)
-    target = out or Path(f"vln_{''.join(c if c.isalnum() else '_' for c in agent)[:40]}")
+    target = out or option.folder_of(agent)
     every = read_items(folder)
     items = picked_items(
         every, split=split, task=task, composition=composition, count=count, seed=seed
@@ -102,9 +97,7 @@ def run(
     place = folder if folder.is_dir() else folder.parent
     chat = None
     if is_endpoint(agent):
-        chat = option.opened_chat(
-            agent, target, model, key_env, max_usd, max_calls, prices, timeout, temperature, replay
-        )
+        chat = asked.open(agent, target)
         answerer: Any = ModelAnswerer(chat, place, style, most_px=max_pixels)
     else:
         answerer, items = _baseline(agent, every, items, place)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.cli import vln_options as option
+from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
     from world2minecraft.models.chat import ChatModel
@@ -32,20 +32,15 @@ Plain = Annotated[bool, typer.Option("--plain", help="Ask in the program's own w
 Jobs = Annotated[int, typer.Option("--jobs", help="Questions at a time.", min=1, max=64)]
 
 
+@option.asks_a_model()
 def run(
     path: SetPath,
     annotations: Annotations = None,
     rewrite: Rewrite = "",
     plain: Plain = False,
     jobs: Jobs = 4,
-    model: option.Model = "",
-    key_env: option.KeyEnv = "",
-    max_usd: option.MaxUsd = None,
-    max_calls: option.MaxCalls = None,
-    prices: option.Prices = None,
-    timeout: option.Timeout = 60.0,
-    temperature: option.Temperature = 0.0,
-    replay: option.Replay = None,
+    *,
+    asked: option.ModelOptions,
 ) -> None:
     """Let a set ask in the words of people, or of a language model.
 
@@ -66,10 +61,7 @@ def run(
     if annotations is not None:
         made = annotated(made, annotations)
     if rewrite:
-        chat = option.opened_chat(
-            rewrite, path / REPLIES, model, key_env, max_usd, max_calls, prices, timeout,
-            temperature, replay,
-        )  # fmt: skip
+        chat = asked.open(rewrite, path / REPLIES)
         made, outcomes = _rewritten(made, chat, jobs)
     made = asked_by(made, ORDER[-1:] if plain else ORDER)
     write_set(path, made)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from world2minecraft.cli import vln_options as option
+from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
     from world2minecraft.vln.values import Episode, Stance
@@ -78,6 +78,7 @@ Server = Annotated[
 Video = Annotated[bool, typer.Option("--video/--no-video", help="Write walk.mp4 of each walk.")]
 
 
+@option.asks_a_model()
 def run(
     scene: Scene,
     instruction: Sentence = "",
@@ -94,16 +95,10 @@ def run(
     seed: Seed = 0,
     video: Video = True,
     server: Server = "",
-    model: option.Model = "",
-    key_env: option.KeyEnv = "",
-    max_usd: option.MaxUsd = None,
-    max_calls: option.MaxCalls = None,
-    prices: option.Prices = None,
-    timeout: option.Timeout = 60.0,
-    temperature: option.Temperature = 0.0,
     max_pixels: option.MaxPixels = option.MAX_PIXELS,
     no_browser: NoBrowser = False,
-    replay: option.Replay = None,
+    *,
+    asked: option.ModelOptions,
 ) -> None:
     """Let an agent walk by an instruction, and score it beside Stop, Random and the oracle.
 
@@ -117,16 +112,11 @@ def run(
     from world2minecraft.vln.agents import agent_of
     from world2minecraft.vln.running.asking import Wish
 
-    folder = out or Path(f"vln_{''.join(c if c.isalnum() else '_' for c in agent)[:40]}")
+    folder = out or option.folder_of(agent)
     chats: list[Any] = []
 
     def chat() -> Any:
-        chats.append(
-            option.opened_chat(
-                agent, folder, model, key_env, max_usd, max_calls, prices, timeout, temperature,
-                replay,
-            )
-        )  # fmt: skip
+        chats.append(asked.open(agent, folder))
         return chats[0]
 
     how: dict[str, Any] = {"map_kind": map_kind, "most_px": max_pixels}
