@@ -11,10 +11,11 @@ from scipy import ndimage
 from world2minecraft.build import build_volume
 from world2minecraft.build.doorways import find_gaps
 from world2minecraft.build.lattice import lattice_over
-from world2minecraft.build.lights import LEAST, light_of_volume
+from world2minecraft.build.lights import LEAST
 from world2minecraft.build.spawn import find_spawn
 from world2minecraft.build.storeys import upper_floors_m, with_storeys
 from world2minecraft.coordinates import apply, invert
+from world2minecraft.minecraft.rules.light import block_light
 
 CEILING, FLOOR, WALL = 1, 2, 3
 SCALES = [1.0, 2.0, 4.0]
@@ -141,7 +142,7 @@ def test_walls_of_both_storeys_stand_over_one_another():
 @pytest.mark.parametrize("scale", SCALES)
 def test_every_place_on_every_storey_is_lit(scale):
     volume = built(scale)
-    light = light_of_volume(volume)
+    light = block_light(volume)
     free = (volume.semantic == 0) & (light >= 0)
     for storey in (0, 1):
         ground = ground_of(volume, scale, storey)

@@ -12,12 +12,13 @@ from house_samples import house
 from world2minecraft.build import BuildParameters, build_volume, find_spawn
 from world2minecraft.build.connect import settle
 from world2minecraft.build.lamps import WALK_BLOCKS
-from world2minecraft.build.lights import LEAST_CORNER, light_of_volume
+from world2minecraft.build.lights import LEAST_CORNER
 from world2minecraft.build.morphology import beside, grown, parts_of
 from world2minecraft.build.plaque import FAR
 from world2minecraft.classes import OBJECT_CLASSES
 from world2minecraft.coordinates import apply, invert
 from world2minecraft.errors import UsageError
+from world2minecraft.minecraft.rules.light import block_light
 from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.rooms import generate_house, generate_room
@@ -105,7 +106,7 @@ def test_no_corner_is_black(scale, lights):
     for sketch in (l_room(), Sketch((90, 70, 34))):
         volume = build(sketch, scale, lights=lights)
         inside = inside_of(volume)
-        light = light_of_volume(volume)
+        light = block_light(volume)
         assert light[inside].min() >= LEAST_CORNER
 
 

@@ -3,10 +3,10 @@ import pytest
 from build_samples import Sketch, furnished, l_room
 
 from world2minecraft.build import BuildParameters, build_volume, find_spawn
-from world2minecraft.build.lights import LEVEL, light_of_volume, passes_light
+from world2minecraft.build.lights import LEVEL, passes_light
 from world2minecraft.build.spawn import standing_cells
 from world2minecraft.classes import OBJECT_CLASSES
-from world2minecraft.minecraft.rules.light import spread_light
+from world2minecraft.minecraft.rules.light import block_light, spread_light
 from world2minecraft.minecraft.shapes import boxes_of
 
 SKETCHES = {
@@ -53,7 +53,7 @@ def test_light_spreads_as_the_game_s_does(seed):
 @each_case
 def test_every_walkable_floor_cell_is_lit(name, scale):
     volume = build(name, scale)
-    light = light_of_volume(volume)[:, 64 - volume.corner[1]]
+    light = block_light(volume)[:, 64 - volume.corner[1]]
     standing = standing_cells(volume)
     assert standing.any()
     assert light[standing].min() >= 8
@@ -64,7 +64,7 @@ def test_a_dark_room_is_dark():
     volume = build_volume(
         sketch.grid(), (), (), corner_m=sketch.corner_m, parameters=BuildParameters(lights=False)
     )
-    assert light_of_volume(volume).max() == 0
+    assert block_light(volume).max() == 0
 
 
 @each_case

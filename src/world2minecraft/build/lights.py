@@ -10,12 +10,10 @@ from world2minecraft.build.canvas import AIR, LIGHT, Canvas
 from world2minecraft.build.morphology import parts_of
 from world2minecraft.minecraft.rules.light import (
     BRIGHTEST,
-    block_light,
     lets_light_through,
     light_of,
     spread_light,
 )
-from world2minecraft.types import BlockVolume
 
 LEVEL = BRIGHTEST
 LEAST = 8  # Of a walkable floor cell; monsters need 0, and a person reads at 8.
@@ -103,8 +101,3 @@ def walkable_cells(
     free = np.isin(states[:, :, ground : ground + 2], numbers).all(2)
     floor = states[:, :, ground - 1] != 0
     return free & floor & footprint
-
-
-def light_of_volume(volume: BlockVolume) -> np.ndarray:
-    """Return the block light of a finished volume, uint8 [X, Y, Z]."""
-    return block_light(volume)

@@ -20,7 +20,6 @@ _DISTANCES = (
     "lightness_weight",
     "calm",
     "gap_m",
-    "slab_margin",
     "plane_area_m2",
 )
 
@@ -74,8 +73,6 @@ class BuildParameters:
         two cells at 4 blocks a metre, under the depth of a chimney breast.
     plane_area_m2: the least area of a plane that draws others to itself. A guess.
     gap_m: unseen holes in a wall up to this wide are closed. A guess: less than a doorway.
-    slab_margin: the Oklab distance that a colour may lose to become a slab. 0.05: about two
-        barely visible steps, so wood and stone become slabs and red does not.
     """
 
     palette: str = "vanilla"
@@ -103,7 +100,6 @@ class BuildParameters:
     plane_reach_blocks: float = 0.75
     plane_area_m2: float = 0.3
     gap_m: float = 0.6
-    slab_margin: float = 0.05
 
     def __post_init__(self):
         self._choose("ceiling", CEILINGS)

@@ -6,7 +6,7 @@ has the right colour; ``fixed`` is one block for good. A shape that the game lac
 """
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -136,8 +136,3 @@ def restated(state: str, shape: str, swatch: Swatch) -> str:
     """Return a state of a shape in another material; its properties stay."""
     _, bracket, properties = state.partition("[")
     return f"{kinds()[swatch.kind].blocks[swatch.value][shape]}{bracket}{properties}"
-
-
-def shapes_of(states: Iterable[str], kind: str) -> frozenset[str]:
-    """Return the shapes of those states that are of a kind of material."""
-    return frozenset(shape for state in states if (shape := shape_of(state, kind)))

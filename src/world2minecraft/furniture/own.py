@@ -29,7 +29,6 @@ MAX_BYTES = 4 << 20
 MAX_SIDE, MAX_BLOCKS, MAX_KINDS, MAX_PARTS = 32, 8192, 256, 512
 PARTS_PER_BLOCK = 8
 NEAR_SCALE = 1.26  # Up to this factor off its scale a piece keeps its blocks: a third of an octave.
-FRONT = "the side that was said when it was added"
 
 
 def own_folder(environment: Mapping[str, str] = os.environ, platform: str = sys.platform) -> Path:

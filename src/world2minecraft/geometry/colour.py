@@ -69,8 +69,3 @@ def oklab_of_srgb(rgb: np.ndarray) -> np.ndarray:
         1.0
     """
     return oklab_of_linear(linear_of_srgb(rgb))
-
-
-def srgb_of_oklab(oklab: np.ndarray) -> np.ndarray:
-    """Return sRGB bytes, uint8 [..., 3], of Oklab; colours outside sRGB are clipped."""
-    return srgb_of_linear(linear_of_oklab(oklab))

@@ -24,7 +24,7 @@ SAME_FIT = 0.6  # Of the walls that were seen, so much meets surface: they are t
 LAID_FIT = 0.6
 LEAST_LEAD = 0.05  # Over the next best place; a square room fits in four ways.
 APART_M = 0.4  # Nearer places are one.
-MOST_TILT_DEG, MOST_YAW_DEG = 3.0, 3.0
+MOST_TILT_DEG = 3.0
 
 
 class PlanMismatchError(ValueError):

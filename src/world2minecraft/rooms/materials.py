@@ -18,7 +18,6 @@ RUG_RUN = (
     25  # Voxels: boards are 7 wide and tiles 20, so what is of one colour for longer is a rug.
 )
 TALL_M = 0.9  # The grain of a cupboard runs upwards, that of a table lengthwise.
-SKIRTING = 4  # Voxels over the floor, painted.
 CLOTH_NAMES = frozenset(("curtain", "coats", "armchair", "sofa", "bed", "office_chair", "chair"))
 TEXT_NAMES = frozenset(("books", "bookshelf", "box", "monitor", "microwave", "toy_shelf"))
 STONE_NAMES = frozenset(("counter", "sink_counter", "washstand"))

@@ -86,17 +86,6 @@ def expert(
     return None
 
 
-def next_move(
-    scene: VlnScene,
-    stance: Stance,
-    goals: Sequence[tuple[float, float, float]],
-    move_set: str | MoveSet = "vlnce",
-) -> Move:
-    """Return what the oracle would do now; STOP where it knows no way."""
-    way = expert(scene, stance, goals, move_set)
-    return way.moves[0] if way else Move.STOP
-
-
 def _moves(headings: list[int], count: int) -> list[Move]:
     """Return the moves of steps along headings, of which 0 is where one looks."""
     moves, now = [], 0

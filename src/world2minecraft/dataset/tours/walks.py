@@ -23,7 +23,6 @@ NARROW_COST = 3.0  # for what is at a wall is so much farther.
 SAMPLE_M = 0.05
 SMOOTH_M = 0.35  # Corners are rounded so much.
 ROUNDS = 6  # Of taking back what was rounded through something.
-ELBOW_EYE_M = 0.12  # Eyes keep so far from what is beside them.
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,6 @@ from world2minecraft.minecraft.versions import GameVersion, game_versions
 
 NAMESPACE = "w2m"
 FOLDERS = ("function", "functions")  # From 1.21 on, and before.
-PERSON_BLOCKS = 1.8  # A player's height; taken for a person of as many metres.
 STEP_BLOCKS = 0.6
 SCALE_LIMITS = (0.0625, 16.0)
 STEP_LIMITS = (0.0, 10.0)

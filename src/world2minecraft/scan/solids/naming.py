@@ -35,14 +35,6 @@ def class_of_name(name: str) -> int:
     return UNKNOWN
 
 
-def s3dis_classes() -> np.ndarray:
-    """Return uint8 [256]: the class of each of S3DIS's 13 numbers, 255 where it is none."""
-    classes = np.full(256, UNKNOWN, np.uint8)
-    for number, (_, name) in _tables()["s3dis"].items():
-        classes[int(number)] = class_id(name)
-    return classes
-
-
 def own_classes() -> np.ndarray:
     """Return uint8 [256]: our own ids as they are, 255 beyond."""
     classes = np.full(256, UNKNOWN, np.uint8)

@@ -45,10 +45,6 @@ class Directions:
         """Return the share of steep looks down that some picture covers."""
         return float((self.seen[self.pitches_deg < -STEEP_DEG] > 0).mean())
 
-    def share_above(self) -> float:
-        """Return the share of steep looks up that some picture covers."""
-        return float((self.seen[self.pitches_deg > STEEP_DEG] > 0).mean())
-
 
 def directions_of(cameras: Sequence[Camera | None], camera_to_level: np.ndarray) -> Directions:
     """Count for each direction the pictures that show it.

@@ -4,7 +4,6 @@ A reply that cannot be read after two repairs is INVALID: a decision without mov
 server that does not answer makes a failed one. Neither is ever replaced by a move of our own.
 """
 
-from collections.abc import Sequence
 from io import BytesIO
 from typing import Any
 
@@ -22,7 +21,6 @@ from world2minecraft.vln.agents.trail import trail_text
 from world2minecraft.vln.agents.values import Decision, Sight, Task
 from world2minecraft.vln.agents.words import (
     MAPS,
-    MOVE_NAMES,
     MapKind,
     Moment,
     moment_turn,
@@ -135,16 +133,6 @@ def jpeg(colour: np.ndarray) -> bytes:
     stream = BytesIO()
     Image.fromarray(colour).save(stream, "JPEG", quality=JPEG_QUALITY)
     return stream.getvalue()
-
-
-def moves_text(moves: Sequence[Move]) -> str:
-    """Return moves in the words of the prompts.
-
-    Example:
-        >>> moves_text([Move.LEFT, Move.STOP])
-        'LEFT, STOP'
-    """
-    return ", ".join(MOVE_NAMES[move] for move in moves)
 
 
 def told_of(tried: Try) -> dict[str, Any]:

@@ -46,12 +46,6 @@ def told_in(text: str, names: Iterable[str]) -> Told:
     return Told(_turns(rest), landmarks)
 
 
-def says_the_same(text: str, other: str, names: Iterable[str]) -> bool:
-    """Whether two texts tell the same turns and landmarks in the same order."""
-    known = list(names)
-    return told_in(text, known) == told_in(other, known)
-
-
 def _landmarks(text: str, names: Iterable[str]) -> tuple[tuple[str, ...], str]:
     """Return the landmarks and the text without them: a name may hold the word "left"."""
     ordered = sorted(set(names), key=lambda name: (-len(name), name))
