@@ -10,18 +10,52 @@ before anything is allocated.
 """
 
 import struct
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, LimitError, UsageError
+from world2minecraft.errors import DamagedFileError, LimitError
 from world2minecraft.minecraft.compression import MAX_BYTES, pack_gzip, unpack
+from world2minecraft.minecraft.nbt_tags import (
+    BYTE,
+    BYTES,
+    COMPOUND,
+    DOUBLE,
+    END,
+    FLOAT,
+    INT,
+    INTS,
+    LIST,
+    LONG,
+    LONGS,
+    SHORT,
+    STRING,
+    Byte,
+    Float,
+    Long,
+    Short,
+    array_layouts,
+    number_layouts,
+)
+from world2minecraft.minecraft.nbt_writing import write_nbt
 
 __all__ = [
+    "BYTE",
+    "BYTES",
+    "COMPOUND",
     "DEFAULT_LIMITS",
+    "DOUBLE",
+    "END",
+    "FLOAT",
+    "INT",
+    "INTS",
+    "LIST",
+    "LONG",
+    "LONGS",
+    "SHORT",
+    "STRING",
     "Byte",
     "Float",
     "Long",
@@ -34,24 +68,6 @@ __all__ = [
     "unpack",
     "write_nbt",
 ]
-
-(END, BYTE, SHORT, INT, LONG, FLOAT, DOUBLE, BYTES, STRING, LIST, COMPOUND, INTS, LONGS) = range(13)
-
-
-class Byte(int):
-    """A number of one byte."""
-
-
-class Short(int):
-    """A number of two bytes."""
-
-
-class Long(int):
-    """A number of eight bytes."""
-
-
-class Float(float):
-    """A number in single precision."""
 
 
 @dataclass(frozen=True)
@@ -67,18 +83,6 @@ class NbtLimits:
 DEFAULT_LIMITS = NbtLimits()
 # The fewest bytes that one value of each kind takes: it bounds a list's count.
 _LEAST = (0, 1, 2, 4, 8, 4, 8, 4, 2, 5, 1, 4, 4)
-_NUMBERS: dict[int, tuple[struct.Struct, Any]] = {
-    BYTE: (struct.Struct(">b"), Byte),
-    SHORT: (struct.Struct(">h"), Short),
-    INT: (struct.Struct(">i"), int),
-    LONG: (struct.Struct(">q"), Long),
-    FLOAT: (struct.Struct(">f"), Float),
-    DOUBLE: (struct.Struct(">d"), float),
-}
-_ARRAYS = {BYTES: np.dtype(">i1"), INTS: np.dtype(">i4"), LONGS: np.dtype(">i8")}
-_ARRAY_TAGS = {np.dtype(np.int8): BYTES, np.dtype(np.int32): INTS, np.dtype(np.int64): LONGS}
-_UINT16 = struct.Struct(">H")
-_INT32 = struct.Struct(">i")
 
 
 def read_nbt(
@@ -100,18 +104,6 @@ def read_nbt(
     return NbtReader(data, path, limits).root()
 
 
-def write_nbt(root: Mapping[str, Any], name: str = "") -> bytes:
-    """Return the bytes of an NBT tree, keys in the order of the mapping, not compressed.
-
-    Raises:
-        UsageError: a value has no tag, a number does not fit its tag, or a list mixes kinds.
-    """
-    out = bytearray([COMPOUND])
-    _put_string(out, name)
-    _put(out, COMPOUND, root)
-    return bytes(out)
-
-
 def tree_bytes(value: Any) -> int:
     """Return about how much memory a value of NBT takes, to bound what is kept of many files."""
     if isinstance(value, dict):
@@ -128,7 +120,8 @@ class NbtReader:
 
     must_end = True  # Whether bytes after the tree are refused.
     dialect, encoding = "NBT", "modified UTF-8"  # As errors name them.
-    numbers, arrays, uint16, int32 = _NUMBERS, _ARRAYS, _UINT16, _INT32
+    numbers, arrays = number_layouts(">"), array_layouts(">")
+    uint16, int32 = struct.Struct(">H"), struct.Struct(">i")
 
     def __init__(self, data: bytes, path: str | Path, limits: NbtLimits):
         self.data, self.path, self.limits = data, path, limits
@@ -254,81 +247,3 @@ def _decode(raw: bytes) -> str:
     """Read Java's modified UTF-8: a zero as two bytes, other planes as two surrogates."""
     text = raw.replace(b"\xc0\x80", b"\0").decode("utf-8", "surrogatepass")
     return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le")
-
-
-def _encode(text: str) -> bytes:
-    if text.isascii() and "\0" not in text:
-        return text.encode("ascii")
-    units = np.frombuffer(text.encode("utf-16-le"), "<u2")
-    packed = "".join(map(chr, units.tolist())).encode("utf-8", "surrogatepass")
-    return packed.replace(b"\0", b"\xc0\x80")
-
-
-def _put_string(out: bytearray, text: str) -> None:
-    try:
-        raw = _encode(text)
-    except UnicodeError as error:
-        raise UsageError(f"text {text[:40]!r} cannot be written as NBT") from error
-    if len(raw) > 0xFFFF:
-        raise UsageError(f"a text of {len(raw):,} bytes is too long for NBT; at most 65,535")
-    out += _UINT16.pack(len(raw))
-    out += raw
-
-
-def _tag_of(value: Any) -> int:
-    if isinstance(value, np.ndarray):
-        if value.ndim == 1 and value.dtype in _ARRAY_TAGS:
-            return _ARRAY_TAGS[value.dtype]
-        raise UsageError(f"an array of {value.dtype} with shape {value.shape} has no NBT tag")
-    for kind, tag in _TAG_OF_TYPE:
-        if isinstance(value, kind):
-            return tag
-    raise UsageError(f"a value of type {type(value).__name__} has no NBT tag")
-
-
-_TAG_OF_TYPE: tuple[tuple[type, int], ...] = (
-    (str, STRING),
-    (bool, BYTE),
-    (Byte, BYTE),
-    (Short, SHORT),
-    (Long, LONG),
-    (int, INT),
-    (Float, FLOAT),
-    (float, DOUBLE),
-    (Mapping, COMPOUND),
-    (list, LIST),
-    (tuple, LIST),
-)
-
-
-def _put(out: bytearray, tag: int, value: Any) -> None:
-    if tag in _NUMBERS:
-        try:
-            out += _NUMBERS[tag][0].pack(value)
-        except (struct.error, OverflowError) as error:
-            raise UsageError(f"the number {value} does not fit its NBT tag") from error
-    elif tag == STRING:
-        _put_string(out, value)
-    elif tag == COMPOUND:
-        for name, held in value.items():
-            kind = _tag_of(held)
-            out.append(kind)
-            _put_string(out, name)
-            _put(out, kind, held)
-        out.append(END)
-    elif tag == LIST:
-        _put_list(out, value)
-    else:
-        out += _INT32.pack(len(value))
-        out += value.astype(_ARRAYS[tag]).tobytes()
-
-
-def _put_list(out: bytearray, values: list[Any] | tuple[Any, ...]) -> None:
-    kinds = {_tag_of(value) for value in values}
-    if len(kinds) > 1:
-        raise UsageError("a list in NBT must hold values of one kind")
-    kind = kinds.pop() if kinds else END
-    out.append(kind)
-    out += _INT32.pack(len(values))
-    for value in values:
-        _put(out, kind, value)

@@ -13,53 +13,9 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.errors import UsageError
-from world2minecraft.minecraft.nbt import (
-    BYTE,
-    BYTES,
-    COMPOUND,
-    DEFAULT_LIMITS,
-    DOUBLE,
-    END,
-    FLOAT,
-    INT,
-    INTS,
-    LIST,
-    LONG,
-    LONGS,
-    SHORT,
-    STRING,
-    Byte,
-    Float,
-    Long,
-    NbtLimits,
-    NbtReader,
-    Short,
-)
-
-_NUMBERS: dict[int, tuple[struct.Struct, Any]] = {
-    BYTE: (struct.Struct("<b"), Byte),
-    SHORT: (struct.Struct("<h"), Short),
-    INT: (struct.Struct("<i"), int),
-    LONG: (struct.Struct("<q"), Long),
-    FLOAT: (struct.Struct("<f"), Float),
-    DOUBLE: (struct.Struct("<d"), float),
-}
-_ARRAYS = {BYTES: np.dtype("<i1"), INTS: np.dtype("<i4"), LONGS: np.dtype("<i8")}
-_KINDS: tuple[tuple[type, int], ...] = (
-    (str, STRING),
-    (bool, BYTE),
-    (Byte, BYTE),
-    (Short, SHORT),
-    (Long, LONG),
-    (int, INT),
-    (Float, FLOAT),
-    (float, DOUBLE),
-    (Mapping, COMPOUND),
-    (list, LIST),
-    (tuple, LIST),
-    (np.ndarray, LIST),
-)
-_UINT16, _INT32 = struct.Struct("<H"), struct.Struct("<i")
+from world2minecraft.minecraft.nbt import DEFAULT_LIMITS, NbtLimits, NbtReader
+from world2minecraft.minecraft.nbt_tags import INT, INTS, LIST, array_layouts, number_layouts
+from world2minecraft.minecraft.nbt_writing import NbtWriter
 
 
 def write_little(root: Mapping[str, Any]) -> bytes:
@@ -68,9 +24,7 @@ def write_little(root: Mapping[str, Any]) -> bytes:
     Raises:
         UsageError: a value has no tag, a number does not fit its tag, or a list mixes kinds.
     """
-    out = bytearray([COMPOUND, 0, 0])
-    _put(out, COMPOUND, root)
-    return bytes(out)
+    return _LittleWriter().root(root)
 
 
 def read_little(
@@ -88,7 +42,8 @@ class _LittleReader(NbtReader):
     """Numbers the other way round, plain texts, and lists of Int as arrays."""
 
     dialect, encoding = "little-endian NBT", "UTF-8"
-    numbers, arrays, uint16, int32 = _NUMBERS, _ARRAYS, _UINT16, _INT32
+    numbers, arrays = number_layouts("<"), array_layouts("<")
+    uint16, int32 = struct.Struct("<H"), struct.Struct("<i")
 
     def decoded(self, raw: bytes) -> str:
         """Return a text that is not plain ASCII."""
@@ -99,57 +54,28 @@ class _LittleReader(NbtReader):
         if self.data[self.at] != INT:
             return super().items(depth)
         self.at += 1
-        return self.array(_ARRAYS[INTS])
+        return self.array(self.arrays[INTS])
 
 
-def _tag_of(value: Any) -> int:
-    for kind, tag in _KINDS:
-        if isinstance(value, kind):
-            return tag
-    raise UsageError(f"a value of type {type(value).__name__} has no NBT tag")
+class _LittleWriter(NbtWriter):
+    """The same for writing: an array is a list of Int."""
 
+    numbers, arrays = _LittleReader.numbers, _LittleReader.arrays
+    uint16, int32 = _LittleReader.uint16, _LittleReader.int32
 
-def _put(out: bytearray, tag: int, value: Any) -> None:
-    if tag in _NUMBERS:
-        try:
-            out += _NUMBERS[tag][0].pack(value)
-        except (struct.error, OverflowError) as error:
-            raise UsageError(f"the number {value} does not fit its NBT tag") from error
-    elif tag == STRING:
-        _put_string(out, value)
-    elif tag == COMPOUND:
-        for name, held in value.items():
-            kind = _tag_of(held)
-            out.append(kind)
-            _put_string(out, name)
-            _put(out, kind, held)
-        out.append(END)
-    else:
-        _put_list(out, value)
+    def encoded(self, text: str) -> bytes:
+        """Return plain UTF-8."""
+        return text.encode("utf-8")
 
+    def tag_of_array(self, value: np.ndarray) -> int:
+        """Return the tag of a list."""
+        return LIST
 
-def _put_list(out: bytearray, values: Any) -> None:
-    if isinstance(values, np.ndarray):
+    def put_list(self, values: Any) -> None:
+        """Add a list, or an array as one."""
+        if not isinstance(values, np.ndarray):
+            return super().put_list(values)
         if values.ndim != 1 or values.dtype != np.int32:
             raise UsageError(f"an array of {values.dtype} with shape {values.shape} is no list")
-        out.append(INT)
-        out += _INT32.pack(len(values)) + values.astype("<i4").tobytes()
-        return
-    kinds = {_tag_of(value) for value in values}
-    if len(kinds) > 1:
-        raise UsageError("a list in NBT must hold values of one kind")
-    kind = kinds.pop() if kinds else END
-    out.append(kind)
-    out += _INT32.pack(len(values))
-    for value in values:
-        _put(out, kind, value)
-
-
-def _put_string(out: bytearray, text: str) -> None:
-    try:
-        raw = text.encode("utf-8")
-    except UnicodeError as error:
-        raise UsageError(f"text {text[:40]!r} cannot be written as NBT") from error
-    if len(raw) > 0xFFFF:
-        raise UsageError(f"a text of {len(raw):,} bytes is too long for NBT; at most 65,535")
-    out += _UINT16.pack(len(raw)) + raw
+        self.out.append(INT)
+        return self.put_array(self.arrays[INTS], values)
