@@ -14,6 +14,7 @@ from PIL import Image, ImageOps
 
 from world2minecraft.archive import AnyPath
 from world2minecraft.errors import DamagedFileError
+from world2minecraft.scan.image_names import NamedByFile
 from world2minecraft.scan.images import ImageHeader, check_whole, opened_image, read_raw
 from world2minecraft.types import Camera
 
@@ -45,24 +46,10 @@ class PhotoFacts:
 
 
 @dataclass(frozen=True)
-class UprightPhoto:
+class UprightPhoto(NamedByFile):
     """An ``ImageSource``: a photo file, upright."""
 
     path: AnyPath
-
-    def __str__(self) -> str:
-        """The photo's path."""
-        return str(self.path)
-
-    @property
-    def stem(self) -> str:
-        """The name without suffix."""
-        return self.path.stem
-
-    @property
-    def name(self) -> str:
-        """The file's name."""
-        return self.path.name
 
     def header(self) -> ImageHeader:
         """Return the size after turning."""

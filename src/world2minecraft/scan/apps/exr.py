@@ -14,6 +14,7 @@ import numpy as np
 from world2minecraft.archive import AnyPath
 from world2minecraft.errors import DamagedFileError, LimitError
 from world2minecraft.files import read_bytes
+from world2minecraft.scan.image_names import NamedByFile
 from world2minecraft.scan.images import MAX_PIXELS, ImageHeader
 
 MAGIC = b"\x76\x2f\x31\x01"
@@ -43,24 +44,10 @@ class _Layout:
 
 
 @dataclass(frozen=True)
-class ExrImage:
+class ExrImage(NamedByFile):
     """An ``ImageSource`` of float32 depth."""
 
     path: AnyPath
-
-    def __str__(self) -> str:
-        """The file's name, for messages."""
-        return str(self.path)
-
-    @property
-    def stem(self) -> str:
-        """The file's name without suffix."""
-        return self.path.stem
-
-    @property
-    def name(self) -> str:
-        """The file's name."""
-        return self.path.name
 
     def header(self) -> ImageHeader:
         """Return the size."""

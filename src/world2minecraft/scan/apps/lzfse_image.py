@@ -12,6 +12,7 @@ import numpy as np
 from world2minecraft.archive import AnyPath
 from world2minecraft.errors import DamagedFileError, LimitError, MissingExtraError
 from world2minecraft.files import read_bytes
+from world2minecraft.scan.image_names import NamedByFile
 from world2minecraft.scan.images import MAX_PIXELS, ImageHeader
 
 MAX_FILE_BYTES = 4 * MAX_PIXELS
@@ -25,27 +26,13 @@ _MODES = {"float32": np.float32, "L": np.uint8}
 
 
 @dataclass(frozen=True)
-class LzfseImage:
+class LzfseImage(NamedByFile):
     """An ``ImageSource``: ``mode`` is ``float32`` for depth in metres, ``L`` for confidence."""
 
     path: AnyPath
     width_px: int
     height_px: int
     mode: str
-
-    def __str__(self) -> str:
-        """The file's name, for messages."""
-        return str(self.path)
-
-    @property
-    def stem(self) -> str:
-        """The file's name without suffix."""
-        return self.path.stem
-
-    @property
-    def name(self) -> str:
-        """The file's name."""
-        return self.path.name
 
     @property
     def expected_bytes(self) -> int:

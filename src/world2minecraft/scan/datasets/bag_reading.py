@@ -18,6 +18,7 @@ import numpy as np
 from world2minecraft.archive import AnyPath, ArchivePath
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, MissingExtraError
 from world2minecraft.scan.datasets.slices import check_zipped
+from world2minecraft.scan.image_names import NamedByFrame
 from world2minecraft.scan.images import MAX_PIXELS, ImageHeader
 
 MAX_CHUNK_BYTES = 256 << 20  # Recorders close a chunk at 0.75 MB or after one large picture.
@@ -166,27 +167,13 @@ def _times(path: AnyPath, topic: str, stamp: Bag) -> tuple[int, ...]:
 
 
 @dataclass(frozen=True)
-class BagImage:
+class BagImage(NamedByFrame):
     """One picture of a bag: the ``index``-th of its topic by time."""
 
     path: AnyPath
     topic: str
     index: int
     frame: str
-
-    def __str__(self) -> str:
-        """The bag and the frame in it."""
-        return f"{self.path}/{self.frame}"
-
-    @property
-    def stem(self) -> str:
-        """The name by which label images are found."""
-        return self.frame.partition(" ")[0]
-
-    @property
-    def name(self) -> str:
-        """A short name for messages."""
-        return self.frame
 
     def header(self) -> ImageHeader:
         """Return size and mode; the message is unpacked for it."""

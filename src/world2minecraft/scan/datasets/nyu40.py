@@ -14,6 +14,7 @@ from world2minecraft.archive import AnyPath
 from world2minecraft.classes import UNKNOWN, class_id
 from world2minecraft.errors import CaptureError
 from world2minecraft.files import read_bytes, read_json
+from world2minecraft.scan.image_names import NamedByFile
 from world2minecraft.scan.images import ImageHeader, check_whole, read_header, read_raw
 
 CLASSES = Path(__file__).parent / "data" / "nyu40.json"
@@ -59,7 +60,7 @@ def find_table(places: Sequence[AnyPath]) -> AnyPath | None:
 
 
 @dataclass(frozen=True)
-class MappedLabels:
+class MappedLabels(NamedByFile):
     """A label image of a data set, read as our classes.
 
     ``table`` is that of ScanNet's raw ids, which are stored with 16 bits; images of 8 bits hold
@@ -68,20 +69,6 @@ class MappedLabels:
 
     path: AnyPath
     table: AnyPath | None
-
-    def __str__(self) -> str:
-        """The image's path."""
-        return str(self.path)
-
-    @property
-    def stem(self) -> str:
-        """The image's name without suffix."""
-        return self.path.stem
-
-    @property
-    def name(self) -> str:
-        """The image's name."""
-        return self.path.name
 
     def header(self) -> ImageHeader:
         """Return size and the mode of our labels."""

@@ -16,6 +16,7 @@ import numpy as np
 from world2minecraft.archive import AnyPath, ArchivePath
 from world2minecraft.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.files import read_bytes
+from world2minecraft.scan.image_names import NamedByFrame
 from world2minecraft.scan.images import MAX_PIXELS, ImageHeader, opened_image
 
 HEADER_BYTES = 64 << 10  # A JPEG's size stands before its pixels, after at most a thumbnail.
@@ -23,27 +24,13 @@ MAX_ZIPPED_BYTES = 512 << 20  # As much as is held in memory of a file that lies
 
 
 @dataclass(frozen=True)
-class FileSlice:
+class FileSlice(NamedByFrame):
     """Some bytes of a file, which open like a file; ``frame`` names them in messages."""
 
     path: AnyPath
     offset: int
     size: int
     frame: str
-
-    def __str__(self) -> str:
-        """The file and the frame in it."""
-        return f"{self.path}/{self.frame}"
-
-    @property
-    def stem(self) -> str:
-        """The name by which label images are found."""
-        return self.frame.partition(" ")[0]
-
-    @property
-    def name(self) -> str:
-        """A short name for messages."""
-        return self.frame
 
     @property
     def suffix(self) -> str:
