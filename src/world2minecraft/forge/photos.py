@@ -16,20 +16,17 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.errors import InputError, UnknownNameError, UsageError
-from world2minecraft.exchange.poses import read_poses
-from world2minecraft.files import read_json
+from world2minecraft.evaluate.frames import computed
 from world2minecraft.geometry.undistort import undistorted
+from world2minecraft.report.placed import judge_capture_of, placed_frames, used_by
 from world2minecraft.scan.depth import DepthEncoding, read_depth
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.images import read_colour, read_small
-from world2minecraft.scan.judged import judge_capture
-from world2minecraft.scan.options import parse_options
 from world2minecraft.types import Camera
 
 LONGEST_PX, SMALL_PX = 1280, 200
 HELD_BYTES = 48 << 20  # Of pictures that were made: some hundred.
 QUALITY = 84
-PREPARED = "capture"  # Where a run keeps what was computed of its pictures.
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,21 +104,14 @@ def read_photos(run: Path, capture: Path, scan_to_room: np.ndarray) -> RunPhotos
     Raises:
         CaptureError: the capture cannot be read. UsageError: none of its frames is of this run.
     """
-    options = {} if capture == run / PREPARED else _options_of(run)
-    judged = judge_capture(capture, parse_options(options))
-    changes = _changes_of(run)
-    used = _used_by(run)
-    photos = []
-    for frame in judged.frames:
-        camera = frame.colour_camera if frame.colour_path else frame.depth_camera
-        if camera is None or frame.camera_to_world is None or (used and frame.name not in used):
-            continue
-        change = changes.get(frame.name, np.eye(4))
-        camera_to_room = scan_to_room @ change @ frame.camera_to_world
-        photos.append(PlacedPhoto(frame, camera_to_room, camera, ideal_camera(camera)))
+    judged = judge_capture_of(run, capture)
+    photos = tuple(
+        PlacedPhoto(one.frame, one.camera_to_room, one.camera, ideal_camera(one.camera))
+        for one in placed_frames(run, judged, scan_to_room)
+    )
     if not photos:
         raise UsageError(f"{capture.name} holds no photo that this room was made of")
-    return RunPhotos(tuple(photos), judged.encoding)
+    return RunPhotos(photos, judged.encoding)
 
 
 def find_capture_of(run: Path, given: Path | None) -> Path:
@@ -134,8 +124,8 @@ def find_capture_of(run: Path, given: Path | None) -> Path:
     Raises:
         UsageError: nobody says so.
     """
-    own = run / PREPARED
-    if (own / "capture.json").is_file():
+    own = computed(run)
+    if own is not None:
         return own
     if given is not None:
         return given
@@ -154,7 +144,7 @@ def count_photos(run: Path, capture: Path | None) -> int:
         find_capture_of(run, capture)
     except UsageError:
         return 0
-    return len(_used_by(run))
+    return len(used_by(run))
 
 
 def ideal_camera(camera: Camera, longest_px: int = LONGEST_PX) -> Camera:
@@ -174,31 +164,6 @@ def ideal_camera(camera: Camera, longest_px: int = LONGEST_PX) -> Camera:
     width, height = max(round(2 * half_x * scale), 2), max(round(2 * tall * scale), 2)
     focal = camera.fx_px * scale
     return Camera(width, height, focal, focal, width / 2, height / 2)
-
-
-def _changes_of(run: Path) -> dict[str, np.ndarray]:
-    try:
-        found = read_poses(run / "poses.npz")
-    except InputError:
-        return {}
-    return dict(zip(found.names, found.pose_change, strict=True))
-
-
-def _used_by(run: Path) -> frozenset[str]:
-    """The frames that a run used; empty where it does not say."""
-    try:
-        used = read_json(run / "scan.json")["frames_used"]
-        return frozenset(str(name) for name in used)
-    except (InputError, KeyError, TypeError):
-        return frozenset()
-
-
-def _options_of(run: Path) -> dict[str, str]:
-    try:
-        told = read_json(run / "manifest.json")["parameters"]["capture"]
-        return {str(key): str(value) for key, value in told.items()}
-    except (InputError, KeyError, TypeError, AttributeError):
-        return {}
 
 
 def _depth_picture(frame: FrameFiles, encoding: DepthEncoding, longest_px: int) -> np.ndarray:

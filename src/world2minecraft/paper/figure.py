@@ -13,11 +13,10 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from world2minecraft.classes import CLASS_COLOURS, OBJECT_CLASSES, UNKNOWN
+from world2minecraft.coordinates import grid_to_block_axes
 from world2minecraft.errors import CaptureError, InputError
-from world2minecraft.exchange.poses import read_poses
 from world2minecraft.exchange.room import read_room
-from world2minecraft.files import read_json
-from world2minecraft.geometry.undistort import undistorted
+from world2minecraft.geometry.undistort import pinhole_of, undistorted
 from world2minecraft.render.lamps import NEUTRAL, PAPER
 from world2minecraft.render.picture import render_volume
 from world2minecraft.render.scene import BlockScene, prepare_scene
@@ -26,10 +25,9 @@ from world2minecraft.render.views.frames import DrawOptions, frames_of
 from world2minecraft.render.views.opened import OpenedBuild
 from world2minecraft.render.views.orbit import orbit_shots
 from world2minecraft.render.views.turntable import OPEN_ELEVATION_DEG
+from world2minecraft.report.placed import PlacedFrame, judge_capture_of, placed_frames, used_by
 from world2minecraft.report.scene import read_built
 from world2minecraft.scan.images import read_colour
-from world2minecraft.scan.judged import judge_capture
-from world2minecraft.scan.options import parse_options
 from world2minecraft.types import AIR, BlockVolume, Camera, OccupancyGrid
 
 VIEWS, STEPS = 3, 6  # Rows, and pictures of a walk.
@@ -75,7 +73,7 @@ def volume_of_cells(grid: OccupancyGrid) -> BlockVolume:
     """Return occupied cells as one white block each, with their classes, for the renderer."""
     occupied = (grid.labels != 0) & (grid.labels != UNKNOWN)
     labels = np.where(occupied, grid.labels, 0).astype(np.uint8)
-    turned = [np.ascontiguousarray(a[:, ::-1].transpose(0, 2, 1)) for a in (labels, grid.instance)]
+    turned = [grid_to_block_axes(one) for one in (labels, grid.instance)]
     side, deep = grid.voxel_m, grid.labels.shape[1]
     block_to_room = np.eye(4)
     block_to_room[:3, :3] = [[side, 0, 0], [0, 0, -side], [0, side, 0]]
@@ -88,50 +86,28 @@ def _photos(
     run: Path, capture: Path, scan_to_room: np.ndarray, scene: BlockScene
 ) -> list[tuple[Pixels, Camera, np.ndarray]]:
     """Return photos with cameras and poses: of each third of the frames the one that shows most."""
-    used = set(map(str, read_json(run / "scan.json").get("frames_used", ())))
-    changes = _changes(run)
-    placed = []
-    for frame in judge_capture(capture, parse_options({})).frames:
-        camera, pose = frame.colour_camera, frame.camera_to_world
-        if frame.colour_path and camera and pose is not None and frame.name in used:
-            to_room = scan_to_room @ changes.get(frame.name, np.eye(4)) @ pose
-            placed.append((frame.colour_path, camera, to_room))
+    frames = placed_frames(run, judge_capture_of(run, capture), scan_to_room)
+    is_told = bool(used_by(run))
+    placed = [(path, one) for one in frames if is_told and (path := one.frame.colour_path)]
     if not placed:
         raise CaptureError(capture, f"has no posed photo that {run.name} was made of")
     count = min(VIEWS, len(placed))
     edges = [n * len(placed) // count for n in range(count + 1)]
     found = []
     for start, end in pairwise(edges):
-        path, camera, pose = max(placed[start:end], key=lambda one: _shown(scene, *one[1:]))
-        small = _small_camera(camera)
-        found.append((undistorted(read_colour(path), camera, small), small, pose))
+        path, best = max(placed[start:end], key=lambda one: _shown(scene, one[1]))
+        small = pinhole_of(best.camera, CELL_PX[0])
+        colour = undistorted(read_colour(path), best.camera, small)
+        found.append((colour, small, best.camera_to_room))
     return found
 
 
-def _shown(scene: BlockScene, camera: Camera, pose: np.ndarray) -> int:
-    """Return how many pixels of a small picture of the world show objects."""
-    tiny = camera.resized(SCOUT_PX[0], SCOUT_PX[1])
-    semantic = _present(render_volume(scene, tiny, pose, outputs=("semantic",)).semantic)
+def _shown(scene: BlockScene, one: PlacedFrame) -> int:
+    """Return how many pixels of a small picture of the world from a frame's place show objects."""
+    tiny = one.camera.resized(SCOUT_PX[0], SCOUT_PX[1])
+    picture = render_volume(scene, tiny, one.camera_to_room, outputs=("semantic",))
+    semantic = _present(picture.semantic)
     return int(np.isin(semantic, OBJECT_CLASSES).sum())
-
-
-def _small_camera(camera: Camera) -> Camera:
-    """Return a camera of a cell's width without distortion, of the same angles."""
-    width = CELL_PX[0]
-    scale = width / camera.width_px
-    return Camera(
-        width, round(camera.height_px * scale), camera.fx_px * scale, camera.fy_px * scale,
-        camera.cx_px * scale, camera.cy_px * scale,
-    )  # fmt: skip
-
-
-def _changes(run: Path) -> dict[str, np.ndarray]:
-    """Return how the run corrected poses, by frame; nothing where it did not."""
-    try:
-        found = read_poses(run / "poses.npz")
-    except InputError:
-        return {}
-    return dict(zip(found.names, found.pose_change, strict=True))
 
 
 def _drawn(scene: BlockScene, camera: Camera, pose: np.ndarray) -> Pixels:
