@@ -110,18 +110,8 @@ def resized(camera: Camera, width_px: int) -> Camera:
     """Return the camera with another number of pixels for the same view."""
     if width_px == camera.width_px:
         return camera
-    across = width_px / camera.width_px
-    height_px = max(round(camera.height_px * across), 1)
-    down = height_px / camera.height_px
-    return Camera(
-        width_px,
-        height_px,
-        camera.fx_px * across,
-        camera.fy_px * down,
-        camera.cx_px * across,
-        camera.cy_px * down,
-        camera.distortion,
-    )
+    height_px = max(round(camera.height_px * (width_px / camera.width_px)), 1)
+    return camera.scaled_to(width_px, height_px)
 
 
 def label_view(

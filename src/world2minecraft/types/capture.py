@@ -54,6 +54,11 @@ class Camera:
             raise ValueError(
                 f"{width_px}x{height_px} is no uniform scale of {self.width_px}x{self.height_px}"
             )
+        return self.scaled_to(width_px, height_px)
+
+    def scaled_to(self, width_px: int, height_px: int) -> "Camera":
+        """Return the camera of the same image at another size, of whatever proportions."""
+        across, down = width_px / self.width_px, height_px / self.height_px
         return Camera(
             width_px,
             height_px,
