@@ -103,3 +103,28 @@ class ConflictError(InputError):
 
 class OutputError(InputError):
     """The output folder is a file, is full or may not be written."""
+
+
+def one_line(text: object, most: int | None = None) -> str:
+    """Return a text with each run of white space as one space, cut at ``most`` letters.
+
+    Example:
+        >>> one_line(ValueError("no   table here"), 10)
+        'no table h'
+    """
+    return " ".join(str(text).split())[:most]
+
+
+def reason_of(error: BaseException, most: int = 100) -> str:
+    """Return what an error of another library says as one line, or its kind where it says nothing.
+
+    Example:
+        >>> reason_of(EOFError())
+        'EOFError'
+    """
+    return one_line(error, most) or type(error).__name__
+
+
+def first_line(error: BaseException) -> str:
+    """Return the first line of what an error of another library says, or its kind."""
+    return (str(error).strip().splitlines() or [type(error).__name__])[0]

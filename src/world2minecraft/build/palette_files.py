@@ -17,7 +17,7 @@ from world2minecraft.build.meanings import meanings_of
 from world2minecraft.build.own_furniture import piece_of
 from world2minecraft.build.palettes import PALETTE_FILES, Palette, shipped
 from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_CLASSES
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.errors import InputError, UsageError, one_line
 from world2minecraft.files import read_bytes
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colours_of, nearest_oklab
@@ -50,7 +50,7 @@ def read_palette(path: Path) -> Palette:
         raw = json.loads(text) if path.suffix == ".json" else yaml.safe_load(text)
     except (ValueError, RecursionError, yaml.YAMLError) as error:
         kind = "JSON" if path.suffix == ".json" else "YAML"
-        raise InputError(path, f"is not {kind} ({_one_line(error)})") from error
+        raise InputError(path, f"is not {kind} ({one_line(error, 200)})") from error
     try:
         return palette_of(raw)
     except (ValueError, UsageError) as error:
@@ -246,7 +246,3 @@ def _names(what: str, value: Any) -> list[str]:
 def _short(value: Any) -> str:
     text = " ".join(repr(value).split())
     return text if len(text) <= 60 else text[:57] + "..."
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split())[:200]

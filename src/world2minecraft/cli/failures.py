@@ -4,7 +4,7 @@ import errno
 import sys
 import traceback
 
-from world2minecraft.errors import World2MinecraftError
+from world2minecraft.errors import World2MinecraftError, one_line
 
 FAILURE, USAGE, BAD_INPUT, STOPPED = 1, 2, 3, 130
 
@@ -30,7 +30,7 @@ def explain(error: BaseException) -> tuple[str, int]:
     if isinstance(error, KeyboardInterrupt) or type(error).__name__ == "Abort":
         return "stopped; run the same command again to go on", STOPPED
     if isinstance(error, World2MinecraftError):
-        return one_line(str(error)), error.exit_code
+        return one_line(error), error.exit_code
     if hasattr(error, "format_message"):  # typer's usage errors; older ones come from click.
         return _usage(error), USAGE
     if isinstance(error, MemoryError):
@@ -40,11 +40,6 @@ def explain(error: BaseException) -> tuple[str, int]:
         return f"{where}the disk is full; free some space and run the same command again", BAD_INPUT
     what = one_line(f"{type(error).__name__}: {error}" if str(error) else type(error).__name__)
     return f"unexpected {what} (please report it, with --traceback for details)", FAILURE
-
-
-def one_line(text: str) -> str:
-    """Return the text with each run of white space as one space."""
-    return " ".join(text.split())
 
 
 def _usage(error: BaseException) -> str:

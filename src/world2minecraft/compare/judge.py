@@ -7,20 +7,19 @@ the pictures stand beside the grades, since grades of different models or prompt
 """
 
 import hashlib
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from PIL import Image
 
 from world2minecraft.errors import UsageError
 from world2minecraft.models.chat import ChatModel
 from world2minecraft.models.chat_forms import Form, UnreadableError, ask_form, json_of
 from world2minecraft.models.chat_messages import Picture, Turn
 from world2minecraft.render.lamps import NEUTRAL, PAPER
+from world2minecraft.render.output.images import colour_bytes
 from world2minecraft.render.scene import prepare_scene
 from world2minecraft.render.views.cameras import camera_of
 from world2minecraft.render.views.frames import DrawOptions, frames_of
@@ -94,15 +93,8 @@ def pictures_of(volume: BlockVolume) -> list[Picture]:
         picture = next(iter(frames_of(scene, [shot], how)))
         if picture.colour is None:
             raise RuntimeError("the renderer gave no colour")
-        pictures.append(Picture(jpeg(picture.colour)))
+        pictures.append(Picture(colour_bytes(picture.colour, ".jpg", QUALITY)))
     return pictures
-
-
-def jpeg(colour: np.ndarray) -> bytes:
-    """Return a picture, uint8 [H, W, 3], as the bytes of a JPEG."""
-    stream = io.BytesIO()
-    Image.fromarray(colour).save(stream, "JPEG", quality=QUALITY, subsampling=0)
-    return stream.getvalue()
 
 
 def grade(

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Protocol
 
-from world2minecraft.errors import ConflictError, UnknownNameError, World2MinecraftError
+from world2minecraft.errors import ConflictError, UnknownNameError, World2MinecraftError, one_line
 from world2minecraft.forge.time_left import TimeLeft
 
 SOONEST_S = 0.1  # More states a second are seen by nobody.
@@ -215,8 +215,8 @@ class _Job:
 def said(error: BaseException) -> str:
     """Return what went wrong as one line."""
     if isinstance(error, World2MinecraftError):
-        return " ".join(str(error).split())
+        return one_line(error)
     if isinstance(error, MemoryError):
         return "out of memory; close other programs, or choose a smaller scale"
-    what = " ".join(f"{type(error).__name__}: {error}".split())
-    return f"unexpected {what[:300]} (please report it)"
+    what = one_line(f"{type(error).__name__}: {error}", 300)
+    return f"unexpected {what} (please report it)"

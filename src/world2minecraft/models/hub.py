@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, MissingExtraError
+from world2minecraft.errors import DamagedFileError, InputError, MissingExtraError, first_line
 from world2minecraft.models.pictures import prepared
 
 MODEL_NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)?", re.ASCII)
@@ -132,8 +132,3 @@ def network(model: str, kind: Any) -> Any:
         lacking = sorted(map(str, told["missing_keys"] or told["mismatched_keys"]))[0]
         raise DamagedFileError(model, f"its weights lack {lacking}, and would be drawn by chance")
     return found.eval()
-
-
-def first_line(error: Exception) -> str:
-    """Return an error of another library as one line."""
-    return (str(error).strip().splitlines() or [type(error).__name__])[0]

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.errors import DamagedFileError, InputError, first_line
 from world2minecraft.models import hub
 from world2minecraft.models.pictures import prepared
 from world2minecraft.models.single_thread import single_thread
@@ -54,7 +54,7 @@ class HuggingFaceSemantics:
                 found = network(pixel_values=pixels, **self._told)
                 scores = _label_scores(torch, found)  # [C, h, w]
             except (RuntimeError, ValueError) as error:
-                reason = f"the network fails: {hub.first_line(error)}"
+                reason = f"the network fails: {first_line(error)}"
                 raise InputError(self.name, reason) from None
             if scores.shape[0] != len(classes):
                 raise DamagedFileError(
@@ -91,7 +91,7 @@ class HuggingFaceSemantics:
             told = words([TASK], padding="max_length", max_length=length, truncation=True)
         except Exception as error:  # Whatever another library raises on what it cannot read.
             raise InputError(
-                self._model, f"its tokenizer cannot be loaded: {hub.first_line(error)}"
+                self._model, f"its tokenizer cannot be loaded: {first_line(error)}"
             ) from None
         tokens = np.array(told["input_ids"]) * np.array(told["attention_mask"])
         return {"task_inputs": torch.from_numpy(tokens)}

@@ -15,7 +15,7 @@ import numpy as np
 import onnxruntime
 
 from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.errors import DamagedFileError, first_line
 from world2minecraft.files import read_bytes
 from world2minecraft.geometry.region import KINDS
 
@@ -81,7 +81,7 @@ class OccupancyNetwork:
                 data, options, providers=["CPUExecutionProvider"]
             )
         except Exception as error:  # The library has no class of its own for what it cannot read.
-            raise DamagedFileError(path, f"is no ONNX file: {_first_line(error)}") from None
+            raise DamagedFileError(path, f"is no ONNX file: {first_line(error)}") from None
         try:
             self.facts = _facts(self._session)
         except ValueError as error:
@@ -115,7 +115,7 @@ class OccupancyNetwork:
         try:
             logits = np.asarray(self._session.run([OUTPUT], fed)[0])[0]
         except Exception as error:
-            raise DamagedFileError(self._path, f"fails: {_first_line(error)}") from None
+            raise DamagedFileError(self._path, f"fails: {first_line(error)}") from None
         if not np.isfinite(logits).all():
             raise DamagedFileError(self._path, "gives values that are no numbers")
         logits = np.moveaxis(logits / np.float32(self.facts.temperature), 0, -1)
@@ -182,7 +182,3 @@ def _check_output(session: Any, wanted: tuple[int, ...]) -> None:
     shapes = {entry.name: tuple(entry.shape) for entry in session.get_outputs()}
     if shapes.get(OUTPUT) != wanted:
         raise ValueError(f"has no output {OUTPUT!r} of {list(wanted)}: {shapes}")
-
-
-def _first_line(error: Exception) -> str:
-    return (str(error).strip().splitlines() or [type(error).__name__])[0]

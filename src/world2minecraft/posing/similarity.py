@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.optimize import least_squares
 
+from world2minecraft.geometry.rotation import rotation_of_vector
 from world2minecraft.types import checks
 
 USUAL_TURN = 0.1  # Radians: sensors on one device look nearly the same way.
@@ -109,8 +110,8 @@ def _turned_mount(
     sigma = max(np.radians(1.48 * float(np.median(start.off_deg))), 1e-6)
 
     def solved(values: np.ndarray):
-        rotation = _rotation_of(values[1:4]) @ start.rotation
-        scale, turn = start.scale * np.exp(values[0]), _rotation_of(values[10:13])
+        rotation = rotation_of_vector(values[1:4]) @ start.rotation
+        scale, turn = start.scale * np.exp(values[0]), rotation_of_vector(values[10:13])
         shift = start.shift_m + values[4:7] * reach_m
         return scale, rotation, shift, values[7:10] * reach_m, turn
 
@@ -132,16 +133,6 @@ def _turned_mount(
     turns = wanted[:, :3, :3] @ turn @ given[:, :3, :3].transpose(0, 2, 1)
     off_deg = np.degrees(_angles(turns, rotation))
     return Similarity(float(scale), rotation, shift, off_m, off_deg, mount, turn)
-
-
-def _rotation_of(vector: np.ndarray) -> np.ndarray:
-    """Return the rotation [3, 3] about a vector by its length in radians."""
-    angle = float(np.linalg.norm(vector))
-    if angle < 1e-15:
-        return np.eye(3)
-    x, y, z = vector / angle
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 def _start(turns: np.ndarray, given: np.ndarray, wanted: np.ndarray):

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.exchange.objects import rounded
 from world2minecraft.files import write_json, write_npz
 from world2minecraft.progress import Progress, silent
 from world2minecraft.rooms.phone import phone_shots, write_photos, write_video
@@ -142,7 +143,7 @@ def write_truth(
     truth = {
         "kind": room.kind,
         "seed": room.seed,
-        "size_m": _rounded(room.size_m),
+        "size_m": rounded(room.size_m),
         "objects": [_stated_object(n, item) for n, item in enumerate(room.objects, start=1)],
         "layouts": [_stated_layout(layout) for layout in room.layouts],
     }
@@ -154,8 +155,8 @@ def _stated_object(number: int, item: LayoutObject) -> dict[str, Any]:
         "id": number,
         "class": CLASS_NAMES[item.class_id],
         "name": item.name,
-        "center_m": _rounded(item.center_m),
-        "size_m": _rounded(item.size_m),
+        "center_m": rounded(item.center_m),
+        "size_m": rounded(item.size_m),
         "yaw_deg": item.yaw_deg,
     }
 
@@ -165,7 +166,7 @@ def _stated_layout(layout: Layout) -> dict[str, Any]:
         "name": layout.name,
         "floor_z_m": round(layout.floor_z_m, 4),
         "wall_height_m": round(layout.wall_height_m, 4),
-        "floor_polygon_m": [_rounded(corner) for corner in layout.floor_polygon_m],
+        "floor_polygon_m": [rounded(corner) for corner in layout.floor_polygon_m],
         "openings": [_stated_opening(opening) for opening in layout.openings],
     }
 
@@ -173,12 +174,8 @@ def _stated_layout(layout: Layout) -> dict[str, Any]:
 def _stated_opening(opening: Opening) -> dict[str, Any]:
     return {
         "kind": opening.kind,
-        "start_m": _rounded(opening.start_m),
-        "end_m": _rounded(opening.end_m),
+        "start_m": rounded(opening.start_m),
+        "end_m": rounded(opening.end_m),
         "sill_m": round(opening.sill_m, 4),
         "head_m": round(opening.head_m, 4),
     }
-
-
-def _rounded(values: np.ndarray) -> list[float]:
-    return [round(float(value), 4) for value in values]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.errors import UnknownNameError
+from world2minecraft.geometry.rotation import rotation_of_vector
 
 BASELINE_M = 0.075  # Between projector and camera, of the sensors that the model follows.
 NATIVE_WIDTH_PX = 640  # Disparity is counted in pixels of the sensor, whatever size is handed out.
@@ -139,13 +140,3 @@ def jittered_pose(
 def scale_factor(sigma: float, rng: np.random.Generator) -> float:
     """Return what a frame's depth is multiplied by: 1 give or take ``sigma``, 3 sigma at most."""
     return 1.0 + sigma * float(np.clip(rng.standard_normal(), -3, 3))
-
-
-def rotation_of_vector(vector: np.ndarray) -> np.ndarray:
-    """Return the 3x3 rotation about a vector by its length in radians."""
-    angle = float(np.linalg.norm(vector))
-    if angle < 1e-12:
-        return np.eye(3)
-    x, y, z = vector / angle
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross

@@ -11,13 +11,13 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.geometry.rotation import rotation_of_vector
 from world2minecraft.rooms.photo import Photo, PhotoScene, prepare_photos, take_photo
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.sensor import (
     PHONES,
     Sensor,
     jittered_pose,
-    rotation_of_vector,
     scale_factor,
     sense_depth,
     sensor,

@@ -13,6 +13,7 @@ import numpy as np
 
 from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES, class_id
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, UnknownNameError
+from world2minecraft.exchange.objects import rounded
 from world2minecraft.files import UNREADABLE, read_json, read_npz, write_json, write_npz
 from world2minecraft.rooms.room import Room
 from world2minecraft.types import Layout, LayoutObject, Opening
@@ -39,7 +40,7 @@ def write_generated(room: Room, folder: str | Path) -> None:
         {
             "kind": room.kind,
             "seed": room.seed,
-            "size_m": _rounded(room.size_m),
+            "size_m": rounded(room.size_m),
             "layouts": [_stated(layout) for layout in room.layouts],
         },
     )
@@ -81,12 +82,12 @@ def _stated(layout: Layout) -> dict[str, Any]:
         "name": layout.name,
         "floor_z_m": round(layout.floor_z_m, 4),
         "wall_height_m": round(layout.wall_height_m, 4),
-        "floor_polygon_m": [_rounded(corner) for corner in layout.floor_polygon_m],
+        "floor_polygon_m": [rounded(corner) for corner in layout.floor_polygon_m],
         "openings": [
             {
                 "kind": opening.kind,
-                "start_m": _rounded(opening.start_m),
-                "end_m": _rounded(opening.end_m),
+                "start_m": rounded(opening.start_m),
+                "end_m": rounded(opening.end_m),
                 "sill_m": round(opening.sill_m, 4),
                 "head_m": round(opening.head_m, 4),
             }
@@ -96,17 +97,13 @@ def _stated(layout: Layout) -> dict[str, Any]:
             {
                 "class": CLASS_NAMES[item.class_id],
                 "name": item.name,
-                "center_m": _rounded(item.center_m),
-                "size_m": _rounded(item.size_m),
+                "center_m": rounded(item.center_m),
+                "size_m": rounded(item.size_m),
                 "yaw_deg": round(item.yaw_deg, 4),
             }
             for item in layout.objects
         ],
     }
-
-
-def _rounded(values: np.ndarray) -> list[float]:
-    return [round(float(value), 4) for value in values]
 
 
 def _layouts(rows: Any) -> tuple[Layout, ...]:

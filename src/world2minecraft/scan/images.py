@@ -17,7 +17,13 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from world2minecraft.archive import AnyPath, ArchivePath
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, MissingExtraError
+from world2minecraft.errors import (
+    DamagedFileError,
+    InputError,
+    LimitError,
+    MissingExtraError,
+    reason_of,
+)
 
 MAX_PIXELS = 64_000_000  # A 48-megapixel phone photo passes; decoding it takes 144 MB.
 FORMATS = ("PNG", "JPEG", "TIFF", "PPM", "WEBP", "BMP")
@@ -198,7 +204,9 @@ def _opened(path: AnyPath | Openable) -> Iterator[Image.Image]:
         raise InputError(path, "is not there") from error
     except (OSError, SyntaxError, ValueError, EOFError, IndexError, MemoryError) as error:
         # Pillow raises SyntaxError for a PNG whose chunks fail their check sums.
-        raise DamagedFileError(path, f"is damaged ({_one_line(error)}); copy it again") from error
+        raise DamagedFileError(
+            path, f"is damaged ({reason_of(error, 120)}); copy it again"
+        ) from error
 
 
 def _formats(path: object) -> tuple[str, ...]:
@@ -249,7 +257,7 @@ def _map_npy(path: AnyPath) -> Any:
     except FileNotFoundError as error:
         raise InputError(path, "is not there") from error
     except (OSError, ValueError, EOFError) as error:
-        reason = f"is no whole .npy ({_one_line(error)}); copy it again"
+        reason = f"is no whole .npy ({reason_of(error, 120)}); copy it again"
         raise DamagedFileError(path, reason) from error
     if array.ndim != 2 or array.dtype.kind not in "fu" or not array.size:
         raise DamagedFileError(path, f"holds {array.dtype} {array.shape}, not numbers [H, W]")
@@ -261,7 +269,3 @@ def _tail(path: AnyPath, size: int) -> bytes:
     with path.open("rb") as stream:
         stream.seek(max(0, path.stat().st_size - size))
         return stream.read()
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split())[:120] or type(error).__name__

@@ -13,7 +13,13 @@ import numpy as np
 from scipy import fft
 
 from world2minecraft.archive import AnyPath, ArchivePath
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, MissingExtraError
+from world2minecraft.errors import (
+    DamagedFileError,
+    InputError,
+    LimitError,
+    MissingExtraError,
+    one_line,
+)
 from world2minecraft.scan.images import MAX_PIXELS
 
 SMALL_PX = 192  # The longer side of the small pictures.
@@ -84,7 +90,7 @@ def _look(path: AnyPath, stamp: tuple[int, int]) -> VideoLook:
     except InputError:
         raise
     except failures as error:
-        reason = " ".join(str(error).split())[:80]
+        reason = one_line(error, 80)
         raise DamagedFileError(path, f"is no whole video ({reason}); copy it again") from error
 
 

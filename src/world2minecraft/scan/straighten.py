@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.geometry.rotation import rotation_of_vector
 from world2minecraft.geometry.surface import Surface
 from world2minecraft.scan.places import BIN_M, LIFT_M, looks
 from world2minecraft.scan.surface import Profile, profile
@@ -47,7 +48,7 @@ def straightening_turn(level: Surface) -> np.ndarray:
     if faces.count == 0:
         return turn
     for limit_m in LIMITS_M:
-        turn = _rotation(_step(faces, faces.points_m @ turn.T, limit_m)) @ turn
+        turn = rotation_of_vector(_step(faces, faces.points_m @ turn.T, limit_m)) @ turn
     return turn
 
 
@@ -127,12 +128,3 @@ def _fullest_places(faces: Faces, along: np.ndarray) -> np.ndarray:
         held = np.convolve(np.bincount(bins, weight), np.ones(3), mode="same")
         places[face] = own.min() + (int(np.argmax(held)) + 0.5) * BIN_M
     return places
-
-
-def _rotation(vector: np.ndarray) -> np.ndarray:
-    angle = float(np.linalg.norm(vector))
-    if angle < 1e-12:
-        return np.eye(3)
-    x, y, z = vector / angle
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross

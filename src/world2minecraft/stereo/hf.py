@@ -3,7 +3,7 @@
 import numpy as np
 from PIL import Image
 
-from world2minecraft.errors import InputError
+from world2minecraft.errors import InputError, first_line
 from world2minecraft.models import hub
 from world2minecraft.models.pictures import prepared
 from world2minecraft.models.single_thread import single_thread
@@ -45,7 +45,7 @@ class HuggingFaceDepth:
                 pixels = torch.from_numpy(prepared(colour, self._ready))
                 found = self._network(pixel_values=pixels).predicted_depth
             except RuntimeError as error:
-                reason = f"the network fails: {hub.first_line(error)}"
+                reason = f"the network fails: {first_line(error)}"
                 raise InputError(self.name, reason) from None
             values = found.reshape(found.shape[-2:]).to(torch.float32).numpy()
         size = (colour.shape[1], colour.shape[0])

@@ -1,9 +1,7 @@
 """What a process of the pool does: it takes orders through a pipe until that ends."""
 
 import os
-import pickle
 import signal
-import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from multiprocessing import parent_process
@@ -11,7 +9,7 @@ from multiprocessing.connection import Connection
 from threading import Thread
 from typing import Any
 
-from world2minecraft.errors import WorkerError
+from world2minecraft.render.batch.worker import sendable
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,15 +94,3 @@ def _answer(order: Order, tick: Callable[[int], None]) -> Done | Failed:
         return Done(order.number, order.task(order.item, tick))
     except Exception as error:
         return Failed(sendable(error))
-
-
-def sendable(error: Exception) -> Exception:
-    """Return an error as it is where that can be sent, else one that tells it."""
-    try:
-        copied = pickle.loads(pickle.dumps(error))
-    except Exception:
-        copied = None
-    if type(copied) is type(error) and str(copied) == str(error):
-        return error.with_traceback(None)
-    told = "".join(traceback.format_exception_only(error)).strip()
-    return WorkerError(f"a worker failed: {told}")

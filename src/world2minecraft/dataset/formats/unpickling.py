@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.dataset.formats.stack import Array, Machine, Refusal
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.errors import DamagedFileError, reason_of
 from world2minecraft.files import read_bytes
 
 MAX_BYTES = 512 << 20  # A scene of 220 x 220 x 90 cells with float64 centres takes 105 MB.
@@ -43,7 +43,7 @@ def parse_pickle(data: bytes, name: object = "pickle") -> dict[str, Any]:
     except Refusal as error:
         raise DamagedFileError(name, f"{error}; it is not read") from error
     except _BROKEN as error:
-        words = " ".join(str(error).split())[:120] or type(error).__name__
+        words = reason_of(error, 120)
         raise DamagedFileError(name, f"is no whole pickle ({words})") from error
 
 

@@ -11,6 +11,7 @@ from world2minecraft.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.minecraft.nbt import Byte, Long, NbtLimits, NbtReader
 from world2minecraft.minecraft.packing import SECTION, pack_section, unpack_section
 from world2minecraft.minecraft.worlds.entries import state_entry, state_text
+from world2minecraft.minecraft.worlds.section_words import word_count
 from world2minecraft.types import AIR, BlockEntity
 
 FIRST_DATA_VERSION = 2860  # 1.18, the first game with this layout.
@@ -203,10 +204,3 @@ def forget_light(root: dict[str, Any]) -> None:
     for section in root["sections"]:
         for key in [k for k in section if k in LIGHT_KEYS or k.startswith("starlight.")]:
             del section[key]
-
-
-def word_count(states: int) -> int:
-    """Return how many words of 64 bits the numbers of a section take, for so many states."""
-    if states == 1:
-        return 0
-    return -(-SECTION // (64 // max(4, (states - 1).bit_length())))

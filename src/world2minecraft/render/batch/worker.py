@@ -111,7 +111,7 @@ class Desk:
         try:
             return Reply(task.first, self._made(task))
         except Exception as error:
-            return Reply(task.first, error=_sendable(error))
+            return Reply(task.first, error=sendable(error))
 
     def _made(self, task: Task) -> list[Any] | None:
         job, scene = self._job, self._scene
@@ -145,7 +145,7 @@ class Desk:
             block.close()
 
 
-def _sendable(error: Exception) -> Exception:
+def sendable(error: Exception) -> Exception:
     """Return an error as it is where that can be sent, else one that tells it."""
     try:
         copied = pickle.loads(pickle.dumps(error))

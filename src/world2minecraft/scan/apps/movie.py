@@ -13,7 +13,13 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.archive import AnyPath, ArchivePath
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, MissingExtraError
+from world2minecraft.errors import (
+    DamagedFileError,
+    InputError,
+    LimitError,
+    MissingExtraError,
+    reason_of,
+)
 from world2minecraft.scan.images import MAX_PIXELS, ImageHeader
 
 MAX_PICTURES = 1_000_000  # Four hours and a half at 60 Hz.
@@ -43,7 +49,7 @@ class Movie:
             self.size = (self._stream.codec_context.width, self._stream.codec_context.height)
             self.times, self.key_times = self._times()
         except self._errors as error:
-            raise DamagedFileError(path, f"is no whole video ({_one_line(error)})") from error
+            raise DamagedFileError(path, f"is no whole video ({reason_of(error, 80)})") from error
         held = len(self.times)
         if self.size[0] * self.size[1] > MAX_PIXELS or held > MAX_PICTURES:
             raise LimitError(path, f"has {held:,} pictures of {self.size}; too many to read")
@@ -65,7 +71,7 @@ class Movie:
             return self._picture(index)
         except self._errors as error:
             self._next = -1
-            reason = f"picture {index} cannot be decoded ({_one_line(error)})"
+            reason = f"picture {index} cannot be decoded ({reason_of(error, 80)})"
             raise DamagedFileError(self.path, reason) from error
 
     def _picture(self, index: int) -> np.ndarray:
@@ -100,10 +106,6 @@ class Movie:
         here = self.times[min(self._next, len(self.times) - 1)]
         ahead = bisect_right(self.key_times, self.times[index]) > bisect_right(self.key_times, here)
         return ahead and index > self._next
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split())[:80] or type(error).__name__
 
 
 @lru_cache(maxsize=2)

@@ -16,7 +16,13 @@ from typing import Any, cast
 import numpy as np
 
 from world2minecraft.archive import AnyPath, ArchivePath
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, MissingExtraError
+from world2minecraft.errors import (
+    DamagedFileError,
+    InputError,
+    LimitError,
+    MissingExtraError,
+    reason_of,
+)
 from world2minecraft.scan.datasets.slices import check_zipped
 from world2minecraft.scan.image_names import NamedByFrame
 from world2minecraft.scan.images import MAX_PIXELS, ImageHeader
@@ -122,7 +128,7 @@ def _refusing(path: AnyPath) -> Iterator[None]:
     except InputError:
         raise
     except Exception as error:
-        reason = " ".join(str(error).split())[:100] or type(error).__name__
+        reason = reason_of(error)
         raise DamagedFileError(path, f"is no whole bag ({reason}); copy it again") from error
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.errors import DamagedFileError, LimitError, reason_of
 from world2minecraft.scan.solids.optional import library
 from world2minecraft.scan.solids.solid import MAX_POINTS, Loaded
 from world2minecraft.scan.solids.thinning import Thinner
@@ -46,7 +46,7 @@ def load_las(place: AnyPath) -> Loaded:
     except (KeyboardInterrupt, SystemExit):
         raise
     except BaseException as error:  # laspy and lazrs share no root; lazrs even panics.
-        raise DamagedFileError(place, f"cannot be read as LAS ({_said(error)})") from error
+        raise DamagedFileError(place, f"cannot be read as LAS ({reason_of(error)})") from error
     return _loaded(thinner, "LAS")
 
 
@@ -94,7 +94,7 @@ def load_e57(place: AnyPath) -> Loaded:
     except (DamagedFileError, LimitError):
         raise
     except Exception as error:  # What the library's C++ raises has no root.
-        raise DamagedFileError(place, f"cannot be read as E57 ({_said(error)})") from error
+        raise DamagedFileError(place, f"cannot be read as E57 ({reason_of(error)})") from error
     return _loaded(thinner, "E57")
 
 
@@ -133,7 +133,3 @@ def _check_count(place: AnyPath, count: int) -> None:
 def _loaded(thinner: Thinner, kind: str) -> Loaded:
     offset = np.zeros(3) if thinner.offset is None else thinner.offset
     return Loaded(thinner.cloud(), kind, offset, 1.0, "z", up_stated=True, read=thinner.read)
-
-
-def _said(error: BaseException) -> str:
-    return " ".join(str(error).split())[:100] or type(error).__name__

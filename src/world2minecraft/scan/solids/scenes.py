@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.errors import DamagedFileError, LimitError, reason_of
 from world2minecraft.files import read_bytes
 from world2minecraft.geometry.colour import srgb_of_linear
 from world2minecraft.scan.solids.naming import class_of_name
@@ -50,7 +50,7 @@ def load_scene(place: AnyPath) -> Loaded:
     except (DamagedFileError, LimitError):
         raise
     except Exception as error:  # What a hostile file makes trimesh raise has no common root.
-        said = " ".join(str(error).split())[:100] or type(error).__name__
+        said = reason_of(error)
         reason = f"cannot be read as {KINDS.get(suffix, suffix)} ({said}); export it again"
         raise DamagedFileError(place, reason) from error
     mesh, offset = joined(place, parts)
