@@ -14,6 +14,8 @@ from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.serve import ForgeServer
 from world2minecraft.forge.sources import Opened
 
+HANG_S = 180.0  # No measure of speed: only what never answers is given up.
+
 
 def small_editor(shape=(12, 10, 8), folder=Path("OUT")) -> Editor:
     """A floor and a wall, without objects."""
@@ -34,7 +36,7 @@ def bearer(server) -> dict[str, str]:
 
 def client(server, **options) -> httpx.Client:
     """A script: it sends the token with each request."""
-    return httpx.Client(base_url=server.url, headers=bearer(server), timeout=30, **options)
+    return httpx.Client(base_url=server.url, headers=bearer(server), timeout=HANG_S, **options)
 
 
 @contextmanager
@@ -48,7 +50,7 @@ def tab(server, **headers):
 
 
 def heard(socket_) -> dict:
-    return json.loads(socket_.recv(timeout=20))
+    return json.loads(socket_.recv(timeout=HANG_S))
 
 
 def say(socket_, **message) -> None:
@@ -61,7 +63,7 @@ def paint(first, length=3, class_id=8) -> dict:
 
 def raw(server, data: bytes, most=65536) -> bytes:
     """What the server answers to bytes as they are, until it closes."""
-    with socket.create_connection(("127.0.0.1", server.port), timeout=20) as stream:
+    with socket.create_connection(("127.0.0.1", server.port), timeout=HANG_S) as stream:
         stream.sendall(data)
         answer = b""
         while len(answer) < most and (part := stream.recv(65536)):

@@ -8,7 +8,18 @@ import zipfile
 import zlib
 
 import pytest
-from forge_serving import bearer, client, heard, paint, raw, say, served, small_editor, tab
+from forge_serving import (
+    HANG_S,
+    bearer,
+    client,
+    heard,
+    paint,
+    raw,
+    say,
+    served,
+    small_editor,
+    tab,
+)
 from websockets.exceptions import ConnectionClosed
 
 from world2minecraft.errors import UsageError
@@ -97,7 +108,7 @@ def test_a_gigabyte_is_refused_by_its_length_before_a_byte_of_it(server, path):
 def test_a_gigabyte_in_chunks_is_cut_off_at_the_limit(server):
     sent = 0
     block = b"100000\r\n" + b" " * (1 << 20) + b"\r\n"
-    with socket.create_connection(("127.0.0.1", server.port), timeout=30) as stream:
+    with socket.create_connection(("127.0.0.1", server.port), timeout=HANG_S) as stream:
         stream.sendall(head(server, "Transfer-Encoding: chunked"))
         try:
             while sent < GIGABYTE:
@@ -137,14 +148,14 @@ def test_a_packed_websocket_message_is_never_unpacked(server):
         frame = b"\xc1\xff" + len(bomb).to_bytes(8, "big") + b"\0\0\0\0" + bomb
         page.socket.sendall(frame)
         with pytest.raises(ConnectionClosed, match="1002"):
-            page.recv(timeout=20)
+            page.recv(timeout=HANG_S)
 
 
 def test_a_websocket_message_over_the_limit_closes_that_tab_alone(server):
     with tab(server) as one, tab(server) as other:
         with pytest.raises(ConnectionClosed):
             one.send(" " * (MAX_JSON_BYTES + 1))
-            one.recv(timeout=20)
+            one.recv(timeout=HANG_S)
         say(other, type="undo", seq=1)
         assert heard(other)["type"] == "refused"
 
@@ -152,7 +163,7 @@ def test_a_websocket_message_over_the_limit_closes_that_tab_alone(server):
 def test_a_websocket_message_in_pieces_has_the_same_limit(server):
     with tab(server) as page, pytest.raises(ConnectionClosed):
         page.send(" " * (1 << 20) for _ in range(64))
-        page.recv(timeout=20)
+        page.recv(timeout=HANG_S)
 
 
 @pytest.mark.parametrize("data", [b"\xff\xfe", b"\xed\xa0\x80", b"\x00" * 100, b"W2MV" * 100])

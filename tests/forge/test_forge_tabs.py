@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 import pytest
-from forge_serving import client, heard, paint, raw, say, served, small_editor, tab
+from forge_serving import HANG_S, client, heard, paint, raw, say, served, small_editor, tab
 from websockets.client import ClientProtocol
 from websockets.uri import parse_uri
 
@@ -80,8 +80,8 @@ class Sleeper:
 
     def wake(self, until) -> list[dict]:
         """Read until a message is as asked, and return all messages."""
-        self.socket.settimeout(20)
-        deadline = time.monotonic() + 20
+        self.socket.settimeout(HANG_S)
+        deadline = time.monotonic() + HANG_S
         while not self.frames or not until(self.frames[-1]):
             assert time.monotonic() < deadline, "it was not told in time"
             data = self.socket.recv(1 << 16)
@@ -140,7 +140,7 @@ def test_a_tab_that_answers_no_ping_is_let_go_and_told_where_it_stands_when_it_c
 
 def soon(asked) -> bool:
     """Whether something comes true within a time that no machine needs."""
-    deadline = time.monotonic() + 20
+    deadline = time.monotonic() + HANG_S
     while not asked() and time.monotonic() < deadline:
         time.sleep(0.01)
     return asked()
