@@ -3,6 +3,7 @@
 - ``small``: the issue's command, 2,000 images of 640x480 of 40 generated houses on all cores.
 - ``large``: a slice at the paper's 1920x1129, told for its 100,165 images.
 - ``labels``: the same slice, labels and masks alone.
+- ``views``: worlds and views alone, house by house in one process; only where it is named.
 
 ``--only NAME`` takes one of them, ``--json FILE`` writes the figures too.
 
@@ -17,6 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from world2minecraft.dataset.building import TITLES, BuildReport, build_dataset
+from world2minecraft.dataset.building.scenes import SceneTask, survey
 from world2minecraft.dataset.engine import opened_engine
 from world2minecraft.dataset.plan import Recipe, house_scenes, plan_dataset
 from world2minecraft.dataset.tours import paper_camera
@@ -27,6 +29,7 @@ PAPER_IMAGES = 100_165
 BUDGET_MS = {"render": 120, "encode": 65, "labels": 60}
 BUDGET_ALL_MS, BUDGET_MINUTES = 285, 10
 CASES = ("small", "large", "labels")
+VIEWS = "views"
 
 
 def built(folder: Path, houses: int, images: int, recipe: Recipe, jobs: int) -> BuildReport:
@@ -47,6 +50,19 @@ def told(title: str, report: BuildReport, images: int) -> dict[str, float]:
     return {**each, "seconds": report.seconds, "hours": hours}
 
 
+def looked_at(folder: Path, houses: int, images: int) -> None:
+    """Print CPU milliseconds of houses and their views; the first one waits for tables, too."""
+    plan, spent = plan_dataset(house_scenes(houses), images, recipe=Recipe()), []
+    folder.mkdir()
+    for scene in plan.scenes:
+        facts, seconds = survey(SceneTask(str(folder), scene, plan.recipe), lambda count: None)
+        spent.append(1000 * seconds)
+        print(f"{scene.scene_id}: {facts.views} views, {spent[-1]:.0f} ms, {facts.digest[:12]}")
+    if houses > 1:
+        views = sum(scene.images for scene in plan.scenes[1:])
+        print(f"without the first house: {sum(spent[1:]) / views:.1f} ms a view")
+
+
 def peak_mb() -> float:
     """Return the most that a process of this run has had, in MB."""
     most = (resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, -1))
@@ -55,9 +71,9 @@ def peak_mb() -> float:
 
 def main() -> int:
     options = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    options.add_argument("--only", choices=CASES, action="append")
-    options.add_argument("--images", type=int, default=2000, help="of the small case")
-    options.add_argument("--houses", type=int, default=40, help="of the small case")
+    options.add_argument("--only", choices=(*CASES, VIEWS), action="append")
+    options.add_argument("--images", type=int, default=2000, help="of small and views")
+    options.add_argument("--houses", type=int, default=40, help="of small and views")
     options.add_argument("--slice", type=int, default=120, help="images of the large cases")
     options.add_argument("--jobs", type=int, default=usual_workers())
     options.add_argument("--json", type=Path, help="write the figures to this file")
@@ -66,6 +82,8 @@ def main() -> int:
     large = Recipe(camera=paper_camera())
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
+        if VIEWS in cases:
+            looked_at(folder / VIEWS, words.houses, words.images)
         if "small" in cases:
             report = built(folder / "small", words.houses, words.images, Recipe(), words.jobs)
             kept["small"] = told("640x480", report, words.images)

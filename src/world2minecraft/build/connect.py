@@ -9,7 +9,7 @@ import numpy as np
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.coordinates import block_axes_to_grid, grid_to_block_axes
 from world2minecraft.minecraft.rules.connections import connected
-from world2minecraft.minecraft.rules.stability import unstable_cells
+from world2minecraft.minecraft.rules.stability import unmet_cells
 
 ROUNDS = 8  # A lantern at a chain at a fence: what falls seldom carries more than a few others.
 _LEAVES = ("falls", "pops off", "breaks", "flows")
@@ -35,7 +35,7 @@ def settle(canvas: Canvas) -> int:
         blocks = grid_to_block_axes(canvas.states)
         loose = [
             cell
-            for cell, _, reason in unstable_cells(blocks, canvas.palette)
+            for cell, _, reason in unmet_cells(blocks, canvas.palette)
             if reason.startswith(_LEAVES)
         ]
         if not loose:

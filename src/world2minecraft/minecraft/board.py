@@ -14,6 +14,7 @@ from world2minecraft.minecraft.states import complete, parse_state
 from world2minecraft.types import AIR
 
 MOST_STATES = 1 << 16  # A volume's states are uint16.
+_NONE = np.empty(0, np.int32)
 
 
 class Board:
@@ -27,8 +28,9 @@ class Board:
         self._ids = {state: number for number, state in reversed([*enumerate(self.palette)])}
         self._columns: dict[str, np.ndarray] = {}
         self._blocks: dict[str, int] = {}
-        padded = np.pad(states.astype(np.uint16, copy=False), 1, constant_values=self.id_of(AIR))
-        self.shape = padded.shape
+        self.shape = tuple(side + 2 for side in states.shape)
+        padded = np.full(self.shape, self.id_of(AIR), np.uint16)
+        padded[1:-1, 1:-1, 1:-1] = states
         self.flat = padded.ravel()
         strides = np.array([self.shape[1] * self.shape[2], self.shape[2], 1])
         self.steps = np.array(STEPS) @ strides
@@ -44,14 +46,15 @@ class Board:
 
     def column(self, name: str) -> np.ndarray:
         """Return one trait of every state of the palette, int32 [P]."""
-        if name not in self._columns:
-            found = [self._trait(text, name) for text in self.palette]
-            self._columns[name] = np.array(found, np.int32)
-        return self._columns[name]
+        known = self._columns.get(name, _NONE)
+        if len(known) < len(self.palette):  # States that have joined since it was last asked for.
+            more = [self._trait(text, name) for text in self.palette[len(known) :]]
+            self._columns[name] = known = np.concatenate([known, np.array(more, np.int32)])
+        return known
 
-    def cells_of(self, *kinds: int) -> np.ndarray:
-        """Return the cells, int [N], whose states are of some kinds."""
-        return self._cells[np.isin(self._kinds, kinds)]
+    def cells_of(self, kind: int) -> np.ndarray:
+        """Return the cells, int [N], whose states are of a kind."""
+        return self._cells[self._kinds == kind]
 
     def at(self, cells: np.ndarray, direction: int | None = None) -> np.ndarray:
         """Return the states, uint16 [N], of cells or of their neighbours in a direction."""
@@ -103,7 +106,6 @@ class Board:
                 raise LimitError("palette", "has more than 65,536 block states")
             self._ids[text] = len(self.palette)
             self.palette.append(text)
-            self._columns = {}
         return self._ids[text]
 
     def _trait(self, text: str, name: str) -> int:

@@ -86,6 +86,7 @@ def parse_state(text: str) -> BlockState:
     return BlockState(name, properties)
 
 
+@lru_cache(maxsize=1 << 16)
 def complete(state: BlockState) -> BlockState:
     """Fill in the properties that the state leaves out with the defaults of its block.
 

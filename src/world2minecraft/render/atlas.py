@@ -7,6 +7,7 @@ darken towards the rim of their holes.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from world2minecraft.render.texture import Texture
 
 SIZES_PX = (16, 32, 64, 128)
 MATERIAL = ("normal x", "normal y", "roughness", "metal", "emission")
+MOST_KEPT_PX = 32  # 12 kB a texture with all its levels.
+_ROWS: WeakKeyDictionary[Texture, dict[int, tuple[np.ndarray, np.ndarray]]] = WeakKeyDictionary()
 _FLAT = np.array([128, 128, 200, 0, 0], np.uint8)  # Facing outward, rather rough, no metal, dark.
 
 
@@ -58,12 +61,22 @@ def atlas_of(textures: Sequence[Texture], side_px: int) -> Atlas:
     texels = np.empty((len(textures), texel_count(side_px), 4), np.uint8)
     material = np.empty((len(textures), texel_count(side_px), 5), np.uint8)
     for row, texture in enumerate(textures):
-        colour, extra = texture.colour, _material(texture)
-        colour, extra = _fitted(colour, side_px), _fitted(extra, side_px)
-        texels[row] = np.concatenate(_colour_levels(colour))
-        material[row] = np.concatenate(_levels(extra))
+        texels[row], material[row] = _rows_of(texture, side_px)
     translucent = np.array([texture.translucent for texture in textures], bool)
     return Atlas(side_px, texels, material, translucent)
+
+
+def _rows_of(texture: Texture, side_px: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the texels and the material of a texture with all its levels.
+
+    Those of small ones are kept as long as their texture: scene after scene is made of the same.
+    """
+    kept = _ROWS.setdefault(texture, {}) if side_px <= MOST_KEPT_PX else {}
+    if side_px not in kept:
+        colour = _fitted(texture.colour, side_px)
+        extra = _fitted(_material(texture), side_px)
+        kept[side_px] = (np.concatenate(_colour_levels(colour)), np.concatenate(_levels(extra)))
+    return kept[side_px]
 
 
 def _material(texture: Texture) -> np.ndarray:

@@ -7,6 +7,7 @@ it in each cell that it reaches.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
@@ -83,7 +84,7 @@ class Baker:
                     table.layers[row, side] = self._layer(face)
                     table.uv[row, side] = face.uv
                     if face.tint is not None:
-                        table.tints[row, side] = to_linear(np.array(face.tint))
+                        table.tints[row, side] = _linear_tint(face.tint)
         rows = np.array(turns).reshape(-1, 3, 4)
         lengths = np.linalg.norm(rows[:, :, :3], axis=2, keepdims=True)
         return table._with_turns(rows, rows[:, :, :3] / np.maximum(lengths, 1e-12))
@@ -108,6 +109,11 @@ class ElementTable:
             self.boxes, self.traits, np.ascontiguousarray(turns), np.ascontiguousarray(normals),
             self.layers, self.uv, self.tints, self.emission, self.atlas,
         )  # fmt: skip
+
+
+@lru_cache(maxsize=1024)
+def _linear_tint(tint: tuple[int, int, int]) -> np.ndarray:
+    return to_linear(np.array(tint))
 
 
 def kind_of(model: BlockModel, looks: LookSource) -> int:
@@ -145,6 +151,9 @@ def joins(state: str, model: BlockModel) -> bool:
 
 def reaches_out(element: Element) -> bool:
     """Whether an element reaches beyond its block."""
+    if element.turn is None:
+        ends = (*element.low, *element.high)
+        return min(ends) < -_INSIDE or max(ends) > 1 + _INSIDE
     corners = element_corners(element)
     return bool((corners < -_INSIDE).any() or (corners > 1 + _INSIDE).any())
 

@@ -1,6 +1,7 @@
 """A texture: colours, and what a path tracer and a relief light want besides."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -40,7 +41,7 @@ class Texture:
                     f"{name} must be uint8 {[*shape[:2], *depth]}, not {value.dtype} {value.shape}"
                 )
 
-    @property
+    @cached_property
     def has_holes(self) -> bool:
         """Whether rays may pass: it has holes, or is translucent."""
         return self.translucent or bool((self.colour[..., 3] < 128).any())

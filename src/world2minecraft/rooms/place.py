@@ -7,6 +7,7 @@ first four are numbered by the quarter turns of a front that looks away from the
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -29,7 +30,7 @@ class Item:
     z_m: float
     yaw_deg: float
 
-    @property
+    @cached_property
     def box_m(self) -> Box:
         """The axis-aligned box around it, x0 y0 z0 x1 y1 z1."""
         d, w, h = self.model.size_m

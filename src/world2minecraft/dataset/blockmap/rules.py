@@ -83,6 +83,7 @@ class BlockMap:
     designs: tuple[tuple[Pattern, str], ...]  # our furniture designs -> a class
     unless_known: frozenset[str]  # kinds whose class gives way to what is known already
     entities: tuple[tuple[Pattern, str], ...]  # what stands free of the grid -> a class
+    _found: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     def meaning(self, state: str) -> str:
         """Return the class or the kind of a block state by its name alone.
@@ -92,6 +93,11 @@ class BlockMap:
             >>> load_block_map("nyu").meaning("minecraft:bookshelf")
             'furn'
         """
+        if state not in self._found:  # Scene after scene is built of the same states.
+            self._found[state] = self._meaning_of(state)
+        return self._found[state]
+
+    def _meaning_of(self, state: str) -> str:
         full, _, rest = state.partition("[")
         full = full if ":" in full else f"minecraft:{full}"
         if full in self.blocks:

@@ -68,13 +68,19 @@ def unstable_cells(
     return sorted(_all_cells(states, palette))
 
 
+def unmet_cells(
+    states: np.ndarray, palette: Sequence[str]
+) -> list[tuple[tuple[int, int, int], str, str]]:
+    """Return the same but for those that an update would only connect or shape otherwise."""
+    board = Board(states, palette)
+    found = [*_unmet(board), *_flowing(board)]
+    return sorted((_place(board, cell), palette[int(board.flat[cell])], why) for cell, why in found)
+
+
 def _all_cells(
     states: np.ndarray, palette: Sequence[str]
 ) -> list[tuple[tuple[int, int, int], str, str]]:
-    board = Board(states, palette)
-    found = [*_unmet(board), *_flowing(board)]
-    cells = [(_place(board, cell), palette[int(board.flat[cell])], why) for cell, why in found]
-    return cells + _changing(states, palette)
+    return unmet_cells(states, palette) + _changing(states, palette)
 
 
 def _place(board: Board, cell: int) -> tuple[int, int, int]:

@@ -62,6 +62,7 @@ def wares() -> tuple[Ware, ...]:
     return tuple(told[name] for name in sorted(told))
 
 
+@cache
 def _pile(mount: str) -> list[Ware]:
     if mount != HOME:
         return [ware for ware in wares() if ware.mount == mount]

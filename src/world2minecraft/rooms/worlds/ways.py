@@ -83,20 +83,24 @@ def _largest(parts: np.ndarray) -> int:
 def _eroded(free: np.ndarray, body: int) -> np.ndarray:
     places = free
     for axis in (0, 1):
-        padded = np.pad(places, [(0, body - 1) if a == axis else (0, 0) for a in (0, 1)])
-        windows = [np.roll(padded, -n, axis) for n in range(body)]
-        places = np.logical_and.reduce(windows)[: free.shape[0], : free.shape[1]]
+        places = np.logical_and.reduce(_windows(places, body, axis, before=0))
     return places
 
 
 def _grown(places: np.ndarray, body: int) -> np.ndarray:
     covered = places
     for axis in (0, 1):
-        padded = np.pad(covered, [(body - 1, 0) if a == axis else (0, 0) for a in (0, 1)])
-        windows = [np.roll(padded, -n, axis) for n in range(body)]
-        whole = np.logical_or.reduce(windows)
-        covered = whole[: places.shape[0], : places.shape[1]]
+        covered = np.logical_or.reduce(_windows(covered, body, axis, before=body - 1))
     return covered
+
+
+def _windows(mask: np.ndarray, body: int, axis: int, before: int) -> list[np.ndarray]:
+    """Return a mask shifted by 0 to ``body`` - 1 along an axis, nothing beyond its ends."""
+    size = mask.shape[axis]
+    shape = [side + (body - 1) * (a == axis) for a, side in enumerate(mask.shape)]
+    padded, rest = np.zeros(shape, bool), (slice(None),) * axis
+    padded[(*rest, slice(before, before + size))] = mask
+    return [padded[(*rest, slice(n, n + size))] for n in range(body)]
 
 
 def _before(gap: BlockGap, floor: np.ndarray, body: int) -> tuple[int, int]:
