@@ -134,5 +134,5 @@ def manifest(capture: Path, labels: Path | None, chosen: Parameters) -> dict:
         "plan": hash_capture(Path(chosen.plan)) if chosen.plan else None,
         "networks": [hash_capture(path) for path in network_files(chosen)],
         "parameters": chosen.as_json(),
-        "versions": {name: version(name) for name in ("numpy", "scipy", "scikit-learn", "numba")},
+        "versions": {name: version(name) for name in ("numpy", "scipy", "numba")},
     }

@@ -31,6 +31,19 @@ def test_clusters_are_those_of_the_definition(seed, radius, min_samples):
                 assert (found[one] == found[two]) == bool(joined[one, two])
 
 
+@given(st.integers(0, 2**32 - 1), st.sampled_from([1.0, 2**0.5, 2.0, 2.5]), st.integers(1, 6))
+def test_clusters_are_those_of_scikit_learn(seed, radius, min_samples):
+    from sklearn.cluster import DBSCAN
+
+    rng = np.random.default_rng(seed)
+    points = rng.permutation(np.unique(rng.integers(0, 7, (60, 3)), axis=0)).astype(np.int32)
+    labels = DBSCAN(eps=radius, min_samples=min_samples).fit(points.astype(float)).labels_
+    found = cluster_candidates(points, np.full(len(points), 5, np.uint8), radius, min_samples)
+    np.testing.assert_array_equal(found < 0, labels < 0)
+    pairs = set(zip(labels.tolist(), found.tolist(), strict=True))
+    assert len(pairs) == len(set(labels.tolist())) == len(set(found.tolist()))
+
+
 @given(st.integers(0, 2**32 - 1))
 def test_classes_never_share_a_cluster_and_numbers_rise_with_class_and_place(seed):
     rng = np.random.default_rng(seed)

@@ -1,6 +1,9 @@
 """The paper's clustering: candidates within each class by DBSCAN, and the centroids C'."""
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
 
 NO_CLUSTER = -1
 
@@ -38,11 +41,24 @@ def centroids(candidates: np.ndarray, clusters: np.ndarray) -> np.ndarray:
 
 
 def _dbscan(points: np.ndarray, radius: float, min_samples: int) -> np.ndarray:
-    # Imported late: scikit-learn takes most of a second, which no other stage needs to pay.
-    from sklearn.cluster import DBSCAN  # noqa: PLC0415
+    """Return DBSCAN's cluster of each point, int [N], as scikit-learn numbers them.
 
-    search = DBSCAN(eps=radius, min_samples=min_samples, metric="euclidean", n_jobs=1)
-    return search.fit(points.astype(np.float64)).labels_.astype(np.int32)
+    Cores within reach of each other are one cluster, numbered by its first core; a border point
+    goes to the first cluster that reaches it. Importing scikit-learn took longer than the stage.
+    """
+    count = len(points)
+    pairs = KDTree(points.astype(np.float64)).query_pairs(radius, output_type="ndarray")
+    is_core = np.bincount(pairs.ravel(), minlength=count) + 1 >= min_samples
+    joined = pairs[is_core[pairs].all(axis=1)]
+    graph = coo_array((np.ones(len(joined), bool), tuple(joined.T)), shape=(count, count))
+    part = connected_components(graph, directed=False)[1]
+    firsts, found = np.unique(part[is_core], return_index=True)
+    labels = np.full(count, count)
+    labels[is_core] = np.argsort(np.argsort(found))[np.searchsorted(firsts, part[is_core])]
+    for border, core in (pairs.T, pairs.T[::-1]):
+        reached = ~is_core[border] & is_core[core]
+        np.minimum.at(labels, border[reached], labels[core[reached]])
+    return np.where(labels < count, labels, NO_CLUSTER)
 
 
 def _ordered(clusters: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -7,7 +7,6 @@ are laid on the upright surfaces of the scan, by four quarter turns and any shif
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import fftconvolve
 
 from world2minecraft.coordinates import rotation_about_z
 from world2minecraft.exchange.roomplan import CapturedPlan
@@ -194,6 +193,9 @@ def _shifts(
 
     All shifts by whole cells are tried at once, as a correlation; of near ones the best is kept.
     """
+    # Imported late: it takes half a second, which a run without a plan need not pay.
+    from scipy.signal import fftconvolve  # noqa: PLC0415
+
     low = points.min(axis=0)
     cells = np.floor((points - low) / evidence.voxel_m).astype(int)
     walls = np.zeros(cells.max(axis=0) + 1)
