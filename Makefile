@@ -6,7 +6,9 @@ ONLY ?=
 
 VENV := .venv
 BIN := $(VENV)/bin
+# All that developers need is in; or as much as `make demo` needs.
 STAMP := $(VENV)/.installed
+TRIAL := $(VENV)/.trial-installed
 # There while packages are put in: what an interrupted try left is made anew.
 HALF := $(VENV)/.half-installed
 # Build tools are pinned too; a path without spaces, because pip splits this variable.
@@ -14,13 +16,32 @@ export PIP_CONSTRAINT := constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 # An environment knows its own place by heart: one that was copied or moved is made anew.
-ifneq ($(shell cat $(STAMP) 2>/dev/null),$(shell pwd))
-$(shell rm -f $(STAMP))
-endif
+$(foreach stamp,$(STAMP) $(TRIAL),$(if $(filter-out $(shell pwd),$(shell cat $(stamp) 2>/dev/null)),$(shell rm -f $(stamp))))
 # So is one whose interpreter is gone.
 ifneq ($(shell $(BIN)/python -c 'print("runs")' 2>/dev/null),runs)
-$(shell rm -f $(STAMP))
+$(shell rm -f $(STAMP) $(TRIAL))
 endif
+
+comma := ,
+# Put an extra of ours, with the pinned versions, into .venv.
+define install
+$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' \
+  || { echo "Python 3.11 to 3.13 is needed: make PYTHON=python3.12 ..." >&2; exit 1; }; \
+set -e; \
+if test -e $(HALF); then rm -rf $(VENV); fi; \
+if command -v uv >/dev/null 2>&1; then \
+  $(BIN)/python -c pass 2>/dev/null || \
+    uv venv --quiet --clear --seed --python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" $(VENV); \
+  touch $(HALF); \
+  uv pip install --quiet --python $(BIN)/python --constraint constraints.txt \
+    --build-constraint constraints.txt --editable '.[$(1)]'; \
+else \
+  $(BIN)/python -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV); \
+  touch $(HALF); \
+  $(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[$(1)]'; \
+fi; \
+rm $(HALF); pwd > $@
+endef
 
 .PHONY: help demo docs forge test test-live test-server test-trainers mutants release-check lint bench
 .PHONY: setup clean
@@ -29,32 +50,23 @@ endif
 help:  ## Show the targets.
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile
 
-setup: $(STAMP)  ## Make .venv and install what the pins say.
+setup: $(STAMP)  ## Make .venv with all that tests, docs and training need (3.6 GB).
+
+# A room in the game, its editor and an agent in it need no torch and no checkers.
+$(TRIAL): pyproject.toml constraints.txt
+	@echo "setting up .venv, once: a minute or more, 1.4 GB"
+	@$(call install,capture$(comma)vln)
 
 $(STAMP): pyproject.toml constraints.txt
-	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' \
-	  || { echo "Python 3.11 to 3.13 is needed: make PYTHON=python3.12 ..." >&2; exit 1; }
-	@set -e; \
-	if test -e $(HALF); then rm -rf $(VENV); fi; \
-	if command -v uv >/dev/null 2>&1; then \
-	  $(BIN)/python -c pass 2>/dev/null || \
-	    uv venv --quiet --clear --python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" $(VENV); \
-	  touch $(HALF); \
-	  uv pip install --quiet --python $(BIN)/python --constraint constraints.txt \
-	    --build-constraint constraints.txt --editable '.[dev]'; \
-	else \
-	  $(BIN)/python -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV); \
-	  touch $(HALF); \
-	  $(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'; \
-	fi; \
-	rm $(HALF); pwd > $@
+	@echo "setting up .venv with all that developers need, once: some minutes, 3.6 GB"
+	@$(call install,dev)
 
-demo: $(STAMP)  ## Scan the embedded room and build it as a Minecraft world in OUT/.
+demo: $(if $(wildcard $(STAMP)),$(STAMP),$(TRIAL))  ## Scan a generated room and build it as a Minecraft world in OUT/.
 	@$(BIN)/python -m world2minecraft.cli demo
 
 docs: $(STAMP)  ## Build the site of the docs into site/, strictly.
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet --strict
-	@echo "site/index.html; to search in it too: $(BIN)/python -m http.server --directory site"
+	@echo "site/index.html"
 
 forge:  ## Build SceneForge's page from its TypeScript (needs Node 20 and npm).
 	@cd src/world2minecraft/forge/web && npm ci --no-audit --no-fund --silent && npm run --silent build
