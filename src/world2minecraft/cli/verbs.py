@@ -8,7 +8,7 @@ that its ``--help`` ends with. ``run`` returns an exit code, or None for 0.
 
 from collections.abc import Callable, Sequence
 from importlib import import_module
-from inspect import cleandoc
+from inspect import cleandoc, signature
 from typing import Annotated, Any
 
 import typer
@@ -71,6 +71,9 @@ VERBS: dict[str, str] = {
     "doctor": "Check that this machine can run the program.",
 }
 
+# What stands in the help for a value that has no word of its own, by what its type says.
+VALUE_WORDS = {"Path": "PATH", "str": "TEXT", "float": "X", "int": "N"}
+
 EXAMPLES = """\
 w2m demo                                  a room to OUT/, nothing needed
 w2m scan my_scan                          what is in this folder?
@@ -96,6 +99,27 @@ class VerbCommand(TyperCommand):
     """A verb whose help ends with its examples, printed as they are written."""
 
     examples = ""
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """Return what follows the verb: names in capitals, in brackets what may be left out."""
+        words = (
+            (f"{one.metavar}" if one.required else f"[{one.metavar}]") + "..." * (one.nargs != 1)
+            for one in self.params
+            if one.param_type_name == "argument"
+        )
+        return ["[OPTIONS]", *words]
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write the arguments, then the options, each with its line."""
+        for kind in ("argument", "option"):
+            rows = [
+                (one.metavar or record[0] if kind == "argument" else record[0], record[1])
+                for one in self.get_params(ctx)
+                if one.param_type_name == kind and (record := one.get_help_record(ctx))
+            ]
+            if rows:
+                with formatter.section(f"{kind.capitalize()}s"):
+                    formatter.write_dl(rows)
 
     def format_epilog(self, ctx: Any, formatter: Any) -> None:
         """Write the examples under the options."""
@@ -157,7 +181,21 @@ def load(verb: str) -> Any:
     app.command(name=words[-1], help=_help(verb, module.run), cls=VerbCommand)(module.run)
     command = typer.main.get_command(app)
     command.examples = module.EXAMPLES  # type: ignore[attr-defined]
+    _name_values(command, module.run)
     return command
+
+
+def _name_values(command: Any, function: Callable[..., Any]) -> None:
+    """Give each argument and value its word in capitals, the same in help and errors."""
+    told = signature(function).parameters
+    for one in command.params:
+        if one.param_type_name == "argument":
+            word = (one.metavar or one.name.upper()).removesuffix("...")
+            one.metavar = word[1:-1] if word[0] + word[-1] == "[]" else word
+        elif one.metavar is None and not one.is_flag and one.name in told:
+            kind = told[one.name].annotation  # Annotated[...], of which the type is the first.
+            kind = str(kind.__origin__ if hasattr(kind, "__metadata__") else kind)
+            one.metavar = next((VALUE_WORDS[part] for part in VALUE_WORDS if part in kind), None)
 
 
 def _family(first: str) -> Any:
