@@ -5,9 +5,9 @@ import json
 import pytest
 
 from world2minecraft.cli import run
-from world2minecraft.paper import filled, read_results, read_table
+from world2minecraft.paper import filled, read_results, read_table, table_names
 from world2minecraft.paper.layout import grid_of
-from world2minecraft.paper.writing import as_latex, as_markdown
+from world2minecraft.paper.writing import as_latex, as_markdown, as_text
 
 QUALITY = """\
 Table 3 of the paper. Picture quality
@@ -148,3 +148,21 @@ def test_other_forms_have_all_cells(capsys):
     assert r"\textit{23.33}" in latex
     assert run(["paper", "1", "--json", "--latex"]) == 2
     assert "choose one of --markdown, --latex and --json" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", table_names())
+def test_no_line_is_wider_than_a_page(name):
+    text = as_text(*filled(read_table(name)))
+    assert [line for line in text.splitlines() if len(line) > 100] == []
+
+
+def test_a_wide_table_goes_on_below_with_the_same_labels_and_loses_no_cell():
+    grid = grid_of(*filled(read_table("occupancy")))
+    lines = as_text(*filled(read_table("occupancy"))).splitlines()
+    heads = [line for line in lines if line.split()[:2] == ["Setting", "Method"]]
+    assert len(heads) == 2
+    assert heads[0].split() + heads[1].split()[2:] == grid.rows[0]
+    (first, second) = (n for n, line in enumerate(lines) if line in heads)
+    for number, row in enumerate(grid.rows):
+        both = lines[first + number].split() + lines[second + number].split()
+        assert set(" ".join(row).split()) <= set(both)

@@ -10,27 +10,20 @@ from world2minecraft.paper.values import Ours, PaperTable
 from world2minecraft.vln.running.tables import markdown_of
 
 CELL_WIDTH = 36  # Longer cells are broken into lines.
-NOTE_WIDTH = 100
+PAGE_WIDTH = 100  # Of the whole: what a terminal, a mail and a page in print hold.
+GAP = "  "  # Between columns.
 
 
 def as_text(table: PaperTable, ours: Mapping[str, Ours]) -> str:
     """Return a table for the terminal, with its title above and its notes below."""
     grid = grid_of(table, ours)
-    broken = [[textwrap.wrap(cell, CELL_WIDTH) or [""] for cell in row] for row in _indented(grid)]
-    widths = [max(len(line) for row in broken for line in row[n]) for n in range(len(grid.rows[0]))]
-    lines = [
-        "  ".join(
-            _line(cell, n).ljust(width) if column < grid.left else _line(cell, n).rjust(width)
-            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in broken
-        for n in range(max(len(cell) for cell in row))
-    ]
+    rows = _indented(grid)
+    lines = [line for block in _blocks(rows, grid.left) for line in [*_drawn(*block), ""]]
     notes = [
-        textwrap.fill(note, NOTE_WIDTH, subsequent_indent="    ", break_on_hyphens=False)
+        textwrap.fill(note, PAGE_WIDTH, subsequent_indent="    ", break_on_hyphens=False)
         for note in grid.notes
     ]
-    return "\n".join([_title(table), "", *lines, "", *notes])
+    return "\n".join([_title(table), "", *lines, *notes])
 
 
 def as_markdown(table: PaperTable, ours: Mapping[str, Ours]) -> str:
@@ -97,6 +90,74 @@ def _ours_values(told: Ours | None) -> dict[str, Any] | None:
 
 def _title(table: PaperTable) -> str:
     return f"Table {table.number} of the paper. {table.title}"
+
+
+def _blocks(rows: list[list[str]], left: int) -> list[tuple[list[list[list[str]]], int]]:
+    """Return the table as blocks no wider than the page, each with how many columns are texts.
+
+    Columns of text are folded. Where that is not enough the numbers go on in a block below, beside
+    the same labels.
+    """
+    whole = _folded(rows)
+    if _total(whole) <= PAGE_WIDTH or left == len(rows[0]):
+        return [(whole, left)]
+    labels, blocks = list(range(left)), []
+    taken: list[int] = []
+    for column in range(left, len(rows[0])):
+        tried = _unfolded(rows, [*labels, *taken, column])
+        if taken and _total(tried) > PAGE_WIDTH:
+            blocks.append((_unfolded(rows, labels + taken), left))
+            taken = []
+        taken.append(column)
+    return [*blocks, (_unfolded(rows, labels + taken), left)]
+
+
+def _unfolded(rows: list[list[str]], columns: list[int]) -> list[list[list[str]]]:
+    return [[_lines(row[n], CELL_WIDTH) for n in columns] for row in rows]
+
+
+def _drawn(broken: list[list[list[str]]], left: int) -> list[str]:
+    """Return the lines of a block: texts to the left of their columns, numbers to the right."""
+    widths = _widths(broken)
+    return [
+        GAP.join(
+            _line(cell, n).ljust(width) if column < left else _line(cell, n).rjust(width)
+            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in broken
+        for n in range(max(len(cell) for cell in row))
+    ]
+
+
+def _folded(rows: list[list[str]]) -> list[list[list[str]]]:
+    """Return each cell as its lines: the widest column that can be folded more gives way first."""
+    limits = [CELL_WIDTH] * len(rows[0])
+    firm: set[int] = set()  # Columns as narrow as their longest word.
+    while True:
+        broken = [
+            [_lines(cell, limit) for cell, limit in zip(row, limits, strict=True)] for row in rows
+        ]
+        widths = _widths(broken)
+        firm |= {n for n, width in enumerate(widths) if width > limits[n]}
+        loose = [n for n in range(len(widths)) if n not in firm]
+        if _total(broken) <= PAGE_WIDTH or not loose:
+            return broken
+        widest = max(loose, key=lambda n: widths[n])
+        limits[widest] = min(limits[widest], widths[widest]) - 1
+
+
+def _total(broken: list[list[list[str]]]) -> int:
+    widths = _widths(broken)
+    return sum(widths) + len(GAP) * (len(widths) - 1)
+
+
+def _lines(cell: str, width: int) -> list[str]:
+    whole = {"break_long_words": False, "break_on_hyphens": False}
+    return textwrap.wrap(cell, max(width, 1), **whole) or [""]
+
+
+def _widths(broken: list[list[list[str]]]) -> list[int]:
+    return [max(len(line) for row in broken for line in row[n]) for n in range(len(broken[0]))]
 
 
 def _indented(grid: Grid) -> list[list[str]]:
