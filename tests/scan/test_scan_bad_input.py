@@ -67,6 +67,19 @@ def test_a_missing_folder_a_file_an_empty_folder_and_another_kind(tmp_path):
     _refused(tmp_path / "music", "another kind, which holds 1 .txt;", "7-Scenes", "captures.md")
 
 
+def test_a_capture_one_folder_deeper_is_named(tmp_path, views):
+    write_plain(tmp_path / "download" / "room", views)
+    (tmp_path / "download" / "LICENSE").write_text("free")
+    line = _refused(tmp_path / "download", "which holds 1 file without suffix, 1 folder; ")
+    assert line.endswith(f"a capture lies one folder deeper: give {tmp_path / 'download' / 'room'}")
+
+
+def test_of_two_captures_one_folder_deeper_none_is_chosen(tmp_path, views):
+    for name in ("kitchen", "hall"):
+        write_plain(tmp_path / "flat" / name, views)
+    _refused(tmp_path / "flat", "which holds 2 folders; a capture is one of these")
+
+
 @pytest.mark.parametrize("layout", list(WRITERS))
 @pytest.mark.parametrize("kind", ["depth", "col"])
 def test_images_cut_short_everywhere(tmp_path, views, layout, kind):

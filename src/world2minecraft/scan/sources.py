@@ -5,7 +5,7 @@ through the entry point group ``world2minecraft.source``.
 """
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -44,6 +44,7 @@ SOURCES = Registry(
 )
 TAKES_ANY = ("photos", "photo")  # Asked last, after those of other packages too.
 MAX_WRAPPINGS = 3  # Folders that hold nothing but a folder, as zips often do.
+MAX_LOOKED_INTO = 50  # Folders of a wrong folder that are tried, for a hint.
 INDEX_FILES = ("capture.json", "transforms.json")
 
 
@@ -68,11 +69,15 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
         raise CaptureError(place, f"cannot be read: {error.strerror or error}") from error
     names = sorted(SOURCES.names(), key=lambda name: name in TAKES_ANY)
     sources: list[Source] = [SOURCES.load(name)() for name in names]
+    choosy = sources[: -len(TAKES_ANY)]
     for inner in _places(place):
         for source in sources:
             if source.recognise(inner):
                 return replace(_read(source, inner, options), folder=place)
     kind = "is empty" if empty else f"is a {_kind(place)} of another kind{_held(place)}"
+    within = _within(place, choosy)
+    if within is not None:
+        raise CaptureError(place, f"{kind}; a capture lies one folder deeper: give {within}")
     known = ", ".join(_called(source.layout) for source in sources)
     raise CaptureError(
         place,
@@ -113,11 +118,31 @@ def _held(place: Path) -> str:
         return ""
     entries = list(place.iterdir())
     kinds = Counter(
-        "folders" if entry.is_dir() else entry.suffix.lower() or "files without suffix"
+        "folder" if entry.is_dir() else entry.suffix.lower() or "file without suffix"
         for entry in entries
     )
     most = sorted(kinds.items(), key=lambda item: (-item[1], item[0]))[:4]
-    return ", which holds " + ", ".join(f"{count} {kind}" for kind, count in most)
+    return ", which holds " + ", ".join(_counted(count, kind) for kind, count in most)
+
+
+def _counted(count: int, kind: str) -> str:
+    """Return how many there are, in words.
+
+    Example:
+        >>> [_counted(count, "file without suffix") for count in (1, 2)] + [_counted(2, ".png")]
+        ['1 file without suffix', '2 files without suffix', '2 .png']
+    """
+    first, *rest = kind.split()
+    return " ".join([str(count), first + "s" * (count > 1 and not first.startswith(".")), *rest])
+
+
+def _within(place: Path, sources: Sequence[Source]) -> Path | None:
+    """Return the folder in a folder that is a capture; None where none or several are."""
+    if not place.is_dir():
+        return None
+    folders = sorted(entry for entry in place.iterdir() if entry.is_dir())[:MAX_LOOKED_INTO]
+    known = [one for one in folders if any(source.recognise(one) for source in sources)]
+    return known[0] if len(known) == 1 else None
 
 
 def _called(layout: str) -> str:

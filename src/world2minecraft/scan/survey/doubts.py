@@ -135,11 +135,15 @@ def _movement(survey: Survey, route: Route) -> Iterator[Doubt]:
     typical = survey.judged.typical_depth_m
     if spread > (STILL_SHARE * typical if typical else STILL_M):
         return
-    text = f"all cameras stand within {2 * spread:.2f} m: the camera turned but did not walk"
+    text = f"all cameras stand within {2 * spread:.2f} m; the camera turned but did not walk"
     if route.from_pictures:
-        yield Doubt("stop", "turning", text, "depth needs steps aside: walk around while you film")
+        yield Doubt(
+            "stop", "turning", text, "walk around while you film, for depth needs steps aside"
+        )
     else:
-        yield Doubt("warn", "turning", text, "walk around: what stands behind things stays unseen")
+        yield Doubt(
+            "warn", "turning", text, "walk around, or what stands behind things stays unseen"
+        )
 
 
 def _blur(survey: Survey, route: Route) -> Iterator[Doubt]:
@@ -267,7 +271,10 @@ def _colour(survey: Survey, route: Route) -> Iterator[Doubt]:
 
 
 def _named(pictures: Sequence[Picture]) -> str:
-    names = ", ".join(picture.name for picture in pictures[:3])
+    names = ", ".join(
+        f"picture {picture.name}" if picture.name.isdigit() else picture.name
+        for picture in pictures[:3]
+    )
     return names + (f" and {len(pictures) - 3} more" if len(pictures) > 3 else "")
 
 
