@@ -43,6 +43,13 @@ def test_parts_that_meet_at_a_corner_are_one():
     np.testing.assert_array_equal(cleaned.labels, labels)
 
 
+@pytest.mark.parametrize("label", [0, 11, 255])
+def test_a_grid_of_one_kind_stays_as_it_is(label):
+    grid = grid_of(np.full((3, 3, 3), label, np.uint8))
+    cleaned = remove_floaters(grid, CleanParameters())
+    np.testing.assert_array_equal(cleaned.labels, grid.labels)
+
+
 def test_many_cells_that_are_free_or_unknown_are_no_part():
     labels = np.full((9, 9, 9), 255, np.uint8)
     labels[:, :, 5:] = 0

@@ -101,6 +101,12 @@ def test_a_coarse_cell_speaks_for_all_the_cells_that_it_covers(side):
         np.testing.assert_allclose(block.reshape(-1, 12), expected[None].repeat(side**3, 0), 1e-2)
 
 
+@pytest.mark.parametrize("shape", [(8, 1, 1), (9, 8, 1), (1, 9, 16), (17, 1, 9)])
+def test_a_grid_may_end_with_a_block_of_the_map_or_just_after_it(shape):
+    """The map's memory comes in blocks of 8 x 8 x 8 cells; a cell outside would be written to."""
+    assert fused(grid(8, shape, free=0.9)).log_odds.shape == shape
+
+
 def test_fine_cells_are_averaged_in_the_cell_that_holds_them():
     fine = grid(6, (4, 4, 4), 0.04)
     gains = grid_gains(fine, np.eye(4), FuseParameters())

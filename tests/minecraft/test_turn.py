@@ -203,6 +203,8 @@ def test_left_and_right_change_places_in_a_mirror():
     }
     for before, after in mirrored.items():
         assert mirror_state(before, "x") == str(parse_state(after))
+    # From 3 sixteenths past the south to 3 before the north.
+    assert mirror_state("oak_sign[rotation=3]", "z") == str(parse_state("oak_sign[rotation=5]"))
 
 
 def test_a_text_that_is_no_state_is_refused():
@@ -231,6 +233,17 @@ def test_four_turns_of_a_volume_are_the_identity():
     assert turned.entities == volume.entities
 
 
+@pytest.mark.parametrize(("turns", "same"), [(2, 2), (3, 3), (-1, 3), (5, 1), (4, 0)])
+def test_a_volume_is_turned_as_often_as_asked(turns, same):
+    volume = once = an_unsymmetric_volume()
+    for _ in range(same):
+        once = turn_volume(once, 1)
+    turned = turn_volume(volume, turns)
+    np.testing.assert_array_equal(turned.states, once.states)
+    np.testing.assert_array_equal(turned.block_to_room, once.block_to_room)
+    assert (turned.palette, turned.entities) == (once.palette, once.entities)
+
+
 def test_what_lies_in_a_volume_turns_with_it():
     volume = an_unsymmetric_volume()
     turned = turn_volume(volume, 1)
@@ -242,6 +255,7 @@ def test_what_lies_in_a_volume_turns_with_it():
         found = carried(turned.block_to_room, np.add(new, 0.5))
         np.testing.assert_allclose(found, expected, atol=1e-12)
     assert turned.entities[0].nbt["Rotation"][0] == -180.0  # From east to north.
+    assert isinstance(turned.entities[0].nbt["Rotation"][0], Float)
 
 
 def an_unsymmetric_volume() -> BlockVolume:

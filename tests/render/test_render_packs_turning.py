@@ -181,6 +181,12 @@ def test_turns_go_the_way_that_blockstates_say():
     assert side_after(north, quarter_turn(0, 180)) == south
 
 
+@pytest.mark.parametrize(("angle", "same"), [(-90, 270), (-270, 90), (360, 0), (450, 90)])
+def test_angles_are_counted_around(angle, same):
+    np.testing.assert_array_equal(quarter_turn(angle, 0), quarter_turn(same, 0))
+    np.testing.assert_array_equal(quarter_turn(0, angle, angle), quarter_turn(0, same, same))
+
+
 @given(x=QUARTERS, y=QUARTERS, z=QUARTERS)
 def test_a_turn_and_its_inverse_leave_an_element_as_it_was(x, y, z):
     element = made(raw_element(*BOX))

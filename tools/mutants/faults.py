@@ -67,26 +67,26 @@ def faults_of(source: str) -> list[Fault]:
                     continue
                 line, before, after = _changed_line(source, faulty)
                 found[faulty] = Fault(line, before, after, _within(start, functions), faulty)
+    if tree.get_code() != source:
+        raise RuntimeError("a fault was left in the source of those that followed")
     return sorted(found.values(), key=lambda fault: (fault.line, fault.change))
 
 
 def _mutated(tree: Any, node: Any, operator: Any, index: int) -> str:
     """Return the source with one node changed; the tree is as before."""
-    value, children = getattr(node, "value", None), list(getattr(node, "children", []))
-    values = [getattr(child, "value", None) for child in children]
-    siblings = list(node.parent.children)
+    from cosmic_ray.ast import ast_nodes
+
+    values = [(part, part.value) for part in ast_nodes(node) if hasattr(part, "value")]
+    siblings, children = list(node.parent.children), list(getattr(node, "children", []))
     new = operator.mutate(node, index)
     if new is not node:
         node.parent.children[siblings.index(node)] = new
     faulty = tree.get_code()
     node.parent.children[:] = siblings
-    if value is not None:
-        node.value = value
     if children:
         node.children[:] = children
-        for child, old in zip(children, values, strict=True):
-            if old is not None:
-                child.value = old
+    for part, value in values:
+        part.value = value
     return faulty
 
 

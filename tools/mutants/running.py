@@ -86,12 +86,7 @@ class Group:
 
     def _reach(self, items: list[pytest.Item]) -> dict[int, tuple[float, set[tuple[str, int]]]]:
         """Return of each sound test its seconds and the lines that it reaches."""
-        read, write = os.pipe()
-        child = _forked(lambda: self._measure(items, write))
-        os.close(write)
-        with os.fdopen(read) as told:
-            rows = [json.loads(line) for line in told]
-        os.waitpid(child, 0)
+        rows = [self._measured(at, item) for at, item in enumerate(items)]
         for row in rows:
             if row["failed"]:
                 slow = row["seconds"] > 0.9 * self.choice.slow_s
@@ -103,23 +98,31 @@ class Group:
             for row in sound
         }
 
-    def _measure(self, items: list[pytest.Item], write: int) -> int:
-        """In a child: run each test and look at its lines; break off what is slow."""
-        signal.signal(signal.SIGPROF, _break_off)
+    def _measured(self, at: int, item: pytest.Item) -> dict[str, Any]:
+        """Run a test in a child of its own, so that no cache that another filled hides a line."""
+        read, write = os.pipe()
+        child = _forked(lambda: self._measure(at, item, write))
+        os.close(write)
+        with os.fdopen(read) as told:
+            row = told.read()
+        os.waitpid(child, 0)
+        broken = {"at": at, "seconds": 0.0, "failed": True, "lines": []}
+        return json.loads(row) if row else broken
+
+    def _measure(self, at: int, item: pytest.Item, write: int) -> int:
+        """Run a test and tell which lines it reaches; break off where it is slow."""
         names = {str(SOURCE / name): name for name in self.modules}
+        lines: set[tuple[str, int]] = set()
+        signal.signal(signal.SIGPROF, _break_off)
+        signal.setitimer(signal.ITIMER_PROF, self.choice.slow_s)
+        start = time.process_time()
+        with _Tracing(names, lines):
+            self._run(item)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        seconds = time.process_time() - start
+        row = {"at": at, "seconds": seconds, "failed": self.failed, "lines": sorted(lines)}
         with os.fdopen(write, "w") as told:
-            for at, item in enumerate(items):
-                lines: set[tuple[str, int]] = set()
-                self.failed = False
-                start = time.process_time()
-                signal.setitimer(signal.ITIMER_PROF, self.choice.slow_s)
-                with _Tracing(names, lines):
-                    self._run(item)
-                signal.setitimer(signal.ITIMER_PROF, 0)
-                seconds = time.process_time() - start
-                row = {"at": at, "seconds": seconds, "failed": self.failed, "lines": sorted(lines)}
-                told.write(json.dumps(row) + "\n")
-                told.flush()
+            told.write(json.dumps(row))
         return PASSED
 
     def _try(self, fault: Fault, name: str, items: list, reach: dict) -> str:

@@ -31,8 +31,8 @@ class CleanParameters:
 
 def remove_floaters(grid: OccupancyGrid, parameters: CleanParameters) -> OccupancyGrid:
     """Return the grid with small parts that touch nothing, not even by a corner, made free."""
-    parts, count = connected_parts(grid.occupied)
-    sizes = np.bincount(parts.reshape(-1), minlength=count + 1)
+    parts, _ = connected_parts(grid.occupied)
+    sizes = np.bincount(parts.reshape(-1))
     small = sizes < parameters.floater_cells
     small[0] = False
     labels = np.where(small[parts], np.uint8(SemanticClass.EMPTY), grid.labels)

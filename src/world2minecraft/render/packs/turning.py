@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.render.elements import FACE_AXES, Element, FaceLook, face_uv
 
-_OUTWARD = np.array([np.cross(u, v) for u, v in FACE_AXES]) * -1  # v grows down: left-handed.
+_NORMALS = np.array([np.cross(u, v) for u, v in FACE_AXES])  # All inward, as v grows down.
 _BLOCK = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
 
 
@@ -94,7 +94,7 @@ def carry(element: Element, matrix: np.ndarray, uv_lock: bool = False) -> Elemen
 
 def side_after(side: int, matrix: np.ndarray) -> int:
     """Return the side, 0 to 5 in the order of ``FACE_NAMES``, that a side is turned to."""
-    return int((_OUTWARD @ (matrix[:3, :3] @ _OUTWARD[side])).argmax())
+    return int((_NORMALS @ (matrix[:3, :3] @ _NORMALS[side])).argmax())
 
 
 def _locked(side: int, face: FaceLook | None, matrix: np.ndarray) -> FaceLook | None:
