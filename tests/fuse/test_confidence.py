@@ -1,13 +1,14 @@
 """Calibrated confidence: what it may depend on, what it must not touch, and its table."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from world2minecraft.errors import DamagedFileError
 from world2minecraft.fuse import ConfidenceTable, calibrate, confidence, confidence_table
-from world2minecraft.fuse.confidence import _neighbours
+from world2minecraft.fuse.confidence import _neighbours, occupied_features
 from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 TABLE = ConfidenceTable(
@@ -82,6 +83,71 @@ def test_the_chance_is_the_logistic_of_the_features_read_cell_by_cell():
         value = np.dot(row, TABLE.occupied) + TABLE.classes[label]
         expected = np.clip(1 / (1 + np.exp(-value)), 0.01, 0.995)
         assert abs(float(found.confidence[i, j, k]) - expected) < 2e-3
+
+
+def sparse_scene(seed: int) -> tuple[OccupancyGrid, FusedEvidence]:
+    """Free cells mostly, few of them beside something, of any hits and log-odds."""
+    random = np.random.default_rng(seed)
+    grid, evidence = scene(seed)
+    labels = np.zeros(grid.shape, np.uint8)
+    kinds = random.random(grid.shape)
+    labels[kinds < 0.02], labels[kinds > 0.98] = 5, 255
+    grid = replace(grid, labels=labels, source=(labels != 255).astype(np.uint8))
+    log_odds = random.uniform(-10, 0, grid.shape).astype(np.float16)
+    hits = random.integers(0, 3, grid.shape).astype(np.uint16)
+    return grid, replace(evidence, log_odds=log_odds, hits=hits)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_the_chance_of_a_free_cell_is_read_cell_by_cell(seed):
+    """What it is beside, what lies two cells off, and whether the unknown begins beside it."""
+    grid, evidence = sparse_scene(seed)
+    found = calibrate(grid, evidence, TABLE)
+    occupied, unknown = np.pad(grid.labels == 5, 2), np.pad(grid.labels == 255, 2)
+    kinds = set()
+    for i, j, k in np.argwhere(grid.labels == 0):
+        near = tuple(slice(n + 1, n + 4) for n in (i, j, k))
+        wide = tuple(slice(n, n + 5) for n in (i, j, k))
+        beside, two_off = occupied[near].any(), occupied[wide].any() and not occupied[near].any()
+        log_odds, hits = float(evidence.log_odds[i, j, k]), evidence.hits[i, j, k]
+        row = [1, max(log_odds, -6) / 6, hits > 0, beside, two_off, unknown[near].any()]
+        expected = np.clip(1 / (1 + np.exp(-np.dot(row, TABLE.free))), 0.01, 0.995)
+        assert abs(float(found.confidence[i, j, k]) - expected) < 2e-3
+        kinds.add((bool(beside), bool(two_off)))
+    assert len(kinds) == 3
+
+
+def test_without_a_vote_no_label_has_a_share_and_log_odds_have_a_bound():
+    grid, evidence = scene(2)
+    votes = np.zeros_like(evidence.votes)
+    votes[::2, ..., :] = 0.02  # Twelve of them are less than one vote.
+    log_odds = np.where(np.arange(6)[:, None] % 2, 9, -9) * np.ones(grid.shape)
+    evidence = replace(evidence, votes=votes, log_odds=log_odds.astype(np.float16))
+    rows = occupied_features(grid, evidence, np.ones(grid.shape, bool) & grid.occupied, True)
+    voted = np.argwhere(grid.occupied)[:, 0] % 2 == 0
+    np.testing.assert_array_equal(rows[:, 2], voted)
+    np.testing.assert_allclose(rows[:, 3], voted / 12, rtol=1e-3)
+    assert set(rows[:, 0]) == {-1.0, 1.0}
+    assert not rows[:, 7].any(), "what the labeller said is no feature unless it is asked for"
+
+
+def test_what_a_labeller_said_counts_for_those_whose_table_says_so():
+    grid, evidence = scene(1)
+    unsure = replace(grid, confidence=np.full(grid.shape, 0.5, np.float16))
+    silent = ConfidenceTable(TABLE.occupied, TABLE.classes, TABLE.free, TABLE.completed, True)
+    a, b = calibrate(grid, evidence, silent), calibrate(unsure, evidence, silent)
+    np.testing.assert_array_equal(a.confidence, b.confidence)
+    c, d = calibrate(grid, evidence, TABLE), calibrate(unsure, evidence, TABLE)
+    assert not np.array_equal(c.confidence, d.confidence)
+
+
+def test_a_completed_cell_has_what_was_right_of_its_class():
+    grid, evidence = scene(0)
+    labels = grid.labels.copy()
+    labels[1] = np.arange(30).reshape(6, 5) % 11 + 1
+    shares = tuple(n / 20 for n in range(12))
+    found = calibrate(replace(grid, labels=labels), evidence, replace(TABLE, completed=shares))
+    np.testing.assert_allclose(found.confidence[1], labels[1] / 20, atol=1e-3)
 
 
 def test_a_labeller_that_uses_no_votes_is_deaf_to_them():
