@@ -28,6 +28,7 @@ VERBS: dict[str, str] = {
     "rooms generate": "Generate a furnished room or a house, with exact truth.",
     "rooms scan": "Scan a generated room or house with a virtual depth camera.",
     "evaluate reconstruction": "Score a reconstruction against a scanned room's truth.",
+    "evaluate scannet": "Make a truth of a ScanNet scene of yours, to score runs by.",
     "occupy": "Say what each cell is: of a picture's grid, or of a captured room.",
     "train": "Train an occupancy network on any data sets.",
     "export": "Write a trained network as ONNX, which runs without torch.",

@@ -40,13 +40,30 @@ def used_frames(out: Path, truth: Truth) -> tuple[UsedFrame, ...]:
         names = [str(name) for name in read_json(path)["frames_used"]]
     except (KeyError, TypeError) as error:
         raise DamagedFileError(path, f"has no list frames_used ({error})") from error
-    frames = {frame.name: frame for frame in find_capture(computed(out) or truth.folder).frames}
+    frames = {frame.name: frame for frame in find_capture(computed(out) or truth.capture).frames}
     strange = [name for name in names if name not in frames]
     if strange:
         raise DamagedFileError(
-            path, f"used frame {strange[0]!r}, which {truth.folder} does not have; another capture?"
+            path,
+            f"used frame {strange[0]!r}, which {truth.capture} does not have; another capture?",
         )
     return tuple(_used(frames[name], truth) for name in names)
+
+
+def all_frames(truth: Truth) -> tuple[UsedFrame, ...]:
+    """Return every frame of a truth's capture that has a camera and a pose.
+
+    Raises:
+        CaptureError: no capture lies where the truth says.
+    """
+    true = truth.camera_to_truth or {}
+    return tuple(
+        _used(frame, truth)
+        for frame in find_capture(truth.capture).frames
+        if (frame.depth_camera or frame.colour_camera) is not None
+        and frame.camera_to_world is not None
+        and (frame.name in true or np.isfinite(frame.camera_to_world).all())
+    )
 
 
 def computed(out: Path) -> Path | None:

@@ -34,11 +34,11 @@ def layout_facts(
         return {}
     placements = read_placements(out / "placements.json")
     pairs = zip(objects.objects, objects.seen, strict=True)
-    return {
+    judged = {"out_of_true_rooms": _outside(placements, true_rooms)} if true_rooms else {}
+    return judged | {
         "placements": len(placements),
         "collisions": len(collisions(placements, grid=grid)),
         "out_of_bounds": _outside(placements, read_rooms(out, grid)),
-        "out_of_true_rooms": _outside(placements, true_rooms),
         "semantic_integrity": category_integrity(
             {item.class_id for item in placements}, {item.class_id for item, seen in pairs if seen}
         ),

@@ -21,6 +21,7 @@ class TrueObjects:
 
     objects: tuple[LayoutObject, ...]
     seen: np.ndarray  # bool [N]
+    have_fronts: bool = True  # Whether the truth knows which way chairs, sofas and beds look.
 
 
 def true_objects(truth: Truth, truth_to_room: np.ndarray, reached: Reached) -> TrueObjects:
@@ -36,14 +37,15 @@ def true_objects(truth: Truth, truth_to_room: np.ndarray, reached: Reached) -> T
     if moved:
         met = read_instances(truth).reshape(-1)[reached.voxels]
         seen[met[met <= len(moved)]] = True
-    return TrueObjects(moved, seen[1:])
+    return TrueObjects(moved, seen[1:], not truth.is_partial)
 
 
 def object_counts(found: Sequence[Any], true: TrueObjects) -> ObjectCounts:
     """Count the objects of a run; nobody asks for those that no ray met."""
     matched = {n for _, n in match_objects(found, true.objects)}
     asked = [item for n, item in enumerate(true.objects) if bool(true.seen[n]) or n in matched]
-    return count_objects(found, asked)
+    counts = count_objects(found, asked)
+    return counts if true.have_fronts else replace(counts, turns_asked=0, turns_right=0)
 
 
 def object_facts(counts: ObjectCounts) -> dict[str, Any]:

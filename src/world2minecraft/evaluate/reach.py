@@ -6,7 +6,7 @@ holds that voxel's middle. Only the second would miss a wall's front, only the f
 behind a cell's edge, where the rule of 4 in 64 calls its first millimetres empty.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +25,7 @@ CROSSED, MET = 1, 2
 RAYS_WIDE = 320  # All 640 of a frame come to 0.1 % more cells, in four times the time.
 PUSH_M = 0.001  # A surface on the edge of two cells belongs to the one with the matter.
 MAX_CELLS = 200_000_000
+Believed = Callable[[UsedFrame, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +54,7 @@ def reached_cells(
     truth_to_room: np.ndarray,
     voxel_m: float,
     rays_wide: int = RAYS_WIDE,
+    believed: Believed | None = None,
 ) -> Reached:
     """Cast the rays of all frames into the truth and mark the cells of the estimated room.
 
@@ -62,6 +64,8 @@ def reached_cells(
         truth_to_room: 4x4 rigid, from the truth's frame to the estimated room's.
         voxel_m: the estimated room's cell.
         rays_wide: rays across a picture; fewer where the camera has fewer pixels.
+        believed: which rays count, bool [H, W], by the frame and how deep they end, float32
+            [H, W] in metres; all by default.
     """
     truth_to_cells = truth_to_room.copy()
     truth_to_cells[:3] /= voxel_m
@@ -69,11 +73,14 @@ def reached_cells(
     voxel_to_truth = np.eye(4) * truth.voxel_m
     voxel_to_truth[:, 3] = [*truth.origin_m, 1]
     voxel_to_cells = truth_to_cells @ voxel_to_truth
-    scene = prepare_voxels(truth.labels, truth.voxel_m, truth.origin_m)
+    scene = prepare_voxels(truth.solid, truth.voxel_m, truth.origin_m)
     voxels = []
     for frame in frames:
         camera = pinhole(frame.camera, rays_wide)
         hits = cast_voxels(scene, camera, frame.camera_to_truth)
+        if believed is not None:
+            index = np.where(believed(frame, hits.depth_m), hits.voxel_index, np.int32(-1))
+            hits = hits._replace(voxel_index=index)
         _mark(
             hits.depth_m,
             hits.voxel_index,

@@ -106,7 +106,7 @@ def score_run(out: Path, room: TrueRoom) -> dict[str, Any]:
     facts["poses"] = pose_facts(out, room.truth, room.frames)
     true_rooms = in_room(room.truth.layouts, room.truth_to_room)
     facts["layout"] = layout_facts(out, grid, true_rooms, room.objects)
-    if (out / "layout.json").is_file():
+    if (out / "layout.json").is_file() and room.truth.layouts:
         rooms = read_layouts(out / "layout.json")
         facts["openings"] = opening_facts(
             rooms, room.truth.layouts, room.truth_to_room, room.reached
@@ -122,16 +122,18 @@ def cell_facts(grid: OccupancyGrid, room: TrueRoom) -> dict[str, Any]:
     confidence = placed(grid.confidence, grid, room.reached, 0)
     true, flags = room.labels, room.reached.flags
     scored = room.reached.scored & (true != UNKNOWN)
+    # Of a scanned surface nobody knows what lies behind it: that is no fault of what was found.
+    judged = true != UNKNOWN if room.truth.is_partial else np.ones(true.shape, bool)
     found_here, true_here = (labels > 0) & (labels != UNKNOWN), (true > 0) & (true != UNKNOWN)
     surface = count_surface(
         found_here,
         true_here,
-        found_mask=source == OBSERVED,
+        found_mask=(source == OBSERVED) & judged,
         true_mask=room.reached.met,
     )
-    # What was found beyond the truth's box is near nothing true.
-    beyond = int((grid.occupied & (grid.source == OBSERVED)).sum()) - surface.found
-    surface += SurfaceCounts(found=beyond)
+    if not room.truth.is_partial:  # What was found beyond the truth's box is near nothing true.
+        beyond = int((grid.occupied & (grid.source == OBSERVED)).sum()) - surface.found
+        surface += SurfaceCounts(found=beyond)
     observed = scored & (source == OBSERVED)
     return {
         "surface_within_one_voxel": {"precision": surface.precision, "recall": surface.recall},
@@ -193,11 +195,13 @@ def headline(facts: dict[str, Any]) -> dict[str, str]:
     surface, occupancy, objects = (
         facts[name] for name in ("surface_within_one_voxel", "occupancy", "objects")
     )
-    return {
+    shown = {
         "precision within one voxel": f"{surface['precision']:.3f}",
         "recall within one voxel": f"{surface['recall']:.3f}",
         "IoU": f"{occupancy['iou']:.2f}",
         "mIoU of the classes present": f"{occupancy['miou_present_classes']:.2f}",
         "object F1": f"{objects['f1']:.2f}",
-        "orientation right": f"{objects['orientation_right']:.2f}",
     }
+    if objects["orientation_asked"]:
+        shown["orientation right"] = f"{objects['orientation_right']:.2f}"
+    return shown

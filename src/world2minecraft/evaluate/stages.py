@@ -119,7 +119,7 @@ def open_case(out: Path, truth: Path) -> Case:
     parameters = recorded_parameters(out)
     frames = used_frames(out, known)
     scan_to_room = invert_rigid(known.truth_to_scan)
-    scan = open_scan(truth, voxel_m=parameters.voxel_m, options=parameters.capture)
+    scan = open_scan(known.capture, voxel_m=parameters.voxel_m, options=parameters.capture)
     true_scan = replace(
         scan,
         views=TrueViews(scan.views, known),

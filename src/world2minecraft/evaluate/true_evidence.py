@@ -49,7 +49,7 @@ def true_evidence(room: TrueRoom, views: Iterable[View], scan_to_room: np.ndarra
         np.zeros(cells, np.int64),
     )  # fmt: skip
     truth = room.truth
-    scene = prepare_voxels(truth.labels, truth.voxel_m, truth.origin_m)
+    scene = prepare_voxels(truth.solid, truth.voxel_m, truth.origin_m)
     frames = {frame.name: frame for frame in room.frames}
     for view in views:
         if view.name in frames and view.colour_camera is not None:

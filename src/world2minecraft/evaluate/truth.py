@@ -1,4 +1,8 @@
-"""``truth.npz`` and ``truth.json``: what lies beside a virtual scan and no sensor knows."""
+"""``truth.npz`` and ``truth.json``: what a scan should have given, and no sensor knows.
+
+They lie beside a virtual scan, or anywhere else where ``truth.json`` says where the scan is
+(``capture``, a path from its own folder).
+"""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -6,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import class_id
+from world2minecraft.classes import UNKNOWN, SemanticClass, class_id
 from world2minecraft.errors import DamagedFileError, InputError, UnknownNameError
 from world2minecraft.exchange.layout import layout_of_row
 from world2minecraft.files import array_names, read_json, read_npz
@@ -21,6 +25,10 @@ class Truth:
 
     ``camera_to_truth`` holds the true pose of each frame by name; it is empty for truths written
     before poses were kept, and the stated poses stand for them then.
+
+    ``surface`` is there where the truth is a scanned surface, such as a data set's mesh, and not a
+    room that was generated. Such a truth is partial: cells that are 255 are known by nobody and
+    not looked at, and it tells no fronts, no openings and no rooms.
     """
 
     folder: Path
@@ -32,6 +40,8 @@ class Truth:
     layouts: tuple[Layout, ...] = ()
     camera_to_truth: dict[str, np.ndarray] | None = None
     depth_scale: dict[str, float] | None = None
+    surface: np.ndarray | None = None  # bool [A, B, C]
+    capture: Path = Path()
 
     def __post_init__(self):
         put = object.__setattr__
@@ -39,6 +49,25 @@ class Truth:
         put(self, "voxel_m", checks.positive("voxel_m", self.voxel_m))
         put(self, "origin_m", checks.floats("origin_m", self.origin_m, (3,)))
         put(self, "truth_to_scan", checks.transform("truth_room_to_scan", self.truth_to_scan))
+        if self.surface is not None:
+            shape = self.labels.shape
+            put(self, "surface", checks.array("surface", self.surface, np.bool_, shape))
+            if ((self.labels > 0) & (self.labels != UNKNOWN) & ~self.surface).any():
+                raise ValueError("surface must hold every cell that has a class")
+
+    @property
+    def is_partial(self) -> bool:
+        """Whether it knows a scanned surface alone."""
+        return self.surface is not None
+
+    @property
+    def solid(self) -> np.ndarray:
+        """What rays end at: uint8 [A, B, C], 0 where they pass; surface without a class is objs."""
+        if self.surface is None:
+            return self.labels
+        solid = np.where(self.surface, self.labels, np.uint8(0))
+        solid[solid == UNKNOWN] = SemanticClass.OBJS
+        return solid
 
 
 def read_truth(folder: Path) -> Truth:
@@ -49,11 +78,16 @@ def read_truth(folder: Path) -> Truth:
     """
     path = folder / "truth.npz"
     if not path.is_file():
-        raise InputError(path, "is not there; a truth lies beside what `w2m rooms scan` writes")
+        raise InputError(
+            path,
+            "is not there; a truth lies beside what `w2m rooms scan` writes, and `w2m evaluate "
+            "scannet` makes one of a ScanNet scene",
+        )
     stated = read_json(folder / "truth.json")
     try:
         objects = tuple(_object(row) for row in stated["objects"])
         layouts = _layouts(stated)
+        capture = folder / str(stated.get("capture", ""))
     except (KeyError, TypeError, ValueError, AttributeError, UnknownNameError) as error:
         raise DamagedFileError(folder / "truth.json", f"is no truth ({error})") from error
     arrays = read_npz(path, ARRAYS)
@@ -68,6 +102,8 @@ def read_truth(folder: Path) -> Truth:
             layouts=layouts,
             camera_to_truth=_by_frame(path, "camera_to_truth", (4, 4)),
             depth_scale=_by_frame(path, "depth_scale", ()),
+            surface=_surface(path),
+            capture=capture,
         )
     except (TypeError, ValueError) as error:
         raise DamagedFileError(path, f"is no truth ({error})") from error
@@ -101,6 +137,10 @@ def _layouts(stated: dict[str, Any]) -> tuple[Layout, ...]:
     width, depth, height = stated["size_m"]
     outline = np.array([[0, 0], [width, 0], [width, depth], [0, depth]], np.float64)
     return (Layout(outline, height),)
+
+
+def _surface(path: Path) -> np.ndarray | None:
+    return read_npz(path, ("surface",))["surface"] if "surface" in array_names(path) else None
 
 
 def _by_frame(path: Path, key: str, shape: tuple[int, ...]) -> Any:

@@ -144,13 +144,14 @@ def write_truth(
         "kind": room.kind,
         "seed": room.seed,
         "size_m": rounded(room.size_m),
-        "objects": [_stated_object(n, item) for n, item in enumerate(room.objects, start=1)],
+        "objects": [stated_object(n, item) for n, item in enumerate(room.objects, start=1)],
         "layouts": [_stated_layout(layout) for layout in room.layouts],
     }
     write_json(Path(folder) / "truth.json", truth)
 
 
-def _stated_object(number: int, item: LayoutObject) -> dict[str, Any]:
+def stated_object(number: int, item: LayoutObject) -> dict[str, Any]:
+    """Return an object as ``truth.json`` states it; ``number`` is its instance, from 1."""
     return {
         "id": number,
         "class": CLASS_NAMES[item.class_id],

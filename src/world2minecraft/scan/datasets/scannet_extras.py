@@ -33,18 +33,32 @@ def read_facts(path: AnyPath) -> dict[str, np.ndarray]:
     return facts
 
 
-def upright(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | None:
-    """Return the unit vector of the poses' world that points up, where the scene states it.
+def axis_alignment(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | None:
+    """Return the rigid float64 [4, 4] from the poses' world to one whose z is up, where stated.
 
-    ``axisAlignment`` carries the world of the poses to one whose z is up. Test scenes have none.
+    Test scenes have none.
+
+    Raises:
+        CaptureError: it is no rotation and shift.
     """
     if "axisAlignment" not in facts:
         return None
     values = facts["axisAlignment"]
-    rotation = values.reshape(4, 4)[:3, :3] if len(values) == 16 else np.full((3, 3), np.nan)
-    if not np.abs(rotation @ rotation.T - np.eye(3)).max() < 1e-3:
+    stated = values.reshape(4, 4) if len(values) == 16 else np.full((4, 4), np.nan)
+    rotation = stated[:3, :3]
+    is_turn = np.abs(rotation @ rotation.T - np.eye(3)).max() < 1e-3
+    if not is_turn or np.linalg.det(rotation) < 0 or not np.isfinite(stated).all():
         raise CaptureError(path, "axisAlignment must be 16 numbers, a 4x4 rotation and shift")
-    return rotation[2] / np.linalg.norm(rotation[2])
+    left, _, right = np.linalg.svd(rotation)  # It is stated with six digits.
+    aligned = np.eye(4)
+    aligned[:3, :3], aligned[:3, 3] = left @ right, stated[:3, 3]
+    return aligned
+
+
+def upright(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | None:
+    """Return the unit vector of the poses' world that points up, where the scene states it."""
+    aligned = axis_alignment(path, facts)
+    return None if aligned is None else aligned[2, :3].copy()
 
 
 def stated_lens(facts: dict[str, np.ndarray], kind: str) -> tuple[float, ...] | None:
