@@ -32,6 +32,10 @@ def _turned(row: Row) -> float:
     return row["objects"]["orientation_right"] if asked else math.nan
 
 
+def _calibration(row: Row, which: str) -> float:
+    return row["calibration"][which]["error"] if "calibration" in row else math.nan
+
+
 COLUMNS = (
     Column("P", lambda row: row["surface_within_one_voxel"]["precision"]),
     Column("R", lambda row: row["surface_within_one_voxel"]["recall"]),
@@ -48,8 +52,8 @@ COLUMNS = (
     Column("collide", lambda row: row["layout"].get("collisions", math.nan), 2),
     Column("outside", lambda row: row["layout"].get("out_of_bounds", math.nan), 2),
     Column("integrity", lambda row: row["layout"].get("semantic_integrity", math.nan)),
-    Column("ECE", lambda row: row["calibration"]["all"]["error"]),
-    Column("ECE occ", lambda row: row["calibration"]["occupied"]["error"]),
+    Column("ECE", lambda row: _calibration(row, "all")),
+    Column("ECE occ", lambda row: _calibration(row, "occupied")),
 )
 
 

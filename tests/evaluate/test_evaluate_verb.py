@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from world2minecraft.cli import run as w2m
@@ -31,6 +32,17 @@ def test_openings_and_placements_stand_in_the_table_where_they_are_known(perfect
     names = dict(score_rows(facts | {"openings": rates, "layout": layout}))
     assert names["openings F1 (precision, recall)"] == "0.500 (1.000, 0.333)"
     assert names["collisions"] == "2"
+
+
+def test_another_methods_labels_are_scored_by_the_same_verb(capture, tmp_path, capsys):
+    np.savez(tmp_path / "labels.npz", labels=np.zeros((2, 2, 2), np.uint8))
+    words = ["evaluate", "reconstruction", str(tmp_path), str(capture)]
+    assert w2m(words) == 0
+    text = capsys.readouterr().out
+    assert "IoU, exact" in text and "0 of 1, 0 found" in text
+    assert "confidence" not in text and "next:" not in text
+    assert w2m([*words, "--stages"]) == 2
+    assert "is no run of w2m reconstruct, whose stages" in capsys.readouterr().err
 
 
 def test_the_stages_are_rows_after_the_run_itself(perfect, capture):

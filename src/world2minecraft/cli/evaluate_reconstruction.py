@@ -12,12 +12,15 @@ EXAMPLES = """\
 w2m evaluate reconstruction OUT my_trial                   every score of the run in OUT
 w2m evaluate reconstruction OUT my_trial --stages          and what each stage loses
 w2m evaluate reconstruction OUT my_trial --json scores.json
+w2m evaluate reconstruction labels.npz my_trial            another method's, objects.json beside
 """
 
 
 def run(
-    out: Annotated[Path, typer.Argument(help="The folder of a finished reconstruction.")],
-    truth: Annotated[Path, typer.Argument(help="The capture with truth.npz and truth.json.")],
+    out: Annotated[
+        Path, typer.Argument(help="The folder of a finished reconstruction, or a labels.npz.")
+    ],
+    truth: Annotated[Path, typer.Argument(help="The folder with truth.npz and truth.json.")],
     stages: Annotated[
         bool, typer.Option("--stages", help="Put truth in after each stage and score the rest.")
     ] = False,
@@ -25,38 +28,51 @@ def run(
         Path | None, typer.Option("--json", metavar="FILE", help="Write every figure here, too.")
     ] = None,
 ) -> None:
-    """Score a reconstruction of a virtual scan against the room that was scanned.
+    """Score a reconstruction against the room that was scanned.
 
-    Only cells that a noise-free ray of a used frame reached or crossed are scored.
+    Only cells that a noise-free ray of a used frame reached or crossed are scored. What another
+    method made is read from labels.npz: labels (uint8 X, Y, Z), voxel_m, origin_m and grid_to_scan
+    (4x4, from the grid's frame to that of the capture's poses); objects.json beside it is a list
+    of {class, center_m, size_m, yaw_deg}.
 
     Args:
-        out: the run's folder.
-        truth: the capture's folder.
+        out: the run's folder, or another method's labels.
+        truth: the capture's folder, or that of a truth which names its capture.
         stages: whether to say what each stage loses.
         json_path: where to write the figures.
     """
     from rich.console import Console
 
     from world2minecraft.cli.progress import shown
+    from world2minecraft.errors import UsageError
     from world2minecraft.evaluate import evaluate_reconstruction
+    from world2minecraft.evaluate.foreign import evaluate_foreign, foreign_file
     from world2minecraft.evaluate.stages import stage_losses
     from world2minecraft.files import write_json
 
-    check_run(out)
-    facts = evaluate_reconstruction(out, truth)
+    foreign = foreign_file(out)
+    if foreign is not None and stages:
+        raise UsageError(f"{out} is no run of w2m reconstruct, whose stages --stages goes through")
+    if foreign is None:
+        check_run(out)
+        facts = evaluate_reconstruction(out, truth)
+    else:
+        facts = evaluate_foreign(foreign, truth)
     if stages:
         with shown() as progress:
             facts["stages"] = stage_losses(out, truth, progress=progress)
     console = Console(highlight=False)
     console.print(score_table(facts))
-    console.print(reliability_table(facts["calibration"]["occupied"]))
+    if "calibration" in facts:
+        console.print(reliability_table(facts["calibration"]["occupied"]))
     if stages:
         console.print(stage_table(facts))
     if json_path is not None:
         write_json(json_path, facts)
         print(f"figures  {json_path}")
-    for line in next_steps(out, truth, stages):
-        print(line)
+    if foreign is None:
+        for line in next_steps(out, truth, stages):
+            print(line)
 
 
 def check_run(out: Path) -> None:
@@ -110,7 +126,8 @@ def score_rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
         for name, row in objects["by_class"].items()
     ]
     asked, right = objects["orientation_asked"], objects["orientation_hits"]
-    rows.append(("chairs, sofas and beds turned right", f"{right} of {asked}"))
+    if asked:
+        rows.append(("chairs, sofas and beds turned right", f"{right} of {asked}"))
     if "openings" in facts:
         rows.append(("openings F1 (precision, recall)", _f1_text(facts["openings"])))
     if layout := facts["layout"]:
@@ -119,9 +136,10 @@ def score_rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
             ("out of bounds", str(layout["out_of_bounds"])),
             ("semantic integrity", f"{layout['semantic_integrity']:.3f}"),
         ]
-    calibration = facts["calibration"]
-    rows.append(("calibration error, occupied cells", f"{calibration['occupied']['error']:.3f}"))
-    rows.append(("calibration error, all observed", f"{calibration['all']['error']:.3f}"))
+    if calibration := facts.get("calibration"):
+        occupied, every = (calibration[name]["error"] for name in ("occupied", "all"))
+        rows.append(("calibration error, occupied cells", f"{occupied:.3f}"))
+        rows.append(("calibration error, all observed", f"{every:.3f}"))
     return rows
 
 
