@@ -1,7 +1,7 @@
 """Sheets of pictures of labelled cells: grids drawn from above, and what their colours mean."""
 
 import numpy as np
-from PIL import Image, ImageDraw
+from PIL import Image, ImageDraw, ImageOps
 
 from world2minecraft.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN
 from world2minecraft.coordinates import look_at
@@ -15,32 +15,40 @@ TEXT = (60, 60, 60)
 FOOT_PX = 22
 
 
-def drawn(labels: np.ndarray, voxel_m: float = 0.08) -> Image.Image:
-    """Return a picture of labels uint8 [X, Y, Z] from above, without the ceiling."""
+def drawn(labels: np.ndarray, voxel_m: float = 0.08, side: int = SIDE) -> Image.Image:
+    """Return a picture of labels uint8 [X, Y, Z] from above, without the ceiling; pixels a side."""
     shown = np.where((labels == 1) | (labels == UNKNOWN), np.uint8(0), labels)
     size = np.array(shown.shape) * voxel_m
     target = size * [0.5, 0.5, 0.3]
     eye = target + np.array([0.55, -0.9, 1.25]) * 1.25 * size.max()
-    camera = Camera(SIDE, SIDE, 1.5 * SIDE, 1.5 * SIDE, SIDE / 2, SIDE / 2)
+    camera = Camera(side, side, 1.5 * side, 1.5 * side, side / 2, side / 2)
     hits = cast_voxels(shown, camera, look_at(eye, target), voxel_m=voxel_m)
     there = hits.voxel_index >= 0
-    picture = np.full((SIDE, SIDE, 3), PAPER, np.float64)
+    picture = np.full((side, side, 3), PAPER, np.float64)
     kinds = shown.reshape(-1)[hits.voxel_index[there]]
     picture[there] = np.array(CLASS_COLOURS)[kinds] * SHADES[hits.face[there]][:, None]
     return Image.fromarray(picture.round().astype(np.uint8))
 
 
-def sheet(titles: tuple[str, ...], rows: list[tuple[str, list[Image.Image]]]) -> Image.Image:
+def framed(picture: np.ndarray, side: int = SIDE) -> Image.Image:
+    """Return a picture in a square of the sheet."""
+    image = ImageOps.contain(Image.fromarray(picture), (side - 12, side - 12))
+    return ImageOps.pad(image, (side, side), color=(PAPER,) * 3)
+
+
+def sheet(
+    titles: tuple[str, ...], rows: list[tuple[str, list[Image.Image]]], side: int = SIDE
+) -> Image.Image:
     """Return rows of pictures, each with a line over it, the titles above and the classes below."""
-    page = Image.new("RGB", (SIDE * len(titles), (SIDE + 20) * len(rows) + 44), (PAPER,) * 3)
+    page = Image.new("RGB", (side * len(titles), (side + 20) * len(rows) + 44), (PAPER,) * 3)
     pen = ImageDraw.Draw(page)
     for column, title in enumerate(titles):
-        pen.text((SIDE * column + 10, 4), title, fill=TEXT, font_size=15)
+        pen.text((side * column + 10, 4), title, fill=TEXT, font_size=15)
     for row, (told, pictures) in enumerate(rows):
-        top = 24 + row * (SIDE + 20)
+        top = 24 + row * (side + 20)
         pen.text((10, top + 4), told, fill=(90, 90, 90), font_size=13)
         for column, picture in enumerate(pictures):
-            page.paste(picture, (SIDE * column, top + 20))
+            page.paste(picture, (side * column, top + 20))
     _name_classes(pen, page)
     return page
 

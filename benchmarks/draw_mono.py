@@ -9,9 +9,8 @@ import argparse
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageOps
 
-from benchmarks.class_sheet import PAPER, SIDE, drawn, sheet
+from benchmarks.class_sheet import drawn, framed, sheet
 from world2minecraft.classes import UNKNOWN
 from world2minecraft.cli.progress import shown
 from world2minecraft.dataset.importers import open_occupancy
@@ -32,12 +31,6 @@ def figures(said: np.ndarray, truth: np.ndarray) -> tuple[float, float]:
     counts = count_occupancy(said, truth)
     present = np.unique(truth[(truth > 0) & (truth != UNKNOWN)])
     return counts.iou, float(np.mean([counts.class_iou[kind] for kind in present]))
-
-
-def framed(picture: np.ndarray) -> Image.Image:
-    """Return a picture in a square of the sheet."""
-    image = ImageOps.contain(Image.fromarray(picture), (SIDE - 12, SIDE - 12))
-    return ImageOps.pad(image, (SIDE, SIDE), color=(PAPER,) * 3)
 
 
 def main() -> None:

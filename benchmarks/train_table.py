@@ -3,9 +3,10 @@
 DATA is any set with a test split, as ``w2m dataset build DATA --houses 40 --images 1000`` makes
 one: no test scene is trained on. Each network is trained for the same steps by ``w2m train`` and
 scored by ``monoscene`` on all test frames. A table that was stopped goes on with the same command;
-each run stays in RUNS/NET. ``--markdown FILE`` writes the table for the docs, the paper's rows
-beside it. ``--preset 8k`` is the papers' grid and size, for a GPU. ``NET+depth`` is shown measured
-depth, which Symphonies was published with and the others do without.
+each run stays in RUNS/NET. ``--markdown FILE`` writes the tables for the docs: scores with the
+paper's rows beside them, classes, and mIoU of the scenes held out of training as it went on.
+``--preset 8k`` is the papers' grid and size, for a GPU. ``NET+depth`` is shown measured depth, as
+Symphonies was published; the others do without.
 """
 
 import argparse
@@ -24,6 +25,7 @@ from world2minecraft.cli.progress import shown
 from world2minecraft.files import write_text
 from world2minecraft.learn.config import PRESETS, DataSource, RunConfig
 from world2minecraft.learn.data.opening import CachePlace
+from world2minecraft.learn.journal import METRICS, read_rows
 from world2minecraft.learn.networks import NETWORKS
 
 PAPER_ROWS = {
@@ -96,6 +98,21 @@ def class_cells(network: str, done: dict[str, Any]) -> list[str]:
     return [network, *(f"{100 * values[name]:.2f}" for name in CLASS_NAMES)]
 
 
+def learning_rows(folders: dict[str, Path]) -> tuple[tuple[str, ...], list[list[str]]]:
+    """Return head and rows of mIoU on the scenes held out of training, by step."""
+    found = {
+        name: {step: value for step, what, value in read_rows(folder / METRICS)
+               if what == "val_miou"}
+        for name, folder in folders.items()
+    }  # fmt: skip
+    steps = sorted({step for values in found.values() for step in values})
+    rows = [
+        [name, *(f"{100 * values[step]:.2f}" if step in values else "-" for step in steps)]
+        for name, values in found.items()
+    ]
+    return ("held-out mIoU at step", *(f"{step:,}" for step in steps)), rows
+
+
 def markdown(head: tuple[str, ...], rows: list[list[str]]) -> str:
     """Return a table as Markdown."""
     lines = [head, ["---"] * len(head), *rows]
@@ -142,12 +159,15 @@ def main(arguments: list[str] | None = None) -> int:
                 config, words.out / name, words.device, CachePlace.named(words.cache), progress
             )
         figures, classes = report(rows)  # After each, so that a stopped table says something.
+        tables = [
+            (HEAD, figures),
+            (("class IoU", *CLASS_NAMES), classes),
+            learning_rows({done: words.out / done for done in rows}),
+        ]
         if words.markdown is not None:
-            text = markdown(HEAD, figures) + "\n" + markdown(("class IoU", *CLASS_NAMES), classes)
-            write_text(words.markdown, text)
-    figures, classes = report(rows)
+            write_text(words.markdown, "\n".join(markdown(*table) for table in tables))
     console = Console(width=200, highlight=False)
-    for head, lines in ((HEAD, figures), (("class IoU", *CLASS_NAMES), classes)):
+    for head, lines in tables:
         table = Table(*head, box=None)
         for line in lines:
             table.add_row(*line)

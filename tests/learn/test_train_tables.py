@@ -1,8 +1,10 @@
 """The benchmark's tables: made of runs that are done once, and a verdict that can go either way."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
-from benchmarks import train_joint, train_table
+from benchmarks import draw_networks, train_joint, train_table
 from tests.learn import toy_network
 from tests.learn.toy_sets import write_toy_store
 
@@ -41,6 +43,35 @@ def test_a_table_is_made_once_and_read_the_next_time(stores, tmp_path, capsys):
         "given",
         "taught",
     )
+
+
+def test_a_table_tells_what_was_learned_when(tmp_path):
+    for name, lines in (("a", "2,val_miou,0.1\n4,val_miou,0.25"), ("b", "4,val_miou,0.5")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "metrics.csv").write_text(f"step,name,value\n2,val_iou,0.9\n{lines}\n")
+    head, rows = train_table.learning_rows({name: tmp_path / name for name in "ab"})
+    assert head[1:] == ("2", "4")
+    assert rows == [["a", "10.00", "25.00"], ["b", "-", "50.00"]]
+
+
+def test_the_pictures_drawn_are_best_middle_and_worst_of_all_networks_together():
+    scores = np.array([[0.1, 0.9, 0.5, 0.2, 0.6], [0.3, 0.9, 0.5, 0.1, 0.6]])
+    assert draw_networks.picked(scores) == [1, 2, 3]
+
+
+def test_a_sheet_has_a_row_for_the_picture_the_truth_and_each_network():
+    labels = np.full((4, 4, 3), 255, np.uint8)
+    labels[:, :, 0], labels[1, 1, 1] = 2, 5
+    frame = SimpleNamespace(image=np.full((6, 8, 3), 99, np.uint8), labels=labels)
+    empty = np.zeros_like(labels)
+    said = {"right": [labels, labels, labels], "nothing": [empty, empty, empty]}
+    lines = draw_networks.lines_of([frame] * 3, [0, 1, 2], said, 0.16)
+    told, pictures = zip(*lines, strict=True)
+    assert told[:2] == ("the picture", "the truth")
+    assert told[2].endswith("100 / 100  100 / 100  100 / 100") and told[3].count("0 / 0") == 3
+    assert all(len(row) == 3 for row in pictures)
+    truth, right, nothing = (np.asarray(pictures[row][0]) for row in (1, 2, 3))
+    assert (truth == right).all() and (truth != nothing).any()
 
 
 def test_joint_runs_share_their_test_scenes(stores, tmp_path, capsys):

@@ -12,6 +12,7 @@ from typing import Any
 
 from world2minecraft.files import write_text
 
+METRICS = "metrics.csv"
 HEADER = ("step", "name", "value")
 
 
@@ -20,7 +21,7 @@ class Journal:
 
     def __init__(self, folder: Path, first_step: int = 0):
         """Go on after ``first_step``: what an earlier try wrote of later steps is dropped."""
-        self._path, self._folder = folder / "metrics.csv", folder / "tensorboard"
+        self._path, self._folder = folder / METRICS, folder / "tensorboard"
         self._rows = [row for row in read_rows(self._path) if row[0] <= first_step]
         self._first = first_step
         self._board: Any = None
