@@ -20,7 +20,7 @@ from world2minecraft.dataset.importers import open_occupancy
 from world2minecraft.learn.config import GRIDS, read_config
 from world2minecraft.learn.data.cache import Frames
 from world2minecraft.learn.data.opening import CachePlace, open_frames, rule_of
-from world2minecraft.learn.training import WEIGHTS, trained_network
+from world2minecraft.learn.training import LAST_SCORES, trained_network
 from world2minecraft.learn.validation import said_labels
 from world2minecraft.progress import Progress
 
@@ -35,7 +35,7 @@ def said_by_run(folder: Path, progress: Progress) -> tuple[Frames, list[int], La
     found = open_occupancy(config.data[0].path)
     frames = open_frames(found, rule_of(config), CachePlace.named(""), progress)
     rows = [n for n, key in enumerate(frames.keys) if found.splits[key] == "test"]
-    network = trained_network(folder, config, "cpu")
+    network = trained_network(folder, config, "cpu", last=True)
     said = said_labels(network, frames, rows, config, progress=progress, stage=folder.name)
     return frames, rows, list(said), GRIDS[config.grid].voxel_m
 
@@ -80,7 +80,7 @@ def main() -> None:
     parser.add_argument("runs", type=Path, help="the folder that train_table keeps its runs in")
     parser.add_argument("--out", type=Path, required=True)
     chosen = parser.parse_args()
-    folders = sorted(path.parent for path in chosen.runs.glob(f"*/{WEIGHTS}"))
+    folders = sorted(path.parent for path in chosen.runs.glob(f"*/{LAST_SCORES}"))
     if not folders:
         parser.error(f"no finished runs in {chosen.runs}; make some with benchmarks.train_table")
     said = {}

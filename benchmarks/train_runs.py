@@ -1,4 +1,8 @@
-"""Runs of training that a table is made of: each in its folder, none done twice."""
+"""Runs of training that a table is made of: each in its folder, none done twice.
+
+Scored are the weights of the last step. Few scenes are held out of a small set, and choosing by
+them is chance: see docs/network-table.md.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +16,13 @@ from world2minecraft.learn.config import DataSource, RunConfig
 from world2minecraft.learn.data.opening import CachePlace, open_frames, rule_of
 from world2minecraft.learn.data.splits import split_rows
 from world2minecraft.learn.scoring import said_by_network
-from world2minecraft.learn.training import FACTS, SCORES, score_run, train_run, trained_network
+from world2minecraft.learn.training import (
+    FACTS,
+    LAST_SCORES,
+    score_run,
+    train_run,
+    trained_network,
+)
 from world2minecraft.learn.validation import said_labels
 from world2minecraft.metrics.intervals import micro_figures
 from world2minecraft.metrics.occupancy import OccupancyCounts
@@ -25,11 +35,11 @@ SCENE_COUNTS = "scene_counts.json"
 def done_run(
     config: RunConfig, folder: Path, device: str, cache: CachePlace, progress: Progress
 ) -> dict[str, Any]:
-    """Train and score where that is not done yet; return run.json and scores.json as one."""
+    """Train and score where that is not done yet; return run.json and scores_last.json as one."""
     trained = train_run(config, folder, device=device, cache=cache, progress=progress)
-    if not (folder / SCORES).is_file():
-        score_run(trained, config, device, progress)
-    return {"facts": read_json(folder / FACTS), "scores": read_json(folder / SCORES)}
+    if not (folder / LAST_SCORES).is_file():
+        score_run(trained, config, device, progress, last=True)
+    return {"facts": read_json(folder / FACTS), "scores": read_json(folder / LAST_SCORES)}
 
 
 def done_scenes(
@@ -43,7 +53,7 @@ def done_scenes(
         frames = open_frames(found, rule_of(on_target), cache, progress)
         splits = [found.splits[key] for key in frames.keys]
         rows = split_rows(frames.scenes, splits, config.val_share, target).scored
-        network = trained_network(folder, config, device)
+        network = trained_network(folder, config, device, last=True)
         said = said_labels(network, frames, rows, config, progress=progress)
         counts: dict[str, ProtocolCounts] = {}
         for one in said_by_network(frames, rows, said):

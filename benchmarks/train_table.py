@@ -1,12 +1,12 @@
 """All occupancy networks on one set: ``python -m benchmarks.train_table --set DATA --out RUNS``.
 
 DATA is any set with a test split, as ``w2m dataset build DATA --houses 40 --images 1000`` makes
-one: no test scene is trained on. Each network is trained for the same steps by ``w2m train`` and
-scored by ``monoscene`` on all test frames. A table that was stopped goes on with the same command;
-each run stays in RUNS/NET. ``--markdown FILE`` writes the tables for the docs: scores with the
-paper's rows beside them, classes, and mIoU of the scenes held out of training as it went on.
-``--preset 8k`` is the papers' grid and size, for a GPU. ``NET+depth`` is shown measured depth, as
-Symphonies was published; the others do without.
+one: no test scene is trained on. Each network is trained for the same steps by ``w2m train``; its
+last weights are scored by ``monoscene`` on all test frames. A table that was stopped goes on with
+the same command; each run stays in RUNS/NET. ``--markdown FILE`` writes the tables for the docs:
+scores with the paper's rows beside them, classes, and mIoU of the scenes held out of training as
+it went on. ``--preset 8k`` is the papers' grid and size, for a GPU. ``NET+depth`` is shown measured
+depth, as Symphonies was published; the others do without.
 """
 
 import argparse

@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 import torch
+from safetensors.torch import load_file
 from tests.learn import toy_network
 from tests.learn.toy_sets import toy_config, write_toy_store
 
@@ -119,6 +120,20 @@ def test_bfloat16_learns_too(store, cache, tmp_path):
     trained(toy_config(store, precision="bf16"), tmp_path / "run", cache)
     assert np.isfinite(figures(tmp_path / "run", "train_loss")).all()
     assert json.loads((tmp_path / "run/run.json").read_text())["precision"] == "bf16"
+
+
+def test_the_last_step_s_weights_are_scored_apart_from_the_best(store, cache, tmp_path):
+    config = toy_config(store, steps=9, validate_every=3, learning_rate=0.3)
+    found = trained(config, tmp_path / "run", cache)
+    best, last = (training.score_run(found, config, "cpu", last=which) for which in (False, True))
+    files = {name: json.loads((tmp_path / f"run/{name}.json").read_text())
+             for name in ("scores", "scores_last")}  # fmt: skip
+    assert (files["scores"]["step"], files["scores_last"]["step"]) == (found.state.best_step, 9)
+    for said, kept, is_last in ((best, "scores", False), (last, "scores_last", True)):
+        network = trained_network(tmp_path / "run", config, "cpu", last=is_last)
+        weights = load_file(tmp_path / "run" / f"{'last' if is_last else 'weights'}.safetensors")
+        assert all((network.state_dict()[name] == one).all() for name, one in weights.items())
+        assert said["step"] == files[kept]["step"]
 
 
 def test_best_weights_make_the_network_again(whole, store):

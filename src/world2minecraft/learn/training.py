@@ -8,6 +8,7 @@ A run's folder::
     checkpoint.safetensors   what a stopped run goes on from
     metrics.csv              step, name, value; tensorboard/ has the same
     scores.json              of the best weights, by every protocol, on the test split
+    scores_last.json         of the last weights, where those were asked for
     run.json                 what differs by nature: times, machine, versions
 """
 
@@ -37,7 +38,7 @@ from world2minecraft.learn.data.classes import class_weights
 from world2minecraft.learn.data.mixing import plan_draws
 from world2minecraft.learn.data.opening import CachePlace, RunData, open_run_data
 from world2minecraft.learn.data.splits import evenly
-from world2minecraft.learn.keeping import CHECKPOINT, WEIGHTS, Keeper, RunState
+from world2minecraft.learn.keeping import CHECKPOINT, LAST, WEIGHTS, Keeper, RunState
 from world2minecraft.learn.memory import add_memory_scores
 from world2minecraft.learn.networks import make_network
 from world2minecraft.learn.scoring import protocol_scores, said_by_network
@@ -52,6 +53,7 @@ from world2minecraft.lock import Lock
 from world2minecraft.progress import Progress, silent
 
 RUN, FACTS, SCORES = "run.yaml", "run.json", "scores.json"
+LAST_SCORES = "scores_last.json"  # Of the last step's weights, where somebody asks for them.
 LIGHTNING = {"bf16": "bf16-mixed", "32": "32-true"}
 # Settings that may change between tries: they move no result.
 FREE = ("threads", "workers", "checkpoint_every")
@@ -192,15 +194,21 @@ class _Loader(lightning.Callback):
 
 
 def score_run(
-    trained: Trained, config: RunConfig, device: str = "auto", progress: Progress = silent
+    trained: Trained,
+    config: RunConfig,
+    device: str = "auto",
+    progress: Progress = silent,
+    *,
+    last: bool = False,
 ) -> dict[str, Any]:
-    """Score the best weights of a run on its test split, by all protocols; write scores.json.
+    """Score the weights of a run on its test split, by all protocols.
 
-    A set without a test split is scored on the frames that it was validated on, which flatters:
-    ``split`` says so.
+    The best weights by validation, into scores.json; or the ``last`` step's, which no frame chose,
+    into scores_last.json. A set without a test split is scored on the frames that it was validated
+    on, which flatters: ``split`` says so.
     """
     data, folder = trained.data, trained.folder
-    network = trained_network(folder, config, device)
+    network = trained_network(folder, config, device, last=last)
     rows = data.split.scored
     said = said_labels(network, data.target, rows, config, progress=progress)
     frames = said_by_network(data.target, rows, said)
@@ -211,16 +219,18 @@ def score_run(
         "data": config.data[0].path,
         "split": "test" if data.split.test else "validation",
         "grid": config.grid,
-        "step": trained.state.best_step,
+        "step": trained.state.step if last else trained.state.best_step,
     }
-    write_json(folder / SCORES, scores)
+    write_json(folder / (LAST_SCORES if last else SCORES), scores)
     return scores
 
 
-def trained_network(folder: Path, config: RunConfig, device: str = "auto") -> nn.Module:
-    """Return the network of a run with its best weights. Raises InputError."""
+def trained_network(
+    folder: Path, config: RunConfig, device: str = "auto", *, last: bool = False
+) -> nn.Module:
+    """Return the network of a run with its best weights, or its last. Raises InputError."""
     network = network_of(config)
-    load_weights(folder / WEIGHTS, network)
+    load_weights(folder / (LAST if last else WEIGHTS), network)
     return network.to(device_named(device)).eval()
 
 
