@@ -7,9 +7,10 @@
     python -m benchmarks.train_joint --target PHOTO --others BLOCKS:3 --out RUNS
 
 Three ways, the same steps, the same test scenes of the target: ``alone`` trains on the target,
-``joint`` on target and others, ``others`` on the others alone. Each is trained with every seed.
-The gain of ``joint`` over ``alone`` is judged by a bootstrap that draws test scenes and seeds: win
-where all of its middle 95 % is above 0, loss where it is below, else undecided.
+``joint`` on target and others, ``others`` on the others alone. Each is trained with every seed, and
+its last weights are scored. ``no picture`` is the average of the target's training boxes
+(``box_average``). The gain of ``joint`` over ``alone`` is judged by a bootstrap that draws test
+scenes and seeds: win where all of its middle 95 % is above 0, loss where below, else undecided.
 """
 
 import argparse
@@ -21,8 +22,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks.box_average import average_scenes
 from benchmarks.train_runs import done_run, done_scenes, figure_of
-from benchmarks.train_table import markdown
+from benchmarks.train_table import BLIND, markdown
 from world2minecraft.cli.progress import shown
 from world2minecraft.files import write_text
 from world2minecraft.learn.config import PRESETS, DataSource, RunConfig
@@ -114,6 +116,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--markdown", type=Path)
     words = parser.parse_args(arguments)
     cache, runs = CachePlace.named(words.cache), {way: [] for way in words.ways}
+    with shown() as progress:
+        blind = [average_scenes(config_of(words, "alone", 0), cache, progress)]
     for seed in words.seeds:  # Seeds first: a stopped table has whole rows of fewer seeds.
         for way in words.ways:
             config, folder = config_of(words, way, seed), words.out / f"{way}-{seed}"
@@ -122,7 +126,7 @@ def main(arguments: list[str] | None = None) -> int:
                 runs[way].append(
                     done_scenes(config, folder, words.target, words.device, cache, progress)
                 )
-    lines = rows_of(runs)
+    lines = rows_of({BLIND: blind, **runs})
     table = Table(*HEAD, box=None)
     for line in lines:
         table.add_row(*line)

@@ -6,7 +6,8 @@ last weights are scored by ``monoscene`` on all test frames. A table that was st
 the same command; each run stays in RUNS/NET. ``--markdown FILE`` writes the tables for the docs:
 scores with the paper's rows beside them, classes, and mIoU of the scenes held out of training as
 it went on. ``--preset 8k`` is the papers' grid and size, for a GPU. ``NET+depth`` is shown measured
-depth, as Symphonies was published; the others do without.
+depth, as Symphonies was published; the others do without. ``no picture`` is the average of all
+training boxes (``box_average``): a network that is no better has not learned to look.
 """
 
 import argparse
@@ -19,6 +20,7 @@ from rich.console import Console
 from rich.table import Table
 from tests.metrics.paper_occupancy import MINECRAFTOCC, row
 
+from benchmarks.box_average import averaged
 from benchmarks.train_runs import done_run
 from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.cli.progress import shown
@@ -27,6 +29,7 @@ from world2minecraft.learn.config import PRESETS, DataSource, RunConfig
 from world2minecraft.learn.data.opening import CachePlace
 from world2minecraft.learn.journal import METRICS, read_rows
 from world2minecraft.learn.networks import NETWORKS
+from world2minecraft.learn.scoring import protocol_scores, said_by_network
 
 PAPER_ROWS = {
     "monoscene": "monoscene",
@@ -34,18 +37,21 @@ PAPER_ROWS = {
     "iso": "iso",
     "symphonies": "symphonies",
 }
+BLIND = "no picture"
 GIVEN = "+depth"  # Ends the name of a network that is shown measured depth,
 ALSO = ("symphonies+depth",)  # as this one was published.
 HEAD = (
     "network",
     "million weights",
     "steps",
-    "hours",
+    "core hours",
     "hardware",
     "IoU",
     "mIoU",
     "precision",
     "recall",
+    "visible IoU",
+    "visible mIoU",
 )
 
 
@@ -75,11 +81,24 @@ def cells_of(network: str, done: dict[str, Any]) -> list[str]:
             f"{text} ({100 * spread[name][0]:.1f}-{100 * spread[name][1]:.1f})"
             for text, name in zip(figures, ("iou", "miou"), strict=True)
         ]
+    figures += [f"{100 * micro['precision']:.2f}", f"{100 * micro['recall']:.2f}"]
+    seen = done["scores"]["protocols"].get("visible")
+    figures += [f"{100 * seen['micro'][name]:.2f}" if seen else "-" for name in ("iou", "miou")]
+    if facts is None:
+        return [network, *["-"] * (len(HEAD) - 1 - len(figures)), *figures]
     return [
         network, f"{facts['parameters'] / 1e6:.2f}", f"{facts['steps']:,}",
-        f"{facts['seconds'] / 3600:.2f}", f"{facts['hardware']}, {facts['precision']}", *figures,
-        f"{100 * micro['precision']:.2f}", f"{100 * micro['recall']:.2f}",
+        f"{facts['cpu_seconds'] / 3600:.2f}", f"{facts['hardware']}, {facts['precision']}",
+        *figures,
     ]  # fmt: skip
+
+
+def blind_row(config: RunConfig, cache: CachePlace) -> dict[str, Any]:
+    """Return the scores of the average of all training boxes."""
+    with shown() as progress:
+        said, frames, rows = averaged(config, cache, progress)
+        scored = said_by_network(frames, rows, iter([said] * len(rows)))
+        return {"facts": None, "scores": protocol_scores(scored, config.cells.voxel_m)}
 
 
 def paper_cells(network: str) -> list[str]:
@@ -89,7 +108,7 @@ def paper_cells(network: str) -> list[str]:
         return [f"paper, 8k: no {plain}", *["-"] * (len(HEAD) - 1)]
     iou, miou, precision, recall, *_ = row(MINECRAFTOCC[f"8k {PAPER_ROWS[plain]}"])
     return [f"paper, 8k: {plain}", "-", "-", "-", "-",
-            *(f"{value:.2f}" for value in (iou, miou, precision, recall))]  # fmt: skip
+            *(f"{value:.2f}" for value in (iou, miou, precision, recall)), "-", "-"]  # fmt: skip
 
 
 def class_cells(network: str, done: dict[str, Any]) -> list[str]:
@@ -121,9 +140,9 @@ def markdown(head: tuple[str, ...], rows: list[list[str]]) -> str:
 
 def report(rows: dict[str, dict[str, Any]]) -> tuple[list[list[str]], list[list[str]]]:
     """Return the two tables' rows: figures with the paper's beside, and classes."""
-    figures = [
-        line for name, done in rows.items() for line in (cells_of(name, done), paper_cells(name))
-    ]
+    figures = [line for name, done in rows.items() for line in
+               ([cells_of(name, done)] if name == BLIND else
+                [cells_of(name, done), paper_cells(name)])]  # fmt: skip
     return figures, [class_cells(name, done) for name, done in rows.items()]
 
 
@@ -151,18 +170,18 @@ def main(arguments: list[str] | None = None) -> int:
     """Train, score and print; 0 when every network has its row."""
     words = options().parse_args(arguments)
     names = words.networks or [*NETWORKS.names(), *ALSO]
-    rows = {}
+    cache = CachePlace.named(words.cache)
+    rows = {BLIND: blind_row(chosen(words, names[0]), cache)}
     for name in names:
-        config = chosen(words, name)
         with shown() as progress:
             rows[name] = done_run(
-                config, words.out / name, words.device, CachePlace.named(words.cache), progress
+                chosen(words, name), words.out / name, words.device, cache, progress
             )
         figures, classes = report(rows)  # After each, so that a stopped table says something.
         tables = [
             (HEAD, figures),
             (("class IoU", *CLASS_NAMES), classes),
-            learning_rows({done: words.out / done for done in rows}),
+            learning_rows({done: words.out / done for done in rows if done != BLIND}),
         ]
         if words.markdown is not None:
             write_text(words.markdown, "\n".join(markdown(*table) for table in tables))

@@ -4,12 +4,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from benchmarks import draw_networks, train_joint, train_table
+from benchmarks import box_average, draw_networks, train_joint, train_table
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from tests.learn import toy_network
 from tests.learn.toy_sets import write_toy_store
 
 from world2minecraft.learn import training
-from world2minecraft.metrics.occupancy import OccupancyCounts
+from world2minecraft.metrics.occupancy import OccupancyCounts, count_occupancy
 
 
 @pytest.fixture(autouse=True)
@@ -35,6 +38,8 @@ def test_a_table_is_made_once_and_read_the_next_time(stores, tmp_path, capsys):
     assert "train ..." in first.err and "paper, 8k: monoscene" in first.out
     text = (tmp_path / "t.md").read_text()
     assert text.startswith("| network | million weights") and "| 40.66 |" in text
+    blind = next(line for line in text.splitlines() if line.startswith("| no picture | - |"))
+    assert blind.count("|") == text.splitlines()[0].count("|")
     assert train_table.main(words) == 0
     again = capsys.readouterr()
     assert "train ..." not in again.err and again.out == first.out
@@ -43,6 +48,23 @@ def test_a_table_is_made_once_and_read_the_next_time(stores, tmp_path, capsys):
         "given",
         "taught",
     )
+
+
+def test_the_average_box_says_what_most_training_frames_hold():
+    frames = [np.zeros((2, 1, 1), np.uint8) for _ in range(4)]
+    for frame in frames[:3]:
+        frame[0] = 3
+    frames[3][0], frames[0][1] = 2, 255
+    times = box_average.class_times(frames)
+    assert times[:, 0, 0, 0].tolist() == [0, 0, 1, 3] + [0] * 8 and times[:, 1].sum() == 3
+    assert box_average.average_labels(times).ravel().tolist() == [3, 0]
+
+
+@given(arrays(np.uint8, (5, 3, 2, 2), elements=st.sampled_from([0, 1, 4, 255])),
+       arrays(np.uint8, (3, 2, 2), elements=st.sampled_from([0, 1, 4])))  # fmt: skip
+def test_the_iou_of_saying_one_box_of_all_frames_is_that_of_their_counts(frames, said):
+    expected = sum((count_occupancy(said, one) for one in frames), OccupancyCounts()).iou
+    assert box_average.iou_of(box_average.class_times(frames), said) == pytest.approx(expected)
 
 
 def test_a_table_tells_what_was_learned_when(tmp_path):
@@ -81,7 +103,7 @@ def test_joint_runs_share_their_test_scenes(stores, tmp_path, capsys):
              "--cache", str(tmp_path / "c"), *COMMON]  # fmt: skip
     assert train_joint.main(words) == 0
     out = capsys.readouterr().out
-    assert "joint - alone" in out
+    assert "joint - alone" in out and "no picture" in out
     names = {path.name for path in (tmp_path / "R").iterdir()}
     assert names == {f"{way}-{seed}" for way in ("alone", "joint") for seed in (0, 1)}
 
