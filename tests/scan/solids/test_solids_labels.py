@@ -112,6 +112,7 @@ def test_names_of_things_say_their_class():
         "Sphere.001": 255,
         "Bed": 6,
         "couch": 7,
+        "barstool": 5,
     }
     assert {name: class_of_name(name) for name in expected} == expected
 
