@@ -77,8 +77,11 @@ def _typed(step: str) -> str:
 
 
 def _counted(text: str) -> str:
-    """Say counts of tests the other way round: 12 tests pass."""
-    return re.sub(r"\b(tests pass|fail|are skipped) ([\d,]*\d)", r"\2 \1", text)
+    """Say counts of tests the other way round: 12 tests pass, 1 is skipped."""
+    text = re.sub(r"\b(tests pass|fail|are skipped) ([\d,]*\d)", r"\2 \1", text)
+    for many, one in (("tests pass", "test passes"), ("fail", "fails"), ("are", "is")):
+        text = re.sub(rf"(?<![\d,])1 {many}\b", f"1 {one}", text)
+    return text
 
 
 def _counts(areas: Sequence[Area], results: Mapping[str, Result]) -> str:

@@ -232,7 +232,7 @@ def test_the_page_says_what_is_kept_and_nothing_else():
     told = "Of 6 lines: 1 met, 1 missed, 1 to be looked at by a person, 3 not run here."
     assert told in page
     kept["tests"]["figures"]["laws"] |= {"tests pass": 11, "fail": 1}
-    assert "- **laws** (Rooms): asked is they hold; measured: 11 tests pass, 1 fail." in page_of(
+    assert "- **laws** (Rooms): asked is they hold; measured: 11 tests pass, 1 fails." in page_of(
         areas, kept
     )
     none = page_of(areas, {})
