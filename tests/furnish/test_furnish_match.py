@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from label_grids import grid_of
 
@@ -72,13 +72,14 @@ def test_turning_the_room_turns_the_placement(name):
     st.sampled_from(["chair", "armchair", "sofa", "single_bed", "dining_table", "counter"]),
     st.tuples(*[st.floats(0.1, 0.9)] * 3),
 )
+@example("dining_table", (0.75, 0.125, 0.5))  # 13.1 cells wide: 12 fit as well.
 def test_sizes_within_the_spans_are_recovered(name, shares):
     spans = template(name).size_m
     size = tuple(a + (b - a) * share for (a, _, b), share in zip(spans, shares, strict=True))
     _, placements = _furnished(grid_of(_room(name, 0, size)))
     (placement,) = placements
     assert placement.iou >= FULL_IOU
-    np.testing.assert_allclose(placement.size_m, size, atol=0.0801)
+    np.testing.assert_allclose(placement.size_m, size, atol=1.2 * 0.08)
 
 
 @pytest.mark.parametrize(

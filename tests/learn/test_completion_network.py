@@ -99,6 +99,14 @@ def test_a_broken_run_goes_on_as_if_it_had_not(pool, tmp_path):
     assert not Trainer(RUN, pool).resume(tmp_path / "nothing")
 
 
+def test_the_same_run_twice_gives_the_same_weights(pool):
+    runs = [Trainer(RUN, pool) for _ in range(2)]
+    for run in runs:
+        run.train(3)
+    for one, other in zip(*(run.network.parameters() for run in runs), strict=True):
+        assert torch.equal(one, other)
+
+
 def test_the_rate_warms_up_stays_and_falls(pool):
     trainer = Trainer(replace(RUN, steps=1000), pool)
     assert trainer.rate_at(0) < trainer.rate_at(4) == trainer.rate_at(500) == RUN.rate

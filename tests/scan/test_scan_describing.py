@@ -177,7 +177,10 @@ def test_blur_is_seen_beside_the_others(tmp_path):
         pictures[index] = np.asarray(soft)
     summary = photos(tmp_path / "p", pictures)
     assert level_of(summary, "blur") == "warn"
-    assert "5 of 24 pictures looked at are blurred: 000, 005, 010" in " ".join(summary.warnings)
+    assert (
+        "5 of 24 pictures looked at are blurred: picture 000, picture 005, picture 010"
+        in " ".join(summary.warnings)
+    )
     pictures[5:] = panned(10, count=24)[5:]
     assert level_of(photos(tmp_path / "q", pictures), "blur") == "ok"
 

@@ -5,9 +5,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from world2minecraft.compare.judge import jpeg
+from world2minecraft.compare.judge import QUALITY
 from world2minecraft.errors import CaptureError
 from world2minecraft.models.chat_messages import Picture
+from world2minecraft.render.output.images import colour_bytes
 from world2minecraft.scan.images import read_colour
 from world2minecraft.scan.sources import find_capture
 
@@ -23,7 +24,7 @@ def capture_photos(place: Path, count: int) -> list[Picture]:
     paths = [frame.colour_path for frame in find_capture(place).frames if frame.colour_path]
     chosen = min(count, len(paths))
     wanted = [paths[int((n + 0.5) * len(paths) / chosen)] for n in range(chosen)]
-    photos = [Picture(jpeg(_small(read_colour(path)))) for path in wanted]
+    photos = [Picture(colour_bytes(_small(read_colour(path)), ".jpg", QUALITY)) for path in wanted]
     if not photos:
         raise CaptureError(place, "has no pictures in colour; leave out --agent")
     return photos

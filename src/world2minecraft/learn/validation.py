@@ -20,7 +20,8 @@ def precision_here(precision: str, device: torch.device) -> str:
     """Return ``bf16`` or ``32``: what ``auto`` means on a device.
 
     bfloat16 where the device multiplies it in hardware: new graphics cards, and processors with
-    AMX, on which a step takes a quarter of the time.
+    AMX, on which a step takes a quarter of the time. Without AMX torch 2.13's gradients of 3D
+    convolutions in bfloat16 differ from run to run on a processor, and are not a number at times.
     """
     if precision != "auto":
         return precision

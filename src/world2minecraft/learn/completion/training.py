@@ -17,6 +17,7 @@ from world2minecraft.learn.completion.augment import CROP
 from world2minecraft.learn.completion.losses import completion_loss
 from world2minecraft.learn.completion.network import CompletionNet, CompletionSize
 from world2minecraft.learn.completion.pool import LOOK_AGAIN, SamplePool
+from world2minecraft.learn.validation import autocast_of
 
 Report = Callable[[int, dict[str, float], CompletionNet], None]
 
@@ -72,7 +73,7 @@ class Trainer:
         torch.manual_seed(int(rng.integers(1 << 62)))  # Of the cells that the loss asks for.
         cells, truth, surface = self.pool.batch(rng, self.run.batch, self.run.crop)
         self.network.train()
-        with torch.autocast("cpu", torch.bfloat16):
+        with autocast_of("auto", cells.device):
             logits = self.network(cells)
         losses = completion_loss(logits, truth, surface)
         self.optimiser.zero_grad(set_to_none=True)
