@@ -152,8 +152,8 @@ def _total(broken: list[list[list[str]]]) -> int:
 
 
 def _lines(cell: str, width: int) -> list[str]:
-    whole = {"break_long_words": False, "break_on_hyphens": False}
-    return textwrap.wrap(cell, max(width, 1), **whole) or [""]
+    width = max(width, 1)
+    return textwrap.wrap(cell, width, break_long_words=False, break_on_hyphens=False) or [""]
 
 
 def _widths(broken: list[list[list[str]]]) -> list[int]:

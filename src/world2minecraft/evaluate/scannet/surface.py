@@ -57,7 +57,7 @@ def surface_voxels(mesh: LabelledMesh, voxel_m: float) -> SurfaceVoxels:
     for middles, owner in _pieces(mesh.vertices_m[mesh.triangles], PIECE * voxel_m):
         inside = middles + inward[owner] * (voxel_m / 2)
         cells = np.floor(inside / voxel_m).astype(np.int64) - low
-        at = np.ravel_multi_index(tuple(cells.T), tuple(shape))
+        at = np.asarray(np.ravel_multi_index(tuple(cells.T), tuple(shape)))
         votes_of["class"].add(at, classes[owner])
         votes_of["instance"].add(at, instance[owner])
     labels = np.full(shape, UNKNOWN, np.uint8)
