@@ -101,14 +101,14 @@ def blind_row(config: RunConfig, cache: CachePlace) -> dict[str, Any]:
         return {"facts": None, "scores": protocol_scores(scored, config.cells.voxel_m)}
 
 
-def paper_cells(network: str) -> list[str]:
-    """Return the paper's row of a network at 8k, or that it has none."""
+def paper_rows(network: str) -> list[list[str]]:
+    """Return the paper's row of a network at 8k, or none where it has none."""
     plain = network.removesuffix(GIVEN)
     if plain not in PAPER_ROWS:
-        return [f"paper, 8k: no {plain}", *["-"] * (len(HEAD) - 1)]
+        return []
     iou, miou, precision, recall, *_ = row(MINECRAFTOCC[f"8k {PAPER_ROWS[plain]}"])
-    return [f"paper, 8k: {plain}", "-", "-", "-", "-",
-            *(f"{value:.2f}" for value in (iou, miou, precision, recall)), "-", "-"]  # fmt: skip
+    figures = (f"{value:.2f}" for value in (iou, miou, precision, recall))
+    return [[f"paper, 8k: {plain}", *["-"] * 4, *figures, "-", "-"]]
 
 
 def class_cells(network: str, done: dict[str, Any]) -> list[str]:
@@ -140,9 +140,9 @@ def markdown(head: tuple[str, ...], rows: list[list[str]]) -> str:
 
 def report(rows: dict[str, dict[str, Any]]) -> tuple[list[list[str]], list[list[str]]]:
     """Return the two tables' rows: figures with the paper's beside, and classes."""
-    figures = [line for name, done in rows.items() for line in
-               ([cells_of(name, done)] if name == BLIND else
-                [cells_of(name, done), paper_cells(name)])]  # fmt: skip
+    figures = [
+        line for name, done in rows.items() for line in (cells_of(name, done), *paper_rows(name))
+    ]
     return figures, [class_cells(name, done) for name, done in rows.items()]
 
 

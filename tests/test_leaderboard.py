@@ -159,7 +159,7 @@ def with_figure(value):
     [
         (3, "row 1 must be a mapping, not '3'"),
         (without("link"), "row 1: link is missing"),
-        (good() | {"methd": "x"}, "row 1: no field is named 'methd'; did you mean 'method'?"),
+        (good() | {"methods": "x"}, "row 1: no field is named 'methods'; did you mean 'method'?"),
         (good() | {"input": "rgb"}, "input must be depth, depth+labels, photos, not 'rgb'"),
         (good() | {"date": "2026-13-01"}, "date must be year-month-day, such as 2026-11-22, not"),
         (good() | {"date": "today"}, "date must be year-month-day"),
