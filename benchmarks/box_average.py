@@ -9,12 +9,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from benchmarks.train_runs import scene_tables
 from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.learn.config import RunConfig
 from world2minecraft.learn.data.cache import Frames
 from world2minecraft.learn.data.opening import CachePlace, open_run_data
 from world2minecraft.learn.scoring import said_by_network
-from world2minecraft.metrics.protocols import PROTOCOLS, ProtocolCounts, count_frame
 from world2minecraft.progress import Progress
 
 SHARES = np.arange(0.1, 0.95, 0.05)
@@ -57,8 +57,4 @@ def average_scenes(
 ) -> dict[str, np.ndarray]:
     """Return the monoscene counts of each scored scene, int64 [12, 12] by name."""
     said, frames, rows = averaged(config, cache, progress)
-    counts: dict[str, ProtocolCounts] = {}
-    for one in said_by_network(frames, rows, iter([said] * len(rows))):
-        found = count_frame(PROTOCOLS["monoscene"], one.said, one.known)
-        counts[one.scene_id] = counts.get(one.scene_id, ProtocolCounts()) + found
-    return {name: one.classes.table for name, one in counts.items()}
+    return scene_tables(said_by_network(frames, rows, iter([said] * len(rows))))

@@ -4,6 +4,7 @@ Scored are the weights of the last step. Few scenes are held out of a small set,
 them is chance: see docs/network-table.md.
 """
 
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from world2minecraft.files import read_json, write_json
 from world2minecraft.learn.config import DataSource, RunConfig
 from world2minecraft.learn.data.opening import CachePlace, open_frames, rule_of
 from world2minecraft.learn.data.splits import split_rows
-from world2minecraft.learn.scoring import said_by_network
+from world2minecraft.learn.scoring import SaidOfFrame, said_by_network
 from world2minecraft.learn.training import (
     FACTS,
     LAST_SCORES,
@@ -55,12 +56,18 @@ def done_scenes(
         rows = split_rows(frames.scenes, splits, config.val_share, target).scored
         network = trained_network(folder, config, device, last=True)
         said = said_labels(network, frames, rows, config, progress=progress)
-        counts: dict[str, ProtocolCounts] = {}
-        for one in said_by_network(frames, rows, said):
-            scored = count_frame(PROTOCOLS["monoscene"], one.said, one.known)
-            counts[one.scene_id] = counts.get(one.scene_id, ProtocolCounts()) + scored
-        write_json(path, {name: one.classes.table.tolist() for name, one in counts.items()})
+        tables = scene_tables(said_by_network(frames, rows, said))
+        write_json(path, {name: table.tolist() for name, table in tables.items()})
     return {name: np.array(table) for name, table in read_json(path).items()}
+
+
+def scene_tables(frames: Iterable[SaidOfFrame]) -> dict[str, np.ndarray]:
+    """Return the monoscene counts of each scene, int64 [12, 12] by name."""
+    counts: dict[str, ProtocolCounts] = {}
+    for one in frames:
+        scored = count_frame(PROTOCOLS["monoscene"], one.said, one.known)
+        counts[one.scene_id] = counts.get(one.scene_id, ProtocolCounts()) + scored
+    return {name: one.classes.table for name, one in counts.items()}
 
 
 def figure_of(table: np.ndarray, name: str) -> float:
