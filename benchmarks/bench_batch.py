@@ -20,9 +20,9 @@ from PIL import Image
 
 from benchmarks.render_scenes import camera_of, poses, room, small
 from benchmarks.rows import Row
+from world2minecraft.machine import usable_cores
 from world2minecraft.render import BlockScene, Picture, prepare_scene, render_volume
 from world2minecraft.render.batch import RenderPool, batch_arrays, render_batch
-from world2minecraft.render.batch.hands import usual_workers
 from world2minecraft.render.output import colour_bytes
 
 SMALL_PX, POSES, ROUNDS = (64, 128, 224), 1000, 2  # Of the rounds the least counts.
@@ -41,11 +41,11 @@ def run() -> list[Row]:
     count = int(os.environ.get("W2M_SLICE", SLICE))
     looks = np.array(poses(volume, count, 11))
     rows += _encoders(scene, looks[:4])
-    for workers in sorted({1, usual_workers()}):
+    for workers in sorted({1, usable_cores()}):
         rows += _data_set("room", scene, looks, workers)
     flats = small()
     looks = np.array(poses(flats, count, 11))
-    return rows + _data_set("flats", prepare_scene(flats), looks, usual_workers())
+    return rows + _data_set("flats", prepare_scene(flats), looks, usable_cores())
 
 
 def _small(scene: BlockScene, side: int, looks: np.ndarray) -> list[Row]:

@@ -23,7 +23,7 @@ from world2minecraft.dataset.engine import opened_engine
 from world2minecraft.dataset.plan import Recipe, house_scenes, plan_dataset
 from world2minecraft.dataset.tours import paper_camera
 from world2minecraft.files import write_json
-from world2minecraft.render.batch.hands import usual_workers
+from world2minecraft.machine import usable_cores
 
 PAPER_IMAGES = 100_165
 BUDGET_MS = {"render": 120, "encode": 65, "labels": 60}
@@ -75,7 +75,7 @@ def main() -> int:
     options.add_argument("--images", type=int, default=2000, help="of small and views")
     options.add_argument("--houses", type=int, default=40, help="of small and views")
     options.add_argument("--slice", type=int, default=120, help="images of the large cases")
-    options.add_argument("--jobs", type=int, default=usual_workers())
+    options.add_argument("--jobs", type=int, default=usable_cores())
     options.add_argument("--json", type=Path, help="write the figures to this file")
     words = options.parse_args()
     cases, is_late, kept = words.only or list(CASES), False, {}

@@ -21,6 +21,7 @@ FOUNDATION = (
     "jit",
     "progress",
     "lock",
+    "machine",
 )
 ROWS: tuple[tuple[str, ...], ...] = (
     FOUNDATION,

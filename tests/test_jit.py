@@ -42,3 +42,11 @@ def test_each_system_has_its_place(monkeypatch, tmp_path, system, name, expected
     monkeypatch.setattr("sys.platform", system)
     monkeypatch.setenv(name, str(tmp_path))
     assert jit.user_cache_dir() == Path(tmp_path) / expected
+
+
+def test_a_kernel_that_was_kept_is_known_by_its_module_and_name(monkeypatch, tmp_path):
+    monkeypatch.setattr(jit, "KERNEL_CACHE", tmp_path)
+    (tmp_path / "render_1").mkdir()
+    (tmp_path / "render_1" / "pixels.draw_rows-70.py311.nbi").write_bytes(b"")
+    assert jit.is_compiled("pixels.draw_rows")
+    assert not jit.is_compiled("pixels.draw")

@@ -53,6 +53,11 @@ def kernel_cache_dir() -> Path:
     return Path(tempfile.mkdtemp(prefix="world2minecraft-kernels-"))
 
 
+def is_compiled(kernel: str) -> bool:
+    """Whether an earlier run has kept a kernel, named by its module and its own name: ``a.b``."""
+    return any(KERNEL_CACHE.rglob(f"{kernel}-*.nbi"))
+
+
 KERNEL_CACHE = kernel_cache_dir()
 os.environ.setdefault("NUMBA_CACHE_DIR", str(KERNEL_CACHE))
 

@@ -15,6 +15,7 @@ from world2minecraft.plans import PlanWorld, build_plan, find_roomplan
 from world2minecraft.prepare import open_prepared
 from world2minecraft.progress import Progress, silent
 from world2minecraft.report import write_brief_report, write_report
+from world2minecraft.report.ahead import pictures_compiled_meanwhile
 from world2minecraft.scan.sources import find_capture
 
 
@@ -34,7 +35,8 @@ def make_run(
     if start == "report":
         scan = registered_before(open_prepared(capture, out, chosen, labels, progress), out)
     else:
-        scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
+        with pictures_compiled_meanwhile():
+            scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
     truth = capture if (capture / "truth.npz").is_file() else None
     return write_report(out, scan, truth=truth, progress=progress)
 

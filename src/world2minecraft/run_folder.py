@@ -23,6 +23,7 @@ except ImportError:  # Windows has none.
 
 from world2minecraft.errors import DamagedFileError, InputError, OutputError, UnknownNameError
 from world2minecraft.files import read_json, write_json
+from world2minecraft.machine import usable_cores
 
 FREE_BYTES = 64 << 20  # A reconstruction of one room writes 1 to 20 MB.
 
@@ -112,7 +113,7 @@ class RunFolder:
                 "stage_s": self._seconds,
                 "peak_memory_mb": peak_memory_mb(),
                 "machine": platform.platform(),
-                "cores": os.cpu_count(),
+                "cores": usable_cores(),
             },
         )
 

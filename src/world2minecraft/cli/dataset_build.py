@@ -89,10 +89,10 @@ def build(folder: Path, plan: "DatasetPlan", engine: str, jobs: int | None) -> N
     from world2minecraft.cli.progress import shown
     from world2minecraft.dataset.building import build_dataset
     from world2minecraft.dataset.engine import opened_engine
-    from world2minecraft.render.batch.hands import usual_workers
+    from world2minecraft.machine import usable_cores
 
     compiling_note()
-    processes = usual_workers() if jobs is None else jobs
+    processes = usable_cores() if jobs is None else jobs
     with opened_engine(engine, processes) as workers, shown() as progress:
         report = build_dataset(folder, plan, workers, progress)
     _say(folder, report)

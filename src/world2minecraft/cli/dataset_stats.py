@@ -64,15 +64,14 @@ def run(
     Raises:
         InputError: it is no data set, or damaged. UsageError: there is no such split.
     """
-    from os import cpu_count
-
     from world2minecraft.cli.progress import shown
     from world2minecraft.dataset.statistics import statistics_text
     from world2minecraft.dataset.statistics.reading import statistics_of
+    from world2minecraft.machine import usable_cores
 
     with shown() as progress:
         statistics = statistics_of(
-            path, split, format=format, jobs=jobs or cpu_count() or 1, progress=progress
+            path, split, format=format, jobs=jobs or usable_cores(), progress=progress
         )
     print(statistics_text(statistics))
     print()

@@ -94,7 +94,9 @@ def check_cache() -> Check:
 
 def check_threads() -> Check:
     """Say how many cores this process may use."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    from world2minecraft.machine import usable_cores
+
+    cores = usable_cores()
     limit = os.environ.get("NUMBA_NUM_THREADS")
     return Check("cores", "ok", f"{cores}" + (f" (NUMBA_NUM_THREADS={limit})" if limit else ""))
 

@@ -213,11 +213,10 @@ def check_count(frames: int | None, rate_hz: float) -> None:
 
 def threads_of(asked: int | None) -> int:
     """Return how many threads to use. Raises UsageError."""
-    import os
+    from world2minecraft.machine import usable_cores
 
     if asked is None:
-        return max(1, len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity")
-                   else os.cpu_count() or 1)  # fmt: skip
+        return usable_cores()
     if not 1 <= asked <= 512:
         raise UsageError(f"--threads is 1 to 512, not {asked}")
     return asked

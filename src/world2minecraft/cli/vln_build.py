@@ -122,14 +122,14 @@ def _built(
 ) -> "Built":
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.render.batch.hands import usual_workers
+    from world2minecraft.machine import usable_cores
     from world2minecraft.run_folder import check_writable
     from world2minecraft.vln.data.building import build_set
     from world2minecraft.vln.data.made_scenes import SCENES_FOLDER, make_scenes
 
     check_writable(out)
     compiling_note()
-    hands, seed = workers or usual_workers(), rule.work.seed
+    hands, seed = workers or usable_cores(), rule.work.seed
     with shown() as progress:
         places = scenes + make_scenes(out / SCENES_FOLDER, *made, seed, hands, progress)
         return build_set(places, out, rule, progress, hands)

@@ -5,10 +5,10 @@ exactly: no order of summing, and so no number of threads, can change a match.
 """
 
 from concurrent.futures import ThreadPoolExecutor
-from os import cpu_count
 
 import numpy as np
 
+from world2minecraft.machine import usable_cores
 from world2minecraft.posing.features import Features
 from world2minecraft.posing.parameters import PosingParameters
 from world2minecraft.posing.steps import Steps
@@ -80,7 +80,7 @@ def worth_matching(alike: np.ndarray, parameters: PosingParameters) -> list[Pair
 
 def threads() -> int:
     """The number of threads that matching uses; it changes no result."""
-    return min(cpu_count() or 1, MOST_THREADS)
+    return min(usable_cores(), MOST_THREADS)
 
 
 def _candidates(strong: list[np.ndarray], parameters: PosingParameters) -> list[Pair]:

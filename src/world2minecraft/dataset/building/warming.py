@@ -5,14 +5,14 @@ from collections.abc import Callable
 from world2minecraft.dataset.building.clock import StageClock
 from world2minecraft.dataset.building.scenes import SceneTask, survey
 from world2minecraft.dataset.building.studio import studio_of
-from world2minecraft.jit import KERNEL_CACHE
+from world2minecraft.jit import is_compiled
 
-_LAST = "label_kernels.*.nbi"  # What numba keeps of the kernels that a sample needs last.
+_LAST = "label_kernels.count_hits"  # A kernel that a sample needs last.
 
 
 def is_cold() -> bool:
     """Whether the inner loops of a sample are still to be compiled."""
-    return not any(KERNEL_CACHE.rglob(_LAST))
+    return not is_compiled(_LAST)
 
 
 def warm(task: SceneTask, tick: Callable[[int], None]) -> None:

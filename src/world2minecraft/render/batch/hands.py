@@ -1,6 +1,5 @@
 """The worker processes of a pool: how they are started, and ended in any case."""
 
-import os
 import signal
 import threading
 from collections import deque
@@ -15,13 +14,6 @@ from world2minecraft.render.batch.shared import Block
 from world2minecraft.render.batch.worker import serve
 
 PATIENCE_S = 5.0  # For a worker to end by itself.
-
-
-def usual_workers() -> int:
-    """Return how many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return max(1, len(os.sched_getaffinity(0)))
-    return os.cpu_count() or 1
 
 
 @dataclass(eq=False)

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.errors import UsageError, WorkerError
+from world2minecraft.machine import usable_cores
 from world2minecraft.render.batch.arrays import (
     PICTURE_OUTPUTS,
     BatchArrays,
@@ -30,7 +31,6 @@ from world2minecraft.render.batch.hands import (
     deaf_to_interrupts,
     release,
     started,
-    usual_workers,
 )
 from world2minecraft.render.batch.ring import Ring, pictures_of, runs_of
 from world2minecraft.render.batch.shared import Block, placed
@@ -70,7 +70,7 @@ class RenderPool:
         Raises:
             UsageError: the number is out of range, or there is no shared memory.
         """
-        count = usual_workers() if workers is None else workers
+        count = usable_cores() if workers is None else workers
         if not 1 <= count <= MOST_WORKERS:
             raise UsageError(f"a pool has 1 to {MOST_WORKERS} workers, not {count}")
         self.workers, self._scene, self._busy = count, scene, False

@@ -1,0 +1,18 @@
+"""What the machine lends: cores, as the system limits them."""
+
+import os
+
+from world2minecraft.machine import usable_cores
+
+
+def test_a_limit_of_the_system_counts(monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda pid: {0, 5, 7}, raising=False)
+    assert usable_cores() == 3
+
+
+def test_a_system_that_tells_of_no_limit_says_all_cores_and_never_none(monkeypatch):
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    monkeypatch.setattr(os, "cpu_count", lambda: 6)
+    assert usable_cores() == 6
+    monkeypatch.setattr(os, "cpu_count", lambda: None)
+    assert usable_cores() == 1
