@@ -10,9 +10,16 @@ from world2minecraft.classes import SemanticClass
 from world2minecraft.coordinates import turn_grid
 from world2minecraft.errors import UsageError
 from world2minecraft.find import find_objects
-from world2minecraft.furnish import FurnishParameters, furnish
+from world2minecraft.furnish import (
+    FurnishParameters,
+    fit_template,
+    furnish,
+    ranked_matches,
+)
+from world2minecraft.furnish.bounds import floor_under_m
 from world2minecraft.furniture import TEMPLATES, cells_of, surface, template
 from world2minecraft.furniture.overlap import overlaps
+from world2minecraft.types import Layout
 
 NAMES = [name for name in TEMPLATES.names() if template(name).matched]
 FULL_IOU = 0.9
@@ -52,6 +59,39 @@ def test_a_template_that_stands_in_a_room_is_recovered(name, hidden):
         assert (placement.template, placement.quarter_turns) == (name, turns)
         assert placement.iou >= FULL_IOU
         assert np.abs(placement.size_m - template(name).typical_m).max() <= 0.08 + 1e-9
+
+
+def test_what_stands_upstairs_is_matched_as_it_is_below():
+    below = _room("chair", 1)
+    labels = np.zeros((*below.shape[:2], 80), np.uint8)
+    labels[:, :, 0], labels[:, :, 34:74] = SemanticClass.FLOOR, below
+    outline = np.array([[0.0, 0.0], [4.96, 0.0], [4.96, 4.64], [0.0, 4.64]])
+    rooms = [Layout(outline, 2.5), Layout(outline, 2.5, floor_z_m=34 * 0.08)]
+    (one,) = (found := find_objects(grid_of(labels))).instances
+    (placed,) = furnish(found.grid, [one], None, rooms)
+    _, (wanted,) = _furnished(grid_of(below))
+    assert (placed.template, placed.quarter_turns) == (wanted.template, wanted.quarter_turns)
+    assert placed.iou == wanted.iou
+    np.testing.assert_allclose(placed.size_m, wanted.size_m)
+    rise = np.array([0, 0, 34 * 0.08])
+    np.testing.assert_allclose(placed.center_m, wanted.center_m + rise, atol=1e-6)
+    assert ranked_matches(found.grid, one, rooms=rooms)[0][0] == "chair"
+    assert fit_template(found.grid, one, "chair", None, rooms).iou == wanted.iou
+
+
+def test_the_floor_under_a_thing_is_that_of_its_storey():
+    hall = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+    rooms = [Layout(hall, 5.0), Layout(hall + np.array([5.0, 0.0]), 2.4, floor_z_m=2.7)]
+    for middle, floor in (
+        ((1, 1, 4.0), 0.0),  # A lamp in a hall of two storeys hangs over the hall's floor.
+        ((6, 1, 3.1), 2.7),
+        ((6, 1, 2.66), 2.7),  # A rug that lies a little in its floor.
+        ((6, 1, 2.3), 0.0),
+        ((4.5, 1, 3.1), 2.7),  # In a wall between both.
+    ):
+        assert floor_under_m(np.array(middle), rooms, 0.08) == floor
+    assert floor_under_m(np.array([1, 1, 3.1]), (), 0.08) == 0.0
+    assert floor_under_m(np.array([1, 1, -2.0]), [Layout(hall, 2.2, floor_z_m=-2.5)], 0.08) == -2.5
 
 
 @pytest.mark.parametrize("name", ["chair", "sofa", "double_bed", "desk", "bookcase", "monitor"])

@@ -42,7 +42,7 @@ class Alternatives(Query):
         """Return ``[{"template", "quarter_turns", "iou"}]``, best first; none without cells."""
         one = object_named(editor.draft, self.id)
         found = instance_of(one, editor.draft.cells_of(one.id))
-        rows = ranked_matches(editor.draft.grid(), found, OFFERED)
+        rows = ranked_matches(editor.draft.grid(), found, OFFERED, editor.opened.rooms)
         return [{"template": name, "quarter_turns": turns, "iou": iou} for name, turns, iou in rows]
 
 

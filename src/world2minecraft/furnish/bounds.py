@@ -51,6 +51,18 @@ def within_rooms(placement: Placement, rooms: Sequence[Layout], voxel_m: float) 
     return with_box(placement, box)
 
 
+def floor_under_m(middle_m: np.ndarray, rooms: Sequence[Layout], voxel_m: float) -> float:
+    """Return how high the floor lies on which something with a middle, float64 [3], stands.
+
+    It is the highest under its middle of the rooms around it, of all rooms where none is; 0, the
+    ground storey's, where no room tells.
+    """
+    under = [one for one in rooms if one.floor_z_m <= middle_m[2] + voxel_m]
+    plan = np.asarray(middle_m, np.float64)[None, :2]
+    around = [one for one in under if inside_polygon(plan, one.floor_polygon_m, 0.0)[0]]
+    return max((one.floor_z_m for one in around or under), default=0.0)
+
+
 def least_sides_m(placement: Placement, voxel_m: float) -> np.ndarray:
     """Return how small a placement's turned box may become, float64 [3]."""
     if placement.template == OWN_CELLS:

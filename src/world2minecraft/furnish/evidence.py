@@ -19,7 +19,7 @@ class Evidence:
     AGAINST one that was seen to be free or structure, IGNORED one that was never seen or belongs
     to another object, and so counts neither way; BEYOND is such a cell outside the object's own
     box. ``low`` and ``high`` bound the object's own
-    cells, ``floor`` is the first layer above the floor, all in cells of the window.
+    cells, ``floor`` is the first layer above the floor of its storey, all in cells of the window.
     """
 
     code: np.ndarray  # uint8 [X, Y, Z]
@@ -31,14 +31,19 @@ class Evidence:
 
 
 def evidence_of(
-    grid: OccupancyGrid, cells: np.ndarray, reach: tuple[int, int, int], paper_compat: bool
+    grid: OccupancyGrid,
+    cells: np.ndarray,
+    reach: tuple[int, int, int],
+    paper_compat: bool,
+    floor_m: float = 0.0,
 ) -> Evidence:
     """Return the window around ``cells``, int32 [N, 3], wide enough for boxes of ``reach`` cells.
 
-    With ``paper_compat`` every cell but the object's own is AGAINST, seen or not.
+    With ``paper_compat`` every cell but the object's own is AGAINST, seen or not. ``floor_m`` is
+    how high the floor of the object's storey lies.
     """
     low, high = cells.min(axis=0).astype(np.int64), cells.max(axis=0).astype(np.int64) + 1
-    floor = int(np.floor(-grid.origin_m[2] / grid.voxel_m + 0.5))
+    floor = int(np.floor((floor_m - grid.origin_m[2]) / grid.voxel_m + 0.5))
     pad = MARGIN + np.maximum(np.array(reach) - (high - low), 0)
     begin, end = low - pad, high + pad
     begin[2] = min(begin[2], floor - MARGIN) if floor <= low[2] else begin[2]

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.furnish.bounds import within_rooms
+from world2minecraft.furnish.bounds import floor_under_m, within_rooms
 from world2minecraft.furnish.evidence import Evidence, evidence_of
 from world2minecraft.furnish.match import best_matches
 from world2minecraft.furnish.parameters import FurnishParameters
@@ -33,7 +33,8 @@ def fit_template(
         instance: the object.
         name: of the template, or ``cells`` for what is built from the object's own cells.
         quarter_turns: the way it looks, 0 to 3; None for the best.
-        rooms: their outlines; within them it stays, where any are given.
+        rooms: their outlines; within them it stays and on their floors it stands, where any are
+            given.
 
     Raises:
         UnknownNameError: there is no such template.
@@ -42,44 +43,53 @@ def fit_template(
     if name == OWN_CELLS:
         return _own_box(grid, instance, seen if quarter_turns is None else quarter_turns)
     chosen = template(name)
-    placed = _near_cells(grid, instance, chosen, quarter_turns)
+    placed = _near_cells(grid, instance, chosen, quarter_turns, rooms)
     if placed is None:
         placed = _in_box(grid, instance, chosen, seen if quarter_turns is None else quarter_turns)
     return within_rooms(placed, rooms, grid.voxel_m) or placed
 
 
 def ranked_matches(
-    grid: OccupancyGrid, instance: ObjectInstance, count: int = 5
+    grid: OccupancyGrid, instance: ObjectInstance, count: int = 5, rooms: Sequence[Layout] = ()
 ) -> tuple[tuple[str, int, float], ...]:
     """Return the best templates of an object's class: name, quarter turns and IoU, best first.
 
-    Each template is named once, in its best turn.
+    Each template is named once, in its best turn. ``rooms`` tell on which floor the object stands.
     """
     if not len(instance.cells):
         return ()
     best: dict[str, tuple[str, int, float]] = {}
-    for one in _matches(grid, instance, templates_of(instance.class_id))[1]:
+    for one in _matches(grid, instance, templates_of(instance.class_id), rooms)[1]:
         row = (one.trial.template.name, one.trial.quarter_turns, round(one.iou, 4))
         best.setdefault(row[0], row)
     return tuple(best.values())[:count]
 
 
 def _matches(
-    grid: OccupancyGrid, instance: ObjectInstance, templates: tuple[Template, ...]
+    grid: OccupancyGrid,
+    instance: ObjectInstance,
+    templates: tuple[Template, ...],
+    rooms: Sequence[Layout],
 ) -> tuple[Evidence, list[Scored]]:
     chosen = FurnishParameters()
-    evidence = evidence_of(grid, instance.cells, reach_of(templates, grid.voxel_m), False)
+    floor_m = floor_under_m(instance.center_m, rooms, grid.voxel_m)
+    reach = reach_of(templates, grid.voxel_m)
+    evidence = evidence_of(grid, instance.cells, reach, False, floor_m)
     weights = (chosen.size_weight, chosen.front_weight, chosen.beyond_weight)
     bias = Bias(_turns_of(instance), grid.voxel_m, *weights)
     return evidence, best_matches(templates, evidence, bias, chosen)
 
 
 def _near_cells(
-    grid: OccupancyGrid, instance: ObjectInstance, chosen: Template, quarter_turns: int | None
+    grid: OccupancyGrid,
+    instance: ObjectInstance,
+    chosen: Template,
+    quarter_turns: int | None,
+    rooms: Sequence[Layout],
 ) -> Placement | None:
     if not len(instance.cells):
         return None
-    evidence, matches = _matches(grid, instance, (chosen,))
+    evidence, matches = _matches(grid, instance, (chosen,), rooms)
     wanted = None if quarter_turns is None else quarter_turns % chosen.turns
     found = [one for one in matches if wanted in (None, one.trial.quarter_turns)]
     if not found or found[0].iou <= 0:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.classes import SemanticClass
+from world2minecraft.furnish.bounds import floor_under_m
 from world2minecraft.furnish.crumbs import tidied
 from world2minecraft.furnish.evidence import OWN, Evidence, evidence_of
 from world2minecraft.furnish.match import NO_SHIFT, best_matches
@@ -53,24 +54,30 @@ def furnish(
 
     An object that was cut has several placements with its id. Where no template reaches
     ``min_iou`` the template is ``cells`` and ``iou`` is that of the best one refused. Placements
-    stay within ``rooms``, where any are given, and no two are solid in the same place.
+    stay within ``rooms``, where any are given, stand on the floors of these, and no two are solid
+    in the same place.
     """
     chosen = parameters or FurnishParameters()
     around = surroundings(grid.labels)
     placed: list[Choice] = []
     for instance in instances:
         if len(instance.cells):
-            placed += _furnish_one(grid, instance, around, chosen)
+            floor_m = floor_under_m(instance.center_m, rooms, grid.voxel_m)
+            placed += _furnish_one(grid, instance, around, chosen, floor_m)
     if chosen.paper_compat:
         return tuple(one.placement for one in placed)
     return settle(choose(placed), grid, rooms)
 
 
 def _furnish_one(
-    grid: OccupancyGrid, instance: ObjectInstance, around: Surroundings, chosen: FurnishParameters
+    grid: OccupancyGrid,
+    instance: ObjectInstance,
+    around: Surroundings,
+    chosen: FurnishParameters,
+    floor_m: float,
 ) -> list[Choice]:
     turns = int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
-    whole = _match(grid, instance, instance.cells, turns, chosen)
+    whole = _match(grid, instance, instance.cells, turns, chosen, floor_m)
     if whole.iou < chosen.seat_below and instance.class_id == SemanticClass.CHAIR:
         seated = None if chosen.paper_compat else _seated(grid, whole, chosen)
         if seated is not None:
@@ -81,7 +88,7 @@ def _furnish_one(
     for run in cut_into_runs(whole.evidence, chosen.max_runs, chosen.min_run_cells):
         cells = (run + whole.evidence.corner).astype(np.int32)
         front = facing(cells, instance.class_id, around).quarter_turns
-        parts.append(_match(grid, instance, cells, front, chosen))
+        parts.append(_match(grid, instance, cells, front, chosen, floor_m))
     least = max(chosen.min_run_cells, chosen.min_run_share * whole.evidence.own)
     parts = [part if part.evidence.own >= least else part.unmatched() for part in parts]
     if _is_better_cut(parts, whole.iou, chosen):
@@ -141,10 +148,11 @@ def _match(
     cells: np.ndarray,
     quarter_turns: int,
     chosen: FurnishParameters,
+    floor_m: float,
 ) -> Matched:
     templates = templates_of(instance.class_id)
     reach = reach_of(templates, grid.voxel_m)
-    evidence = evidence_of(grid, cells, reach, chosen.paper_compat)
+    evidence = evidence_of(grid, cells, reach, chosen.paper_compat, floor_m)
     matches = best_matches(templates, evidence, _bias(quarter_turns, grid, chosen), chosen)
     return Matched(evidence, quarter_turns, tuple(matches))
 
