@@ -5,6 +5,7 @@ import pytest
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.find import FindParameters, find_objects
+from world2minecraft.find.reach import layers_reached
 from world2minecraft.types import OccupancyGrid
 
 TOP = (slice(10, 26), slice(8, 20), slice(9, 11))
@@ -70,6 +71,25 @@ def test_a_shade_high_in_the_air_or_over_a_table_hangs_from_the_ceiling():
     assert _lamp(20, ceiling=True) == [19, 26]
     assert _lamp(14, below=8, ceiling=True) == [13, 26]
     assert _lamp(20) == [19, 22]
+
+
+def test_a_pendant_hangs_from_the_ceiling_of_its_own_storey():
+    labels = np.zeros((20, 20, 60), np.uint8)
+    labels[:, :, 0] = labels[:, :, 29] = SemanticClass.FLOOR
+    labels[:, :, 56] = SemanticClass.CEILING
+    labels[:5, :, 27] = SemanticClass.CEILING  # Beside the lamp alone it was seen.
+    labels[10:13, 10:13, 20:23] = SemanticClass.OBJS
+    grid = OccupancyGrid(
+        labels=labels,
+        confidence=np.full(labels.shape, 0.5, np.float16),
+        colour=np.zeros((*labels.shape, 3), np.uint8),
+        source=np.ones(labels.shape, np.uint8),
+        instance=np.zeros(labels.shape, np.uint16),
+        voxel_m=0.08,
+        origin_m=np.array([0.0, 0.0, -0.08]),
+    )
+    cells = np.argwhere(labels == SemanticClass.OBJS)
+    assert layers_reached(cells, grid, SemanticClass.OBJS) == (20, 27)
 
 
 def test_what_lies_on_a_table_or_hangs_on_a_wall_reaches_no_farther():

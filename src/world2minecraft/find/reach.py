@@ -49,6 +49,8 @@ def _pole(cells: np.ndarray, grid: OccupancyGrid, floor: int) -> tuple[int, int]
     column = grid.labels[x, y]
     full = np.flatnonzero((column > 0) & (column != UNKNOWN))
     below, above = full[full < low], full[full >= high]
+    floors = np.flatnonzero(column[above] == SemanticClass.FLOOR)
+    above = above[: int(floors[0])] if len(floors) else above  # Over that is another storey.
     rest = int(below[-1]) + 1 if len(below) else floor
     on_table = bool(len(below)) and column[below[-1]] == SemanticClass.TABLE
     hangs = on_table or (low - floor) * grid.voxel_m >= HANGS_ABOVE_M
@@ -59,6 +61,13 @@ def _pole(cells: np.ndarray, grid: OccupancyGrid, floor: int) -> tuple[int, int]
 
 
 def _ceiling(grid: OccupancyGrid, high: int) -> int:
-    """Return the layer of the ceiling over most of the room; ``high`` where there is none."""
+    """Return the layer of the ceiling over most of the room; ``high`` where there is none.
+
+    The next floor over ``high`` ends the search: over that is another storey's ceiling.
+    """
     layers = np.count_nonzero(grid.labels == SemanticClass.CEILING, axis=(0, 1))
+    floors = np.count_nonzero(grid.labels == SemanticClass.FLOOR, axis=(0, 1))
+    upper = np.flatnonzero(floors[high:] >= max(floors.max(initial=0) / 2, 1))
+    if len(upper):
+        layers = layers[: high + int(upper[0])]
     return max(int(layers.argmax()), high) if layers.any() else high
