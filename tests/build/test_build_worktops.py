@@ -2,7 +2,12 @@ import numpy as np
 from build_samples import DARK, FURN, RED, WHITE, Sketch
 
 from world2minecraft.build import build_volume
+from world2minecraft.build.canvas import Canvas
+from world2minecraft.build.halves import LOWER
 from world2minecraft.build.hues import one_paint
+from world2minecraft.build.lattice import Lattice
+from world2minecraft.build.palette_files import palette_of
+from world2minecraft.build.plates import Plates
 from world2minecraft.build.worktops import Worktop, joined
 from world2minecraft.coordinates import apply
 from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
@@ -48,6 +53,38 @@ def test_a_glossy_counter_is_one_dark_plate_over_a_red_front():
     top, front = tops.pop(), fronts.pop()
     assert lightness_of(top) < 0.4 and chroma_of(top) < 0.05
     assert "red" in front and "slab" not in front
+
+
+def plates_over(numbers, scale, names):
+    """Red counters side by side with a dark worktop each, and the palette of some blocks."""
+    canvas = Canvas(Lattice((0, 63, 0), (12, 4, 5), np.zeros(2), scale))
+    plates = Plates(canvas, palette_of({"name": "few", "blocks": names}))
+    for place, number in enumerate(numbers):
+        columns = np.zeros((12, 4), bool)
+        columns[1 + 3 * place : 3 + 3 * place, 1:3] = True
+        dark = oklab_of_srgb(np.array(DARK, np.uint8))
+        plates.worktops[number] = Worktop(columns, 1, LOWER, dark)
+        at = (*np.nonzero(columns), np.full(4, 1))
+        if scale < 1.5:
+            canvas.put(at, canvas.id_of("minecraft:red_concrete"), FURN, number)
+    return canvas, plates
+
+
+def test_each_counter_at_a_block_a_metre_wears_a_carpet():
+    names = ["red_concrete", "glass", "black_carpet", "white_carpet"]
+    canvas, plates = plates_over((2, 3), 1.0, names)
+    plates.put_carpets()
+    assert (canvas.states[:, :, 2] == canvas.id_of("minecraft:black_carpet")).sum() == 8
+    assert set(canvas.instance[:, :, 2][canvas.states[:, :, 2] > 0].tolist()) == {2, 3}
+    canvas, plates = plates_over((2,), 1.0, names[:2])
+    plates.put_carpets()
+    assert not canvas.states[:, :, 2].any(), "a palette without carpets lays none"
+
+
+def test_a_palette_without_slabs_lays_a_full_plate():
+    canvas, plates = plates_over((2,), 4.0, ["white_concrete", "black_concrete", "glass"])
+    plates._put_plate(plates.worktops[2], plates.worktops[2].columns, 2)
+    assert (canvas.states == canvas.id_of("minecraft:black_concrete")).sum() == 4
 
 
 def test_a_counter_that_was_measured_takes_no_plate():

@@ -42,14 +42,11 @@ class Plates:
         mask = np.zeros(self.lattice.shape, bool)
         mask[1:-1, 1:-1, top.layer] = columns[1:-1, 1:-1]
         mask &= self.canvas.states == 0
-        choices = (
-            list(self.palette.slabs)
-            if top.half != FULL
-            else list(self.palette.blocks[SemanticClass.FURN])
-        )
+        slabs = self.palette.slabs if top.half != FULL else {}  # A palette of few blocks has none.
+        choices = list(slabs or self.palette.blocks[SemanticClass.FURN])
         apart = np.linalg.norm(oklab_of_srgb(colours_of(choices)) - top.colour, axis=1)
         block = choices[int(apart.argmin())]
-        state = f"{self.palette.slabs[block]}[type=bottom]" if top.half != FULL else block
+        state = f"{slabs[block]}[type=bottom]" if slabs else block
         self.canvas.put(mask, self.canvas.id_of(state), SemanticClass.FURN, number)
 
     def put_carpets(self) -> None:
@@ -61,13 +58,15 @@ class Plates:
             return
         carpets = [block for block in known_blocks() if block.endswith("_carpet")]
         carpets = [block for block in carpets if self.palette.allows(block)]
-        full = np.array([is_full_cube(state) for state in self.canvas.palette])
+        if not carpets:
+            return
         for number, top in self.worktops.items():
+            full = np.array([is_full_cube(state) for state in self.canvas.palette])  # It grows.
             own = (self.canvas.instance == number) & full[self.canvas.states]
             under = own[:, :, top.layer] & top.columns
             free = self.canvas.states[:, :, top.layer + 1] == 0
-            apart = np.linalg.norm(oklab_of_srgb(colours_of(carpets)) - top.colour, axis=1)
-            if carpets and (under & free).any():
+            if (under & free).any():
+                apart = np.linalg.norm(oklab_of_srgb(colours_of(carpets)) - top.colour, axis=1)
                 mask = np.zeros(self.lattice.shape, bool)
                 mask[:, :, top.layer + 1] = under & free
                 state = carpets[int(apart.argmin())]
