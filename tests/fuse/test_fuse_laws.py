@@ -89,6 +89,16 @@ def test_growing_the_map_changes_nothing():
         assert np.array_equal(getattr(grown, name), getattr(whole, name)), name
 
 
+def test_a_frame_far_off_is_told_before_memory_runs_out():
+    map_ = EvidenceMap(np.eye(4), FuseParameters())
+    for away_m in (0.0, 120.0):
+        points = np.array([[2.0, y / 50, 1.0] for y in range(20)], np.float32) + away_m
+        weight = np.full(20, 1e-3, np.float32)
+        map_.add(PointEvidence("v", np.full(3, away_m), points.astype(np.float32), weight))
+    with pytest.raises(CaptureError, match=r"spans 12\d x 12\d x 12\d m, .* wrong pose"):
+        map_.fused()
+
+
 def test_a_capture_that_spans_a_town_is_refused():
     far = looking_at_wall(2.0)
     moved = PointEvidence(

@@ -14,7 +14,7 @@ import numpy as np
 
 from world2minecraft.coordinates import apply
 from world2minecraft.errors import CaptureError
-from world2minecraft.fuse.blocks import BLOCK_CELLS, SIDE, Blocks
+from world2minecraft.fuse.blocks import BLOCK_CELLS, MAX_DENSE, SIDE, Blocks
 from world2minecraft.fuse.grids import grid_gains
 from world2minecraft.fuse.kernels import (
     add_colours,
@@ -61,7 +61,7 @@ class EvidenceMap:
         """Return the map, settled and cut to the cells that were seen.
 
         Raises:
-            CaptureError: nothing was seen yet.
+            CaptureError: nothing was seen yet, or what was seen lies too far apart for one grid.
         """
         values, blocks = self.parameters, self.blocks
         log_odds, record, low = self._dense()
@@ -74,7 +74,9 @@ class EvidenceMap:
         inherit(record, heir, values.voxel_m, *sums)
         seen = np.argwhere(log_odds != 0)
         if not len(seen):
-            raise CaptureError("capture", "no view gave any evidence; is there depth in it?")
+            raise CaptureError(
+                "capture", "no view gave any evidence; is there depth in it? w2m scan tells"
+            )
         first, last = seen.min(axis=0), seen.max(axis=0) + 1
         box = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
         return self._as_evidence(log_odds[box], record[box], low + first, *sums)
@@ -106,7 +108,14 @@ class EvidenceMap:
         if not len(numbers):
             return np.zeros((1, 1, 1), np.float32), np.zeros((1, 1, 1), np.int32), np.zeros(3)
         low = first.min(axis=0)
-        shape = tuple(first.max(axis=0) + SIDE - low)
+        shape = tuple((first.max(axis=0) + SIDE - low).tolist())
+        if math.prod(shape) > MAX_DENSE:
+            extent = " x ".join(f"{side * self.parameters.voxel_m:.0f}" for side in shape)
+            raise CaptureError(
+                "capture",
+                f"spans {extent} m, with little seen of that: a frame may have a wrong pose; w2m "
+                "scan shows where frames are, and a larger --voxel makes it fit",
+            )
         log_odds, record = np.zeros(shape, np.float32), np.zeros(shape, np.int32)
         for number, start in zip(numbers, first - low, strict=True):
             box = tuple(slice(a, a + SIDE) for a in start)

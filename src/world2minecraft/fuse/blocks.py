@@ -10,6 +10,7 @@ import numpy as np
 
 from world2minecraft.classes import CLASS_COUNT
 from world2minecraft.errors import CaptureError
+from world2minecraft.files import MAX_ARRAY_BYTES
 
 SHIFT = 3
 SIDE = 1 << SHIFT  # 0.64 m at the paper's cell: half of a room's blocks hold no surface.
@@ -19,6 +20,8 @@ FACES = 6  # A surface that faces -x, +x, -y, +y, -z or +z most.
 FACE_SUMS = 8  # Weight; weighted offset [3], normal [3] and depth sigma.
 MAX_CELLS = 120_000_000  # 1.4 GB: a house of 60 x 60 x 17 m at 0.08 m, all of it seen.
 MAX_TABLE = 16_000_000
+# Of the box around all that was seen: the votes of evidence.npz, which is read again.
+MAX_DENSE = MAX_ARRAY_BYTES // (2 * CLASS_COUNT)
 
 
 class Blocks:
@@ -50,7 +53,7 @@ class Blocks:
         cells = (int(self.used[0]) + missing + 1) * BLOCK_CELLS
         if int(self.used[0]) * BLOCK_CELLS > MAX_CELLS:
             raise CaptureError(
-                "capture", "fills more cells than fit; a larger --voxel makes it fit"
+                "capture", "fills more cells than fit; a larger --voxel makes it fit, such as 0.16"
             )
         for name in ("log_odds", "record", "mark"):
             setattr(self, name, _grown(getattr(self, name), cells))

@@ -10,8 +10,11 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.errors import UsageError
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.types import COMPLETED, OccupancyGrid
+
+MOST_HOLE_M = 10.0  # Wider than any room's floor has holes; closing takes the square of it.
 
 
 @dataclass(frozen=True)
@@ -27,6 +30,12 @@ class CleanParameters:
 
     floater_cells: int = 6
     hole_m: float = 0.32
+
+    def __post_init__(self):
+        if self.floater_cells < 0:
+            raise UsageError(f"clean.floater_cells must be 0 or more, not {self.floater_cells}")
+        if not 0 <= self.hole_m <= MOST_HOLE_M:
+            raise UsageError(f"clean.hole_m must be 0 to {MOST_HOLE_M:g} m, not {self.hole_m:g}")
 
 
 def remove_floaters(grid: OccupancyGrid, parameters: CleanParameters) -> OccupancyGrid:

@@ -3,6 +3,21 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
+from world2minecraft.errors import UsageError
+
+_ABOVE_0 = ("hit_log_odds", "limit_log_odds", "pose_m", "sure_m")
+_NOT_BELOW_0 = (
+    "network_weight",
+    "nudge_m",
+    "clear_m",
+    "clear_growth",
+    "sigma_m",
+    "sigma_growth",
+    "pose_growth",
+    "merge_m",
+    "merge_sigmas",
+)
+
 
 @dataclass(frozen=True)
 class FuseParameters:
@@ -48,6 +63,22 @@ class FuseParameters:
     merge_m: float = 0.016
     merge_sigmas: float = 3.0
     sure_m: float = 0.003
+
+    def __post_init__(self):
+        for name in _ABOVE_0:
+            if not getattr(self, name) > 0:
+                raise UsageError(f"fuse.{name} must be above 0, not {getattr(self, name):g}")
+        for name in _NOT_BELOW_0:
+            if not getattr(self, name) >= 0:
+                raise UsageError(f"fuse.{name} must be 0 or more, not {getattr(self, name):g}")
+        if not self.free_log_odds <= 0:
+            raise UsageError(f"fuse.free_log_odds must be 0 or less, not {self.free_log_odds:g}")
+        if self.min_points < 1:
+            raise UsageError(f"fuse.min_points must be 1 or more, not {self.min_points}")
+        for name in ("min_share", "solid_share"):
+            if not 0 <= getattr(self, name) <= 1:
+                given = getattr(self, name)
+                raise UsageError(f"fuse.{name} must lie between 0 and 1, not {given:g}")
 
     def suited(self, depth_kind: str) -> "FuseParameters":
         """Return the parameters for another kind of depth; what was chosen by hand stays.
