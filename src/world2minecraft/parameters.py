@@ -4,6 +4,7 @@ Each stage owns its own parameters and their defaults; here they are only joined
 """
 
 import json
+import math
 from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
@@ -93,7 +94,14 @@ def check_name(kind: str, name: str, known: tuple[str, ...]) -> None:
 
 
 METHODS = ("best", "paper")
-NOT_SET = ("known", "known_points")  # They have options of their own.
+# What is not set by its own key, and what is typed instead.
+SAID_ELSEWHERE = {
+    "known": '--known "table height" 0.72',
+    "known_points": "--known-points A:x,y B:x,y METRES",
+    "fuse.voxel_m": "--voxel 0.08",  # One size for all stages.
+    "capture": "--set capture.KEY=VALUE",
+}
+TYPES_IN_WORDS = {bool: "yes or no", int: "a whole number", float: "a number"}
 
 
 def with_method(parameters: Parameters, method: str) -> Parameters:
@@ -101,8 +109,7 @@ def with_method(parameters: Parameters, method: str) -> Parameters:
 
     ``best`` leaves them as they are. ``paper`` stops where the paper stops: no refinement of poses
     and depth, each cluster of DBSCAN an object, templates by IoU over all cells and turns, nothing
-    mended. What
-    the paper leaves open (k, tau, eta, fusion, labels) is the same in both.
+    mended. What the paper leaves open (k, tau, eta, fusion, labels) is the same in both.
 
     Raises:
         UnknownNameError: there is no such method.
@@ -131,7 +138,9 @@ def with_settings(parameters: Parameters, settings: list[str]) -> Parameters:
     for setting in settings:
         key, equals, text = setting.partition("=")
         if not equals:
-            raise UsageError(f"--set takes key=value, not {setting!r}")
+            raise UsageError(
+                f"--set takes key=value, not {setting!r}, such as --set find.cluster_radius=3"
+            )
         parameters = _with_one(parameters, key.strip().split("."), text.strip(), key.strip())
     return parameters
 
@@ -144,7 +153,7 @@ def parameter_keys(value: Any = None, prefix: str = "") -> list[str]:
         inner = getattr(value, entry.name)
         if is_dataclass(inner):
             keys += parameter_keys(inner, f"{prefix}{entry.name}.")
-        elif not isinstance(inner, dict | tuple) and entry.name not in NOT_SET:
+        elif not isinstance(inner, dict | tuple) and prefix + entry.name not in SAID_ELSEWHERE:
             keys.append(prefix + entry.name)
     return keys
 
@@ -153,6 +162,8 @@ def _with_one(value: Any, path: list[str], text: str, key: str) -> Any:
     name = path[0]
     if name == "capture" and len(path) == 2:
         return replace(value, capture={**value.capture, path[1]: text})
+    if key in SAID_ELSEWHERE:
+        raise UsageError(f"--set does not take {key}; type {SAID_ELSEWHERE[key]}")
     if name not in {entry.name for entry in fields(value)}:
         raise UnknownNameError("parameter", key, parameter_keys())
     inner = getattr(value, name)
@@ -173,11 +184,17 @@ def _parse(example: Any, text: str, key: str) -> Any:
                 text.lower()
             ]
         if isinstance(example, int | float):
-            return type(example)(text)
-    except (ValueError, KeyError):
-        raise UsageError(
-            f"--set {key} takes a {type(example).__name__} such as {example}, not {text!r}"
-        ) from None
-    if (example is None and key not in NOT_SET) or isinstance(example, str):
+            return _finite(type(example)(text))
+    except (ValueError, KeyError, OverflowError):
+        words = TYPES_IN_WORDS[type(example)]
+        raise UsageError(f"--set {key} takes {words} such as {example}, not {text!r}") from None
+    if isinstance(example, str) or example is None:
         return text
-    raise UsageError(f"{key} cannot be set from the command line")
+    raise UsageError(f"--set does not take {key}: it has several values")
+
+
+def _finite(value: float) -> float:
+    """Return a number. Raises ValueError where it is none, or has no end."""
+    if not math.isfinite(value):
+        raise ValueError
+    return value

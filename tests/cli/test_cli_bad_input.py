@@ -193,7 +193,10 @@ def test_a_full_disk_is_said(good, tmp_path, capsys, monkeypatch):
         (["reconstruct", "x", "--out", "o", "--voxel", "9"], "voxel_m must be 0.01 to 0.5"),
         (["reconstruct", "x", "--out", "o", "--set", "find.cluster_radus=1"], "did you mean"),
         (["reconstruct", "x", "--out", "o", "--set", "find"], "takes key=value"),
-        (["reconstruct", "x", "--out", "o", "--set", "fuse.min_points=two"], "takes a int"),
+        (
+            ["reconstruct", "x", "--out", "o", "--set", "fuse.min_points=two"],
+            "takes a whole number",
+        ),
         (["reconstruct", "x", "--out", "o", "--from", "fusse"], "did you mean 'fuse'"),
         (["reconstruct", "x", "--out", "o", "--mc-version", "1.99"], "1.99"),
         (["reconstruct", "x", "--out", "o", "--labeller", "best"], "best"),
