@@ -49,6 +49,16 @@ def test_a_file_is_written_with_its_folders(tmp_path):
     assert (tmp_path / "a" / "b" / "c.bin").read_bytes() == b"x"
 
 
+def test_a_write_that_is_stopped_leaves_no_litter(tmp_path, monkeypatch):
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "fsync", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        files.write_bytes(tmp_path / "room.npz", b"new")
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("step", ["replace", "fsync"])
 def test_a_write_that_fails_leaves_the_old_file_and_no_litter(tmp_path, monkeypatch, step):
     target = tmp_path / "room.npz"

@@ -55,10 +55,13 @@ def write_bytes(path: str | Path, data: bytes) -> None:
             os.fsync(stream.fileno())
         os.chmod(temporary, 0o644)
         os.replace(temporary, target)
-    except OSError as error:
+    except BaseException as error:  # Ctrl-C too leaves nothing behind.
         if temporary is not None:
             Path(temporary).unlink(missing_ok=True)
-        raise OutputError(target, f"cannot be written: {error.strerror or error}") from error
+        if isinstance(error, OSError):
+            reason = f"cannot be written: {error.strerror or error}"
+            raise OutputError(target, reason) from error
+        raise
 
 
 def write_text(path: str | Path, text: str) -> None:
