@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.occupy import PREDICTORS, predictor
 from world2minecraft.occupy.depth import DepthPredictor
 from world2minecraft.types import Camera, Scan, View
@@ -70,3 +70,8 @@ def test_predictors_are_found_by_name():
     assert isinstance(predictor("depth"), DepthPredictor)
     with pytest.raises(UnknownNameError, match="did you mean 'depth'"):
         PREDICTORS.load("deptj")
+
+
+def test_depth_takes_no_file():
+    with pytest.raises(UsageError, match="--predictor depth takes no file, not 'depth:3'; mono:"):
+        predictor("depth:3")

@@ -119,6 +119,14 @@ def test_a_table_of_ones_own_comes_first(tmp_path):
     assert rows[0, 11] == rows[1, 10] == rows[3, 5] == 1 and not rows[2].any()
 
 
+def test_a_table_of_ones_own_is_read_again_when_it_was_edited(tmp_path):
+    own = tmp_path / "mine.yaml"
+    for kind in ("chair", "table"):
+        own.write_text(f"{kind}: [gizmo]")
+        found = label_classes(["gizmo"], read_table(own))
+        assert CLASS_NAMES[int(found.matrix[0].argmax())] == kind
+
+
 @pytest.mark.parametrize(
     ("text", "reason"),
     [

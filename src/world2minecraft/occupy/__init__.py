@@ -41,7 +41,8 @@ def predictor(name: str, parameters: OccupyParameters | None = None) -> Predicto
 
     Raises:
         UnknownNameError: none has this name; the message suggests the nearest.
-        UsageError: networks are to vote on what another predictor than ``depth`` gives.
+        UsageError: networks are to vote on what another predictor than ``depth`` gives, or
+            ``depth`` is given a file.
         InputError: a network's file cannot be used.
     """
     family, _, file = name.partition(":")
@@ -49,6 +50,8 @@ def predictor(name: str, parameters: OccupyParameters | None = None) -> Predicto
     chosen = parameters or OccupyParameters()
     if chosen.network and not chosen.mono_votes:
         raise UsageError("occupy.network votes by occupy.mono_votes=true; set that too")
+    if file and family == "depth":
+        raise UsageError(f"--predictor depth takes no file, not {name!r}; mono:FILE.onnx does")
     if not (chosen.semantics or chosen.mono_votes):
         return make(file) if file else make()
     if family != "depth":

@@ -59,7 +59,7 @@ def read_table(own: str | Path = "") -> dict[str, int | None]:
     Raises:
         InputError: there is no such file. DamagedFileError: it is no such table.
     """
-    return {**_read(TABLE), **(_read(Path(own)) if own else {})}
+    return {**_shipped(), **(_read(Path(own)) if own else {})}
 
 
 def _keys(name: str) -> list[str]:
@@ -75,6 +75,10 @@ def _plain(name: str) -> str:
 
 
 @cache
+def _shipped() -> dict[str, int | None]:
+    return _read(TABLE)
+
+
 def _read(path: Path) -> dict[str, int | None]:
     try:
         raw = yaml.safe_load(read_bytes(path, MAX_BYTES))
