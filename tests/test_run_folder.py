@@ -5,7 +5,15 @@ import json
 import pytest
 
 from world2minecraft.errors import InputError, OutputError, UnknownNameError
-from world2minecraft.run_folder import RunFolder, check_writable, hash_capture
+from world2minecraft.parameters import Parameters, with_settings
+from world2minecraft.pipeline import manifest
+from world2minecraft.run_folder import (
+    BUILT_FROM,
+    RunFolder,
+    check_finished,
+    check_writable,
+    hash_capture,
+)
 
 STAGES = ("scan", "fuse", "build")
 
@@ -47,6 +55,28 @@ def test_a_finished_or_changed_run_begins_again(tmp_path):
 def test_from_begins_at_a_stage_even_with_other_parameters(tmp_path):
     run_until(tmp_path, {"a": 1})
     assert run_until(tmp_path, {"a": 2}, start="build") == ["build"]
+
+
+def test_what_is_built_must_be_of_one_run(tmp_path):
+    with pytest.raises(InputError, match=r"no finished run: room.npz is missing; w2m reconstruct"):
+        check_finished(tmp_path)
+    for name in BUILT_FROM:
+        (tmp_path / name).write_text("")
+    check_finished(tmp_path)  # Of a plan or a grid: no stage is told.
+    for finished, is_whole in (
+        (["scan", "label"], False),
+        (["scan", "label", "find"], False),
+        (["scan", "label", "find", "furnish"], True),
+        (["scan"], True),  # All of them are still those of the run before.
+        ("label", True),
+        (5, True),
+    ):
+        (tmp_path / "manifest.json").write_text(json.dumps({"finished": finished}))
+        if is_whole:
+            check_finished(tmp_path)
+        else:
+            with pytest.raises(InputError, match="it was cut off before its furniture"):
+                check_finished(tmp_path)
 
 
 def test_from_needs_the_stages_before(tmp_path):
@@ -107,3 +137,20 @@ def test_the_hash_sees_names_and_bytes_but_no_hidden_files(tmp_path):
     renamed = hash_capture(tmp_path)
     (tmp_path / "b").write_text("2")
     assert len({first, renamed, hash_capture(tmp_path)}) == 3
+
+
+def test_the_manifest_knows_the_palette_and_the_furniture_of_ones_own(tmp_path, monkeypatch):
+    capture, palette, own = tmp_path / "scan", tmp_path / "mine.json", tmp_path / "furniture"
+    capture.mkdir()
+    own.mkdir()
+    monkeypatch.setenv("W2M_FURNITURE", str(own))
+    palette.write_text("{}")
+    chosen = with_settings(Parameters(), [f"build.palette={palette}"])
+    told = [manifest(capture, None, chosen)]
+    palette.write_text("{ }")
+    told.append(manifest(capture, None, chosen))
+    (own / "my_chair.json").write_text("{}")
+    told.append(manifest(capture, None, chosen))
+    assert told[0] != told[1] != told[2]
+    plain = manifest(capture, None, Parameters())
+    assert plain["palette"] is None and plain["furniture"] == told[2]["furniture"] is not None

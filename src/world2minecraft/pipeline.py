@@ -21,6 +21,7 @@ from world2minecraft import __version__
 from world2minecraft.exchange.evidence import write_evidence
 from world2minecraft.exchange.poses import read_poses, write_poses
 from world2minecraft.exchange.scan import placed_as_written, read_registration, write_scan
+from world2minecraft.furniture.own import own_files, own_folder
 from world2minecraft.fuse import fuse_views
 from world2minecraft.occupy import notes_of, predictor
 from world2minecraft.parameters import Parameters
@@ -126,13 +127,16 @@ def network_files(chosen: Parameters) -> list[Path]:
 
 
 def manifest(capture: Path, labels: Path | None, chosen: Parameters) -> dict:
-    """Return what decides a result: the input's hash, the parameters and the versions."""
+    """Return what decides a result: the hashes of what is read, the parameters and the versions."""
+    palette = Path(chosen.build.palette)
     return {
         "program": __version__,
         "capture": hash_capture(capture),
         "labels": None if labels is None else hash_capture(labels),
         "plan": hash_capture(Path(chosen.plan)) if chosen.plan else None,
         "networks": [hash_capture(path) for path in network_files(chosen)],
+        "palette": hash_capture(palette) if palette.is_file() else None,
+        "furniture": hash_capture(own_folder()) if own_files() else None,
         "parameters": chosen.as_json(),
         "versions": {name: version(name) for name in ("numpy", "scipy", "numba")},
     }

@@ -5,18 +5,17 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.errors import UsageError
 from world2minecraft.exchange.occupancy import read_occupancy
 from world2minecraft.exchange.room import write_room
 from world2minecraft.files import write_bytes
 from world2minecraft.minecraft.formats import FORMATS, read_blocks
 from world2minecraft.parameters import Parameters
 from world2minecraft.progress import Progress, silent
-from world2minecraft.run_folder import check_writable
+from world2minecraft.run_folder import BUILT_FROM, check_finished, check_writable
 from world2minecraft.steps import LATER_STEPS, built_volume
 from world2minecraft.types import BlockVolume
 
-RUN_FILES = ("room.npz", "objects.json", "placements.json")
 # Runs from a grid alone have no scan, those of the first versions no rooms.
 MORE_FILES = ("scan.json", "layout.json")
 
@@ -59,7 +58,7 @@ def blocks_of(source: Path, parameters: Parameters, progress: Progress = silent)
     if is_block_file(source):
         return read_blocks(source)
     if source.is_dir():
-        _check_run(source)
+        check_finished(source)
         return built_volume(source, parameters)
     grid = read_occupancy(source)
     with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
@@ -84,15 +83,9 @@ def _run_stages(
         progress(stage, 1, 1)
 
 
-def _check_run(source: Path) -> None:
-    missing = [name for name in RUN_FILES if not (source / name).is_file()]
-    if missing:
-        raise InputError(source, f"is no finished run: {missing[0]} is missing")
-
-
 def _copy_run(source: Path, out: Path) -> None:
-    _check_run(source)
+    check_finished(source)
     check_writable(out)
-    for name in (*RUN_FILES, *MORE_FILES):
+    for name in (*BUILT_FROM, *MORE_FILES):
         if (source / name).is_file():
             write_bytes(out / name, (source / name).read_bytes())

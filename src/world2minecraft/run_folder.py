@@ -26,6 +26,7 @@ from world2minecraft.files import read_json, write_json
 from world2minecraft.machine import usable_cores
 
 FREE_BYTES = 64 << 20  # A reconstruction of one room writes 1 to 20 MB.
+BUILT_FROM = ("room.npz", "objects.json", "placements.json")  # What a world is built from.
 
 
 class RunFolder:
@@ -119,13 +120,7 @@ class RunFolder:
 
     def _recorded(self) -> list[str]:
         """The stages that an earlier run finished, whatever its parameters were."""
-        path = self.path("manifest.json")
-        if not path.is_file():
-            return []
-        try:
-            finished = read_json(path)["finished"]
-        except (DamagedFileError, KeyError, TypeError):
-            return []
+        finished = finished_stages(self.folder)
         return [stage for stage in self.stages if stage in finished]
 
     def _finished_before(self) -> list[str]:
@@ -144,6 +139,40 @@ class RunFolder:
         return self._recorded() if same else []
 
 
+def finished_stages(folder: Path) -> list[str]:
+    """Return the stages that a run finished in a folder; none where nothing tells of them."""
+    path = folder / "manifest.json"
+    try:
+        stated = read_json(path) if path.is_file() else None
+    except DamagedFileError:
+        return []
+    finished = stated.get("finished") if isinstance(stated, dict) else None
+    return [str(name) for name in finished] if isinstance(finished, list) else []
+
+
+def check_finished(folder: Path) -> None:
+    """Check that a folder holds a run from which a world can be built.
+
+    Raises:
+        InputError: a file is missing, or they are of two runs: labels of one that was cut off, and
+            furniture of the one before it.
+    """
+    missing = [name for name in BUILT_FROM if not (folder / name).is_file()]
+    if missing:
+        raise InputError(
+            folder,
+            f"is no finished run: {missing[0]} is missing; "
+            f"w2m reconstruct CAPTURE --out {folder} makes one",
+        )
+    finished = finished_stages(folder)
+    if "label" in finished and "furnish" not in finished:
+        raise InputError(
+            folder,
+            "is no finished run: it was cut off before its furniture, and what lies there is of "
+            "the run before; give its w2m reconstruct again, and it goes on",
+        )
+
+
 def check_writable(folder: Path) -> None:
     """Make ``folder``, and check that a result fits.
 
@@ -157,10 +186,11 @@ def check_writable(folder: Path) -> None:
     except OSError as error:
         raise OutputError(folder, f"cannot be made: {error.strerror or error}") from error
     if not os.access(folder, os.W_OK):
-        raise OutputError(folder, "may not be written")
+        raise OutputError(folder, "may not be written; give another folder to --out")
     free = shutil.disk_usage(folder).free
     if free < FREE_BYTES:
-        raise OutputError(folder, f"its disk has {free >> 20} MB free; {FREE_BYTES >> 20} needed")
+        needed = f"{FREE_BYTES >> 20} needed, there or in another --out"
+        raise OutputError(folder, f"its disk has {free >> 20} MB free; {needed}")
 
 
 def hash_capture(path: Path) -> str:

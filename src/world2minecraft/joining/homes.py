@@ -24,11 +24,10 @@ from world2minecraft.joining.moving import Run
 from world2minecraft.joining.placing import Placed, parse_place, place_runs, stated
 from world2minecraft.parameters import Parameters
 from world2minecraft.progress import Progress, silent
-from world2minecraft.run_folder import check_writable
+from world2minecraft.run_folder import check_finished, check_writable
 from world2minecraft.steps import LATER_STEPS
 from world2minecraft.types import Scan
 
-RUN_FILES = ("room.npz", "objects.json", "placements.json")
 MOST_RUNS = 50
 
 
@@ -42,13 +41,13 @@ def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
         raise UsageError(f"give 2 to {MOST_RUNS} finished runs to join, not {len(folders)}")
     runs: list[Run] = []
     for folder in folders:
-        missing = [name for name in RUN_FILES if not (folder / name).is_file()]
-        if missing:
-            raise InputError(folder, f"is no finished run: {missing[0]} is missing")
+        check_finished(folder)
         grid, _ = read_room(folder / "room.npz")
         layouts = read_rooms(folder, grid)
         if not layouts:
-            raise InputError(folder, "tells no room: layout.json and scan.json are missing")
+            raise InputError(
+                folder, "tells no room: layout.json is missing or empty; reconstruct it anew"
+            )
         name = _name(folder, [run.name for run in runs])
         objects = read_objects(folder / "objects.json", grid)
         placed = read_placements(folder / "placements.json")
