@@ -44,7 +44,9 @@ class Archive:
         except UNREADABLE as error:
             raise DamagedFileError(path, f"is no whole zip ({error}); copy it again") from error
         if len(self._zip.infolist()) > MAX_MEMBERS:
-            raise LimitError(path, f"has over {MAX_MEMBERS:,} members")
+            raise LimitError(
+                path, f"has over {MAX_MEMBERS:,} members; unpack it and give the folder"
+            )
         self.members = {
             _checked_name(path, info): info for info in self._zip.infolist() if not info.is_dir()
         }
@@ -74,9 +76,11 @@ class Archive:
         swollen = info.file_size > RATIO_FROM_BYTES
         swollen = swollen and info.file_size > MAX_RATIO * max(info.compress_size, 1)
         if info.file_size > MAX_MEMBER_BYTES or swollen:
-            raise LimitError(where, f"would unpack to {info.file_size:,} bytes")
+            raise LimitError(where, f"would unpack to {info.file_size:,} bytes, more than is read")
         if info.compress_type not in _PACKED or info.flag_bits & 1:
-            raise DamagedFileError(where, "is encrypted or packed in a way that is not read")
+            raise DamagedFileError(
+                where, "is encrypted or packed in a way that is not read; pack it anew"
+            )
         try:
             return self._zip.read(info)
         except UNREADABLE as error:

@@ -32,7 +32,9 @@ class Canvas:
         full = str(complete(parse_state(state)))
         if full not in self._ids:
             if len(self._ids) > np.iinfo(np.uint16).max:
-                raise LimitError("palette", "has more than 65,536 block states")
+                raise LimitError(
+                    "palette", "has more than 65,536 block states; give a --palette of fewer blocks"
+                )
             self._ids[full] = len(self._ids)
         return self._ids[full]
 

@@ -103,7 +103,7 @@ def lattice_over(
     if float(east) * up * south > MAX_BLOCKS:
         raise UsageError(
             f"{blocks_per_metre:g} blocks a metre make {east} x {up} x {south} blocks of this "
-            f"room; at most {MAX_BLOCKS:,} are built. Choose fewer blocks a metre"
+            f"room; at most {MAX_BLOCKS:,} are built. Give fewer, such as --blocks-per-metre 2"
         )
     return Lattice(tuple(low.tolist()), (east, south, up), corner_m, blocks_per_metre)
 

@@ -97,7 +97,10 @@ def _instances(
     starts = np.unique(numbers[order], return_index=True)[1][1:]
     groups = np.split(cells[order], starts) if len(cells) else []
     if len(groups) > MAX_OBJECTS:
-        raise UsageError(f"{len(groups):,} objects are too many; raise find.min_cells")
+        raise UsageError(
+            f"{len(groups):,} objects are too many, {MAX_OBJECTS:,} at most; "
+            "leave out small ones, such as by --set find.min_cells=20"
+        )
     around = surroundings(grid.labels)
     return tuple(
         _instance(number, grid, group, around, reach)

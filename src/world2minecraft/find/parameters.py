@@ -41,13 +41,15 @@ class FindParameters:
 
     def __post_init__(self):
         if self.density_kernel < 1 or self.density_kernel % 2 == 0:
-            raise UsageError(f"density_kernel must be odd and above 0, not {self.density_kernel}")
+            raise UsageError(
+                f"find.density_kernel must be odd and above 0, not {self.density_kernel}"
+            )
         if not 0 <= self.density_threshold <= 1:
             raise UsageError(
-                f"density_threshold must lie between 0 and 1, not {self.density_threshold}"
+                f"find.density_threshold must lie between 0 and 1, not {self.density_threshold}"
             )
         for name in ("cluster_radius", "min_samples", "min_cells"):
             if not getattr(self, name) > 0:
-                raise UsageError(f"{name} must be above 0, not {getattr(self, name)}")
-        if self.join_radius < 0:
-            raise UsageError(f"join_radius must not be negative, not {self.join_radius}")
+                raise UsageError(f"find.{name} must be above 0, not {getattr(self, name)}")
+        if not self.join_radius >= 0:
+            raise UsageError(f"find.join_radius must not be negative, not {self.join_radius}")

@@ -159,7 +159,7 @@ class ShapeSet:
 
     @cached_property
     def stairs(self) -> np.ndarray:
-        """int16 [S]: for stairs 8 * facing + 4 * (half is top) + 0, else -1; facing as SIDES."""
+        """int16 [S]: for stairs 2 * facing + (half is top), facing as SIDES; else -1."""
         rows = np.full(len(self), -1, np.int16)
         for number, one in enumerate(self.shapes, 1):
             if one.kind == "stairs":

@@ -80,10 +80,12 @@ class FurnishParameters:
     def __post_init__(self):
         for name in SHARES:
             if not 0 <= getattr(self, name) <= 1:
-                raise UsageError(f"{name} must lie between 0 and 1, not {getattr(self, name)}")
+                given = getattr(self, name)
+                raise UsageError(f"furnish.{name} must lie between 0 and 1, not {given}")
         for name in ("shift_cells", "size_slack", "alternatives"):
             if not 0 <= getattr(self, name) <= 8:
-                raise UsageError(f"{name} must lie between 0 and 8, not {getattr(self, name)}")
+                given = getattr(self, name)
+                raise UsageError(f"furnish.{name} must lie between 0 and 8, not {given}")
         for name in ("finalists", "max_runs", "min_run_cells"):
             if getattr(self, name) < 1:
-                raise UsageError(f"{name} must be above 0, not {getattr(self, name)}")
+                raise UsageError(f"furnish.{name} must be above 0, not {getattr(self, name)}")

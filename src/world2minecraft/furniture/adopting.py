@@ -132,14 +132,17 @@ def _trimmed(volume: BlockVolume) -> BlockVolume:
     if (size > MAX_SIDE).any() or int(np.prod(size)) > MAX_BLOCKS:
         told = " x ".join(str(side) for side in size.tolist())
         raise UsageError(
-            f"a piece is {MAX_SIDE} blocks at most each way and {MAX_BLOCKS:,} in all, not {told}"
+            f"a piece is {MAX_SIDE} blocks at most each way and {MAX_BLOCKS:,} in all, not {told}; "
+            "cut out the piece alone"
         )
     window = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
     states = np.where(filled[window], volume.states[window], 0)
     used, numbers = np.unique(states, return_inverse=True)
     kept = [state for state in used.tolist() if state]
     if len(kept) > MAX_KINDS:
-        raise UsageError(f"a piece has {MAX_KINDS} kinds of blocks at most, not {len(kept)}")
+        raise UsageError(
+            f"a piece has {MAX_KINDS} kinds of blocks at most, not {len(kept)}; cut out it alone"
+        )
     numbers = numbers.reshape(states.shape) + (0 if used[0] == 0 else 1)
     return BlockVolume(
         numbers.astype(np.uint16),

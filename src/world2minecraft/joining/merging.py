@@ -107,7 +107,11 @@ def _one_grid(runs: Sequence[Run]) -> tuple[_Cells, list[int]]:
     first = np.min(firsts, axis=0)
     shape = tuple((np.max(ends, axis=0) - first).tolist())
     if np.prod(shape, dtype=np.float64) > MOST_CELLS:
-        raise UsageError("together the rooms are too large for one grid; join fewer of them")
+        extent = " x ".join(f"{side * voxel_m:.0f}" for side in shape)
+        raise UsageError(
+            f"together the rooms take {extent} m, too much for one grid; join fewer of them, or "
+            "say with --at where they stand"
+        )
     offsets = np.cumsum([0, *(_most_id(run) for run in runs)]).tolist()
     if offsets[-1] > MOST_OBJECTS:
         raise UsageError(f"together the rooms have over {MOST_OBJECTS:,} objects; join fewer")

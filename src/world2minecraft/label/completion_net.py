@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.classes import CLASS_COUNT
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.errors import DamagedFileError, first_line
 from world2minecraft.files import read_bytes
 from world2minecraft.label.channels import CHANNELS, Sight, network_input
 
@@ -41,7 +41,7 @@ class CompletionModel:
                 data, options, providers=["CPUExecutionProvider"]
             )
         except Exception as error:  # onnxruntime has no exception tree of its own.
-            raise DamagedFileError(self.weights, f"is no network ({error})") from error
+            raise DamagedFileError(self.weights, f"is no network: {first_line(error)}") from error
         taken = session.get_inputs()[0].shape
         if len(taken) != 5 or taken[1] != CHANNELS:
             raise DamagedFileError(

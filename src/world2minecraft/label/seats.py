@@ -57,7 +57,8 @@ def back_of(
     sides = [np.atleast_1d(strip.any(axis=0)) for strip in strips]
     longest = max(len(side) for side in sides)
     inner = slice(AROUND_CELLS, -AROUND_CELLS)
-    share = max(float(side[inner].mean()) for side in sides if len(side) >= 0.7 * longest)
+    wide = [side for side in sides if len(side) >= max(0.7 * longest, 2 * AROUND_CELLS + 1)]
+    share = max((float(side[inner].mean()) for side in wide), default=0.0)  # At the grid's edge.
     back = np.median(surface.oklab[x, y, first:last][risen], axis=0)
     seat = np.median(surface.oklab[plate.mask], axis=0)
     return share, float(np.linalg.norm(back - seat))

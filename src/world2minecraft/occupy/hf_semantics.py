@@ -84,7 +84,10 @@ class HuggingFaceSemantics:
         import torch  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
 
         if not hub.has_file(self._model, TOKENIZER_FILES, self._transformers):
-            raise InputError(self._model, f"has no tokenizer: none of {', '.join(TOKENIZER_FILES)}")
+            raise InputError(
+                self._model,
+                f"has no tokenizer: none of {', '.join(TOKENIZER_FILES)}; fetch all of the model",
+            )
         try:
             words = self._transformers.AutoTokenizer.from_pretrained(self._model)
             length = getattr(self._config, "task_seq_len", None) or 77

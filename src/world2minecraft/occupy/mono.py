@@ -59,7 +59,9 @@ class MonoPredictor:
                 none = False
                 yield self.look(view, scan.scan_to_room)
         if none:
-            raise CaptureError("capture", "has no colour pictures; --predictor mono needs them")
+            raise CaptureError(
+                "capture", "has no colour pictures; --predictor mono needs them, depth does not"
+            )
 
     def look(self, view: View, scan_to_room: np.ndarray) -> GridEvidence:
         """Return what the network says of one view with colour."""
