@@ -4,6 +4,7 @@
 ``placements.json`` -> build -> ``build/``. Each takes the run's folder and the parameters.
 """
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from world2minecraft.build import WORLD_NAME, build_volume, write_build
 from world2minecraft.edit.cleanup import mended
 from world2minecraft.edit.journal import write_edits
+from world2minecraft.errors import UsageError
 from world2minecraft.exchange.centers import write_centers
 from world2minecraft.exchange.evidence import read_evidence
 from world2minecraft.exchange.forms import form_named, templates_of_run, write_forms
@@ -26,7 +28,7 @@ from world2minecraft.exchange.paper import write_centers_json, write_occ_json
 from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.exchange.rooms import read_rooms
 from world2minecraft.exchange.scan import read_depth_kind, read_room_size, read_scene_name
-from world2minecraft.files import write_json
+from world2minecraft.files import read_json, write_json
 from world2minecraft.find import find_objects
 from world2minecraft.furnish import furnish
 from world2minecraft.fuse import (
@@ -118,7 +120,11 @@ def build_stage(folder: Path, chosen: Parameters) -> None:
 
 
 def write_further_forms(folder: Path, volume: BlockVolume, chosen: Parameters) -> None:
-    """Write the forms that were asked for, and ``forms.json``: what each could not carry."""
+    """Write the forms that were asked for, and ``forms.json``: what each could not carry.
+
+    Those that an earlier build wrote show what was there before, and go.
+    """
+    _forget_forms(folder / "build", chosen.format_names)
     if not chosen.format_names:
         return
     options = WriteOptions(
@@ -130,6 +136,30 @@ def write_further_forms(folder: Path, volume: BlockVolume, chosen: Parameters) -
         for name, losses in lost.items()
     }
     write_json(folder / "build" / "forms.json", rows)
+
+
+def _forget_forms(build: Path, kept: tuple[str, ...]) -> None:
+    """Take away the further forms of an earlier build but for ``kept``, and what told of them."""
+    told = build / "forms.json"
+    if not told.is_file():
+        return
+    stated = read_json(told)
+    suffixes = {_suffix_of(str(name)) for name in stated} if isinstance(stated, dict) else set()
+    for suffix in sorted(suffixes - {_suffix_of(name) for name in kept} - {"", ".schem"}):
+        place = build / f"room{suffix}"
+        if place.is_dir():
+            shutil.rmtree(place, ignore_errors=True)
+        else:
+            place.unlink(missing_ok=True)
+    told.unlink()
+
+
+def _suffix_of(name: str) -> str:
+    """Return the suffix of a form; nothing where there is no such form in this version."""
+    try:
+        return form_named(name).suffix
+    except UsageError:
+        return ""
 
 
 def built_volume(folder: Path, chosen: Parameters) -> BlockVolume:

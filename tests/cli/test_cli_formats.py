@@ -37,6 +37,21 @@ def test_each_form_holds_the_world_and_says_what_it_left_out(room, tmp_path, cap
     assert "w2m install" in said
 
 
+def test_forms_of_an_earlier_build_are_not_left_beside_the_next(room, tmp_path, capsys):
+    out = tmp_path / "out"
+    words = ["build", str(room), "--out", str(out), "--blocks-per-metre", "1"]
+    assert run([*words, "--formats", "litematic,nbt"]) == 0
+    assert run([*words, "--formats", "nbt"]) == 0
+    build = out / "build"
+    assert not (build / "room.litematic").exists() and (build / "room.nbt").is_file()
+    assert list(json.loads((build / "forms.json").read_text())) == ["nbt"]
+    capsys.readouterr()
+    assert run(words) == 0
+    assert not list(build.glob("room.nbt")) and not (build / "forms.json").exists()
+    assert "room.nbt" not in capsys.readouterr().out
+    assert (build / "room.schem").is_file()
+
+
 def test_a_form_that_is_none_is_told_before_any_work():
     with pytest.raises(UnknownNameError, match="did you mean 'litematic'"):
         Parameters(formats="litematik")
