@@ -6,12 +6,13 @@ from block_volumes import state_texts, volume_of
 
 from world2minecraft.errors import InputError, UsageError
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
+from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Short, pack_gzip, write_nbt
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.schematics.legacy_blocks import legacy_state
 from world2minecraft.minecraft.schematics.mcedit import read_schematic
-from world2minecraft.minecraft.sign_texts import sign_of_today, signs_for
+from world2minecraft.minecraft.sign_texts import sign_of_today
 from world2minecraft.minecraft.states import check_state, complete, parse_state
 from world2minecraft.types import AIR, BlockEntity
 
@@ -264,8 +265,8 @@ def test_signs_go_to_older_games_and_back():
     volume = volume_of(
         np.ones((1, 1, 1)), (AIR, "minecraft:oak_sign"), (0, 0, 0), block_entities=(sign,)
     )
-    assert signs_for(volume, 3465) is volume
-    (back,) = signs_for(volume, 2586).block_entities
+    assert in_game(volume, 3465) is volume
+    (back,) = in_game(volume, 2586).block_entities
     assert back.nbt.items() >= {**old, "Text4": '{"text":""}'}.items()
     assert sign_of_today(back.nbt) == today
 

@@ -7,8 +7,13 @@ import pytest
 from block_volumes import volume_of
 
 from world2minecraft.errors import UsageError
-from world2minecraft.minecraft.nbt import read_nbt, write_nbt
-from world2minecraft.minecraft.signs import LINE_LETTERS, sign_entity, signs_for, wrapped
+from world2minecraft.minecraft.commands.datapack import datapack_files
+from world2minecraft.minecraft.formats import WriteOptions, read_blocks, write_blocks
+from world2minecraft.minecraft.game_data import in_game
+from world2minecraft.minecraft.nbt import Byte, read_nbt, write_nbt
+from world2minecraft.minecraft.server.plan import plan_build
+from world2minecraft.minecraft.sign_texts import signs_of_today
+from world2minecraft.minecraft.signs import LINE_LETTERS, sign_entity, wrapped
 from world2minecraft.minecraft.versions import game_version, game_versions, old_versions
 from world2minecraft.types import BlockEntity
 
@@ -16,10 +21,14 @@ STATE = "minecraft:oak_wall_sign[facing=north,waterlogged=false]"
 ENTITY = sign_entity((1, 2, 3), ["Küche", 'the "red" one'], "/function w2m:human_size")
 
 
-def written(version):
+def volume_with(*held):
     states = np.ones((1, 1, 1), np.uint16)
-    volume = volume_of(states, ("minecraft:air", STATE), (1, 2, 3), block_entities=(ENTITY,))
-    return signs_for(volume, game_version(version)).block_entities[0].nbt
+    return volume_of(states, ("minecraft:air", STATE), (1, 2, 3), block_entities=held)
+
+
+def written(version, entity=ENTITY):
+    data_version = game_version(version).data_version
+    return in_game(volume_with(entity), data_version).block_entities[0].nbt
 
 
 def test_from_1_20_on_a_sign_has_two_sides_of_json():
@@ -52,14 +61,73 @@ def test_every_game_s_sign_is_nbt_that_reads_back():
         assert read_nbt(write_nbt(nbt), "sign.nbt")[1] == nbt
 
 
+@pytest.mark.parametrize("name", ["a.schem", "a.litematic", "a.nbt", "a.mcfunction", "a.zip", "a"])
+@pytest.mark.parametrize("version", ["1.20.1", "1.21.5", "1.21.8"])
+def test_every_format_keeps_a_sign_as_its_game_has_it(tmp_path, name, version, monkeypatch):
+    write_blocks(volume_with(ENTITY), tmp_path / name, WriteOptions(mc_version=version))
+    (back,) = read_blocks(tmp_path / name).block_entities
+    lines = [json.loads(line) for line in back.nbt["front_text"]["messages"]]
+    assert lines == [json.loads(line) for line in ENTITY.nbt["front_text"]["messages"]]
+    # Without the readers' part the lines are what lies in the file.
+    for module in ("worlds.reading", "schematics.schem", "schematics.structure",
+                   "schematics.litematic"):  # fmt: skip
+        place = f"world2minecraft.minecraft.{module}.signs_of_today"
+        monkeypatch.setattr(place, lambda held, _: tuple(held))
+    monkeypatch.setattr("world2minecraft.minecraft.commands.reading.signs_of_commands", tuple)
+    (raw,) = read_blocks(tmp_path / name).block_entities
+    kind = str if version == "1.20.1" else dict
+    assert {type(line) for line in raw.nbt["front_text"]["messages"]} == {kind}
+
+
+def test_commands_for_a_game_before_1_20_set_its_four_texts():
+    commands = plan_build(volume_with(ENTITY), game_version("1.19.4")).work
+    (data,) = [command for command in commands if command.startswith("data merge")]
+    assert '"Text2":' in data and "front_text" not in data
+    files = datapack_files(volume_with(ENTITY), game_version("1.21.5"), "room")
+    (part,) = [
+        text for name, text in files.items() if name.endswith("function/build/part_0.mcfunction")
+    ]
+    assert '"messages":[{"text":"Küche"' in part
+
+
+def test_lines_of_mixed_parts_become_nbt_of_one_kind_and_come_back():
+    line = json.dumps(
+        ["", {"text": "my ", "bold": True, "extra": ["red", {"text": " room"}]}, 7, None]
+    )
+    deep = '{"extra":[' * 60 + '""' + "]}" * 60
+    click = '{"clickEvent":{"action":"change_page","value":"2"}}'
+    lines = [line, "not JSON", deep, click]
+    held = BlockEntity((1, 2, 3), "minecraft:hanging_sign", {"front_text": {"messages": lines}})
+    nbt = written("1.21.6", held)
+    turns = {"action": "change_page", "page": 2}
+    assert nbt["front_text"]["messages"][3] == {"click_event": turns}
+    raw = read_nbt(write_nbt(dict(nbt)), "sign.nbt")[1]
+    (back,) = signs_of_today([BlockEntity((1, 2, 3), held.id, raw)], 4435)
+    first, second, _, last = map(json.loads, back.nbt["front_text"]["messages"])
+    assert first["extra"][0] == {
+        "text": "my ", "bold": True, "extra": [{"text": "red"}, {"text": " room"}]
+    }  # fmt: skip
+    assert second == {"text": "not JSON"}
+    assert last == {"clickEvent": {"action": "change_page", "value": "2"}}
+
+
+def test_a_sign_of_1_21_5_is_read_as_1_20_has_it():
+    lines = ["plain", {"": "in a mixed list"}, {"text": "b", "bold": Byte(1)}, [""]]
+    new = BlockEntity((0, 0, 0), "minecraft:sign", {"front_text": {"messages": lines}})
+    (read,) = signs_of_today([new], 4325)
+    assert read.nbt["front_text"]["messages"] == [
+        '{"text":"plain"}', '"in a mixed list"', '{"text":"b","bold":true}', '[""]'
+    ]  # fmt: skip
+
+
 def test_other_block_entities_stay_as_they_are():
     chest = BlockEntity((1, 2, 3), "minecraft:chest", {"Items": []})
     states = np.ones((1, 1, 1), np.uint16)
     volume = volume_of(states, ("minecraft:air", "minecraft:chest"), (1, 2, 3))
-    assert signs_for(volume, game_version("1.19.4")) is volume
+    assert in_game(volume, 3337) is volume
     old = BlockEntity((1, 2, 3), "minecraft:sign", {"Text1": "x"})
     both = volume_of(states, ("minecraft:air", STATE), (1, 2, 3), block_entities=(chest, old))
-    assert signs_for(both, game_version("1.21.5")).block_entities == (chest, old)
+    assert in_game(both, 4325).block_entities == (chest, old)
 
 
 @pytest.mark.parametrize(

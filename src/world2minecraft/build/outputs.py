@@ -7,7 +7,6 @@ from world2minecraft.exchange.scene import scene_of, write_scene
 from world2minecraft.minecraft.commands.datapack import has_packs, write_datapack
 from world2minecraft.minecraft.displays import check_displays
 from world2minecraft.minecraft.schematics.schem import write_schem
-from world2minecraft.minecraft.signs import signs_for
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
 from world2minecraft.minecraft.worlds.world import write_world
 from world2minecraft.types import BlockVolume
@@ -40,7 +39,6 @@ def write_build(
     version = game_version(mc_version)
     check_displays(volume, version)
     spawn = find_spawn(volume)
-    volume = signs_for(volume, version)
     write_world(
         volume,
         target / "world",

@@ -25,9 +25,9 @@ from world2minecraft.edit.journal import Journal
 from world2minecraft.edit.world_box import WorldBox, is_void, read_world_box
 from world2minecraft.edit.world_entities import WorldEntities, marked
 from world2minecraft.errors import ConflictError, DamagedFileError, InputError, UsageError
-from world2minecraft.minecraft.signs import signs_for
+from world2minecraft.minecraft.game_data import block_entity_in_game, entity_in_game
 from world2minecraft.minecraft.states import BlockState, parse_state
-from world2minecraft.minecraft.versions import GameVersion, game_versions, name_in_version
+from world2minecraft.minecraft.versions import name_in_version
 from world2minecraft.minecraft.worlds.reading import read_level
 from world2minecraft.minecraft.worlds.session_lock import session_lock
 from world2minecraft.types import BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
@@ -79,18 +79,20 @@ def build_into(
         mask = built_mask(volume, air)
         box = read_world_box(world, volume.corner, volume.states.shape)
         _check_chunks(box, new_chunks or is_void(read_level(world)))
-        volume = signs_for(volume, _game_of(box.data_version))
         _check_entities(volume.entities, box)
         wanted = _numbers_of(volume, box)
         after = np.where(mask, wanted, box.states)
-        data = _merged_data(box, volume.block_entities, mask)
+        come = [block_entity_in_game(e, box.version_at(e.block_pos)) for e in volume.block_entities]
+        data = _merged_data(box, come, mask)
         found = WorldEntities(world, box.low, box.states.shape, box.data_version)
-        gone, come = found.built(), marked(volume.entities)
-        edit = _edit_of(box, after, data, gone, come)
-        files = box.changed_files(after, data) | found.changed_files(gone, come) | (extra or {})
+        held = [entity_in_game(e, box.data_version) for e in volume.entities]
+        gone, arriving = found.built(), marked(held)
+        edit = _edit_of(box, after, data, gone, arriving)
+        files = box.changed_files(after, data) | found.changed_files(gone, arriving)
+        files |= extra or {}
         step = commit(world, files, what, edit)
     changed = 0 if edit is None or step is None else len(edit.cells)
-    return Outcome(step, changed, len(come) if step else 0, recovered=recovered)
+    return Outcome(step, changed, len(arriving) if step else 0, recovered=recovered)
 
 
 def take_blocks_out(world: Path) -> Outcome:
@@ -172,13 +174,6 @@ def _check_chunks(box: WorldBox, may_make: bool) -> None:
         count = f"{len(box.missing)} of its chunks there, such as the one at x {x}, z {z}"
         advice = "go there once in the game, or add --new-chunks to make them of air"
         raise ConflictError(box.world, f"the game has not generated {count}; {advice}")
-
-
-def _game_of(data_version: int) -> GameVersion:
-    """The newest known game that is not newer than a world; the oldest one for older worlds."""
-    known = game_versions()
-    older = [version for version in known if version.data_version <= data_version]
-    return older[-1] if older else known[0]
 
 
 def _check_entities(entities: Sequence[Entity], box: WorldBox) -> None:

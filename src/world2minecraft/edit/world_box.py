@@ -52,6 +52,15 @@ class WorldBox:
     _regions: dict[Place, RegionFile] = field(default_factory=dict)
     _chunks: dict[Place, dict[str, Any]] = field(default_factory=dict)
 
+    def version_at(self, block_pos: Sequence[int]) -> int:
+        """Return the data version of the chunk that a block lies in: of a new one, the world's.
+
+        The game brings a chunk up to date when it loads it, so that one where nobody was for
+        long is older than its world.
+        """
+        chunk = self._chunks.get((int(block_pos[0]) >> 4, int(block_pos[2]) >> 4))
+        return self.data_version if chunk is None else int(chunk["DataVersion"])
+
     def changed_files(
         self, states: np.ndarray, data: Sequence[BlockEntity]
     ) -> dict[str, bytes | None]:

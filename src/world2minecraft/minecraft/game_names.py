@@ -12,6 +12,7 @@ from importlib.resources import files
 
 import numpy as np
 
+from world2minecraft.minecraft.game_data import count_lost_data
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.states import BlockState, parse_state
 from world2minecraft.minecraft.versions import GameVersion, name_in_version, new_names
@@ -90,8 +91,10 @@ def written_state(text: str, data_version: int) -> str:
 def count_unknown(volume: BlockVolume, version: GameVersion, losses: Losses) -> None:
     """Count the blocks and displays of a volume that a version of the game does not know yet.
 
-    They are written by their names; the game puts air in their place, or nothing.
+    They are written by their names; the game puts air in their place, or nothing. What things in
+    chests carry is counted where the game keeps it in another form.
     """
+    count_lost_data(volume, version.data_version, losses)
     if version.data_version < FIRST_DISPLAYS:
         shown = sum(entity.id in DISPLAYS for entity in volume.entities)
         losses.add(f"display entities, which Minecraft {version.name} does not know", shown)

@@ -25,6 +25,7 @@ from world2minecraft.minecraft.commands.writing import (
     entity_tag,
 )
 from world2minecraft.minecraft.displays import check_displays
+from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.versions import GameVersion, game_version, game_versions
 from world2minecraft.types import BlockVolume
 
@@ -83,6 +84,7 @@ def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict
     files |= job_files(volume, name, "build", commands, "built")
     files |= job_files(volume, name, "clear", clear_commands(volume), "cleared")
     return files
+    volume = in_game(volume, version.data_version)
 
 
 def job_files(

@@ -14,6 +14,7 @@ from world2minecraft.minecraft.commands.writing import (
 from world2minecraft.minecraft.displays import check_displays
 from world2minecraft.minecraft.file_format import FileFormat
 from world2minecraft.minecraft.formats import WriteOptions
+from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.game_names import count_unknown
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.versions import GameVersion, game_version
@@ -36,6 +37,7 @@ def write_command_list(
     """
     version = version or game_version()
     check_displays(volume, version)
+    volume = in_game(volume, version.data_version)
     commands = [
         *block_commands(volume, version),
         *data_commands(volume),

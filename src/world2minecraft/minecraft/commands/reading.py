@@ -28,6 +28,7 @@ from world2minecraft.minecraft.schematics.unlabelled import (
     palette_of,
     unlabelled,
 )
+from world2minecraft.minecraft.sign_texts import signs_of_commands
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
@@ -155,7 +156,7 @@ def _built(lines: Iterable[str], path: Path, losses: Losses) -> BlockVolume:
         x0, y0, z0, x1, y1, z1, state = row.tolist()
         states[x0 : x1 + 1, y0 : y1 + 1, z0 : z1 + 1] = ours[state]
     x, y, z = low.tolist()
-    blocks = _block_entities(site, states, palette, (x, y, z))
+    blocks = signs_of_commands(_block_entities(site, states, palette, (x, y, z)))
     return unlabelled(states, palette, (x, y, z), blocks, site.entities)
 
 

@@ -16,6 +16,7 @@ from world2minecraft.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.files import read_bytes, write_bytes
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.nbt import (
     Long,
     NbtLimits,
@@ -36,7 +37,7 @@ from world2minecraft.minecraft.schematics.unlabelled import (
     stated_corner,
     unlabelled,
 )
-from world2minecraft.minecraft.sign_texts import signs_for, signs_of_today
+from world2minecraft.minecraft.sign_texts import signs_of_today
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.worlds.entries import palette_texts, state_entry
 from world2minecraft.minecraft.worlds.straddled import (
@@ -99,7 +100,7 @@ def write_regions(
         UsageError: there is no region, or an empty one. OutputError: it cannot be written.
     """
     version = version or game_version()
-    regions = {key: signs_for(volume, version.data_version) for key, volume in regions.items()}
+    regions = {key: in_game(volume, version.data_version) for key, volume in regions.items()}
     if not regions or not all(volume.states.size for volume in regions.values()):
         raise UsageError("a Litematica file holds one region or more, and at least a block each")
     corners = np.array([volume.corner for volume in regions.values()])

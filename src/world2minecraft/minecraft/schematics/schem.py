@@ -10,6 +10,7 @@ import numpy as np
 from world2minecraft.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.files import read_bytes, write_bytes
 from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.game_names import read_state, written_state
 from world2minecraft.minecraft.nbt import (
     NbtLimits,
@@ -27,7 +28,7 @@ from world2minecraft.minecraft.schematics.unlabelled import (
     palette_of,
     unlabelled,
 )
-from world2minecraft.minecraft.sign_texts import signs_for, signs_of_today
+from world2minecraft.minecraft.sign_texts import signs_of_today
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.types import BlockEntity, BlockVolume, Entity
@@ -58,7 +59,7 @@ def write_schem(
         UsageError: a side is longer than 65,535 blocks. OutputError: it cannot be written.
     """
     version = version or game_version()
-    volume = signs_for(volume, version.data_version)
+    volume = in_game(volume, version.data_version)
     if max(volume.states.shape) > 0xFFFF or not volume.states.size:
         raise UsageError(f"a schematic holds 1 to 65,535 blocks a side, not {volume.states.shape}")
     palette = {

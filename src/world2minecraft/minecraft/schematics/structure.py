@@ -15,6 +15,7 @@ from world2minecraft.errors import DamagedFileError, LimitError, UsageError
 from world2minecraft.files import read_bytes, write_bytes
 from world2minecraft.minecraft.block_list import BlockList, BlockListReader, block_list_bytes
 from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import NbtLimits, pack_gzip, unpack, write_nbt
 from world2minecraft.minecraft.rules.attached import TILE, attached, attached_block
@@ -27,7 +28,7 @@ from world2minecraft.minecraft.schematics.unlabelled import (
     stated_corner,
     unlabelled,
 )
-from world2minecraft.minecraft.sign_texts import signs_for, signs_of_today
+from world2minecraft.minecraft.sign_texts import signs_of_today
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.worlds.entries import palette_texts, state_entry
 from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
@@ -70,7 +71,7 @@ def write_structure(
 
 def structure_bytes(volume: BlockVolume, version: GameVersion, *, clears: bool = True) -> bytes:
     """Return the bytes of a structure file. Args and errors as ``write_structure``."""
-    volume = signs_for(volume, version.data_version)
+    volume = in_game(volume, version.data_version)
     # Bottom up, as builders do: y, then z, then x.
     cells = volume.states.transpose(1, 2, 0)
     air = volume.palette.index(AIR)

@@ -16,6 +16,7 @@ from world2minecraft.minecraft.commands.writing import (
     entity_tag,
     state_in_version,
 )
+from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES
 from world2minecraft.minecraft.versions import GameVersion
@@ -82,6 +83,7 @@ def plan_build(
     return BuildPlan(
         load=tuple(f"forceload add {row}" for row in rows),
         loaded=_corners(volume),
+    volume = in_game(volume, version.data_version)
         work=(*blocks, *data, *gone, *entities),
         entities_from=len(blocks) + len(data),
         probes=_probes(volume, version, samples, air),

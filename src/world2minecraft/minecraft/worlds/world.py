@@ -14,8 +14,8 @@ from world2minecraft.errors import InputError, OutputError, UsageError
 from world2minecraft.files import write_bytes
 from world2minecraft.minecraft.commands.sizes import size_pack
 from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
-from world2minecraft.minecraft.sign_texts import signs_for
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.worlds.anvil import pack_region
 from world2minecraft.minecraft.worlds.chunks import ChunkWriter
@@ -62,7 +62,7 @@ def write_world(
         UsageError: the volume is higher or lower than the game's world.
     """
     target, version = Path(folder), version or game_version()
-    volume = signs_for(volume, version.level_data_version)
+    volume = in_game(volume, version.level_data_version)
     _check_heights(volume, version)
     _check_free(target)
     try:

@@ -1,0 +1,88 @@
+"""What blocks and entities hold as each game keeps it: texts of signs, things in chests, frames.
+
+Until 1.20.4 a stack of things was ``{id, Count, tag}``, since 1.20.5 it is ``{id, count,
+components}``; a game that meets the other form takes the stack for nothing, or for one plain thing.
+A volume keeps stacks as its file had them; writers bring them to the form of the game that is
+written for. What a tag or the components say (names, enchantments, wear) has no general counterpart
+in the other form: it is left out, and counted as lost.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.nbt import Byte
+from world2minecraft.minecraft.sign_texts import sign_for
+from world2minecraft.types import BlockEntity, BlockVolume, Entity
+
+FIRST_COMPONENTS = 3837  # 1.20.5.
+OLD, NEW = ("Count", "tag"), ("count", "components")
+MOST_OF_OLD = 127  # What a byte counts.
+
+
+def in_game(volume: BlockVolume, data_version: int) -> BlockVolume:
+    """Return a volume whose block entities and entities hold what they hold as a game keeps it."""
+    if not (volume.block_entities or volume.entities):
+        return volume
+    blocks = tuple(block_entity_in_game(entity, data_version) for entity in volume.block_entities)
+    entities = tuple(entity_in_game(entity, data_version) for entity in volume.entities)
+    pairs = zip((*blocks, *entities), (*volume.block_entities, *volume.entities), strict=True)
+    if all(ours is theirs for ours, theirs in pairs):
+        return volume
+    return replace(volume, block_entities=blocks, entities=entities)
+
+
+def block_entity_in_game(entity: BlockEntity, data_version: int) -> BlockEntity:
+    """Return a block entity as a game keeps it."""
+    entity = sign_for(entity, data_version)
+    if not any(_stacks(entity.nbt, data_version)):
+        return entity
+    return replace(entity, nbt=_converted(entity.nbt, data_version))
+
+
+def entity_in_game(entity: Entity, data_version: int) -> Entity:
+    """Return an entity as a game keeps it."""
+    if not any(_stacks(entity.nbt, data_version)):
+        return entity
+    return replace(entity, nbt=_converted(entity.nbt, data_version))
+
+
+def count_lost_data(volume: BlockVolume, data_version: int, losses: Losses) -> None:
+    """Count the stacks of things of which a game keeps their kind and number alone."""
+    _, extra = OLD if data_version >= FIRST_COMPONENTS else NEW
+    for entity in (*volume.block_entities, *volume.entities):
+        lost = sum(bool(stack.get(extra)) for stack in _stacks(entity.nbt, data_version))
+        losses.add("things whose names, wear and the like the game keeps otherwise", lost)
+
+
+def _stacks(value: Any, data_version: int) -> Iterator[Mapping[str, Any]]:
+    """Yield the stacks that are in the other form than a game's."""
+    if isinstance(value, Mapping):
+        if _is_other(value, data_version):
+            yield value
+            return
+        value = list(value.values())
+    for held in value if isinstance(value, list) else ():
+        if isinstance(held, list | Mapping):
+            yield from _stacks(held, data_version)
+
+
+def _is_other(value: Mapping[str, Any], data_version: int) -> bool:
+    theirs, ours = (OLD[0], NEW[0]) if data_version >= FIRST_COMPONENTS else (NEW[0], OLD[0])
+    is_stack = isinstance(value.get("id"), str) and isinstance(value.get(theirs), int)
+    return is_stack and ours not in value
+
+
+def _converted(value: Any, data_version: int) -> Any:
+    if isinstance(value, list):
+        return [_converted(held, data_version) for held in value]
+    if not isinstance(value, Mapping):
+        return value
+    if not _is_other(value, data_version):
+        return {key: _converted(held, data_version) for key, held in value.items()}
+    if data_version >= FIRST_COMPONENTS:
+        plain = {key: held for key, held in value.items() if key not in OLD}
+        return {**plain, NEW[0]: int(value[OLD[0]])}
+    plain = {key: held for key, held in value.items() if key not in NEW}
+    return {**plain, OLD[0]: Byte(max(0, min(value[NEW[0]], MOST_OF_OLD)))}
