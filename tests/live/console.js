@@ -79,8 +79,13 @@ module.exports = function startConsole (server, registry, { port, password, cut,
     }
     found = new RegExp(`^execute if block ${POINT} (\\S+)$`).exec(text)
     if (found) {
-      const id = await world.getBlockStateId(new Vec3(...found.slice(1, 4).map(Number)))
-      return id === stateId(found[4]) ? 'Test passed' : 'Test failed'
+      const block = await world.getBlock(new Vec3(...found.slice(1, 4).map(Number)))
+      const [, name, given] = /^minecraft:([a-z0-9_]+)(?:\[(.*)\])?$/.exec(found[4]) || []
+      // The game compares the properties that are stated, and no more.
+      const pairs = (given || '').split(',').filter(Boolean).map(pair => pair.split('='))
+      const has = block.getProperties()
+      const same = block.name === name && pairs.every(([key, value]) => String(has[key]) === value)
+      return same ? 'Test passed' : 'Test failed'
     }
     found = new RegExp(`^dump ${POINT} ${POINT} (.+)$`).exec(text)
     if (found) return dump(numbers(found), found[7])

@@ -147,6 +147,59 @@ def test_chunks_that_come_late_are_waited_for():
         assert console.blocks == expected(volume)
 
 
+def test_a_server_before_1_19_4_is_asked_another_way_whether_chunks_are_loaded():
+    volume = random_volume(2)
+    with Console(is_old=True) as console:
+        build(console, volume)
+        assert console.blocks == expected(volume)
+
+
+def test_what_a_neighbour_of_the_place_changes_is_no_fault():
+    palette = (AIR, *(str(complete(parse_state(f"minecraft:{name}"))) for name in (
+        "glass_pane", "oak_stairs", "chest", "oak_slab[type=double]", "grass_block")))  # fmt: skip
+    states = np.arange(1, 6, dtype=np.uint16).reshape(5, 1, 1)
+    volume = replace(volume_of(np.zeros((5, 1, 1))), states=states, palette=palette)
+    plan = plan_build(volume, VERSION)
+    assert [state for *_, state in plan.probes if state != AIR] == [
+        "minecraft:glass_pane",
+        "minecraft:oak_stairs[facing=north,half=bottom]",
+        "minecraft:chest[facing=north]",
+        "minecraft:oak_slab[type=double]",
+        "minecraft:grass_block",
+    ]
+    assert any(c.startswith("setblock -3 64 5 minecraft:glass_pane[east=") for c in plan.work)
+    joined = palette[1].replace("west=false", "west=true")
+
+    class Joining(Console):
+        def _set(self, places, state, done, same):
+            return super()._set(places, joined if "pane" in state else state, done, same)
+
+    with Joining() as console:
+        assert build(console, volume).repaired == 0
+
+
+@pytest.mark.parametrize(
+    ("said", "advice"),
+    [
+        ("Too many blocks in the specified area (maximum 9, specified 27)", "commandModification"),
+        ("That position is out of this world!", "choose another --at"),
+    ],
+)
+def test_a_refusal_comes_with_what_helps(said, advice):
+    class Refusing(Console):
+        def _set(self, *_):
+            return said
+
+    with Refusing() as console, pytest.raises(ServerError, match=advice):
+        build(console, random_volume())
+
+
+@pytest.mark.parametrize("host", ["localhost..", "x" * 64])
+def test_a_host_that_can_be_no_name_is_told(host):
+    with pytest.raises(ServerError, match="is no name of a server; check --rcon"):
+        RconClient(host, 1, "x", 1).connect()
+
+
 def test_a_server_that_forbids_the_place_is_told_of():
     with Console(deaf_to="torch") as console, pytest.raises(ServerError) as caught:
         build(console, random_volume(5))

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from world2minecraft.errors import InputError, ServerError
+from world2minecraft.errors import InputError, ServerError, one_line
 from world2minecraft.files import read_json, write_json
 from world2minecraft.minecraft.server.plan import BuildPlan, Probe
 from world2minecraft.minecraft.server.rcon import RconClient
@@ -20,8 +20,9 @@ RETRIES, FIRST_WAIT_S, MOST_WAIT_S = 6, 0.5, 8.0  # Half a minute for a server t
 SHOWN = 3  # So many wrong blocks are named.
 
 # How the game says that a command was wrong; what it says of one that changed nothing is fine.
+_MISREAD = "<--[HERE]"
 _WRONG = (
-    "<--[HERE]",
+    _MISREAD,
     "Unknown ",
     "Incorrect ",
     "Invalid ",
@@ -33,7 +34,7 @@ _WRONG = (
 )
 _NOT_LOADED = "not loaded"
 _WERE_LOADED = "No chunks were marked"
-_PASSED = "Test passed"
+_PASSED, _FAILED = "Test passed", "Test failed"
 
 
 @dataclass(frozen=True)
@@ -112,10 +113,19 @@ class LiveBuilder:
 
     def _wait_for(self, x: int, y: int, z: int) -> None:
         for _ in range(LOAD_TRIES):
-            if _PASSED in self._say(f"execute if loaded {x} {y} {z}"):
+            if self._is_loaded(x, y, z):
                 return
             self._sleep(LOAD_WAIT_S)
         raise ServerError(f"the server has not loaded the chunk at {x} {z}; try again later")
+
+    def _is_loaded(self, x: int, y: int, z: int) -> bool:
+        said = self._say(f"execute if loaded {x} {y} {z}")
+        if _MISREAD not in said:
+            return _PASSED in said
+        # Games before 1.19.4 do not know the question. Of a block they tell, whichever it is,
+        # where its chunk is loaded.
+        said = self._say(f"execute if block {x} {y} {z} minecraft:air")
+        return _PASSED in said or _FAILED in said
 
     def _do(self, command: str) -> None:
         """Say a command that must work, again while its chunk is not loaded."""
@@ -124,9 +134,8 @@ class LiveBuilder:
             if _NOT_LOADED not in reply:
                 if any(sign in reply for sign in _WRONG):
                     short = command if len(command) < 120 else command[:117] + "..."
-                    said = " ".join(reply.split())[:200]
                     raise ServerError(
-                        f"the server refused {short!r}: {said}; is --mc-version its version?"
+                        f"the server refused {short!r}: {one_line(reply, 200)}; {_advice(reply)}"
                     )
                 return
             self._sleep(LOAD_WAIT_S)
@@ -214,3 +223,12 @@ class LiveBuilder:
 
     def _key(self) -> dict[str, str]:
         return {"server": f"{self._client.host}:{self._client.port}", "plan": self._plan.digest}
+
+
+def _advice(reply: str) -> str:
+    """What to do about a command that was refused."""
+    if "Too many blocks" in reply:
+        return "set the game rule commandModificationBlockLimit back to 32768"
+    if "of this world" in reply or "of the world" in reply:
+        return "choose another --at: the build reaches out of the server's world"
+    return "is --mc-version its version?"

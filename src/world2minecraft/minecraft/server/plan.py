@@ -19,11 +19,21 @@ from world2minecraft.minecraft.commands.writing import (
 from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES
+from world2minecraft.minecraft.states import BlockState, parse_state
 from world2minecraft.minecraft.versions import GameVersion
 from world2minecraft.types import BlockVolume
 
 PROBE_STEP = 64  # Blocks between the places at which it is asked whether chunks are loaded.
-Probe = tuple[int, int, int, str]  # x, y, z and the state that must be there
+Probe = tuple[int, int, int, str]  # x, y, z and what must be there of a state
+# What games work out anew from whatever stands beside a block, in the volume or outside it.
+_FROM_NEIGHBOURS = frozenset(
+    [
+        *("north", "east", "south", "west", "up", "down", "shape", "in_wall", "waterlogged"),
+        *("distance", "bottom", "snowy", "signal_fire", "instrument", "occupied", "powered"),
+        *("power", "lit", "triggered", "extended", "attached", "disarmed"),
+    ]
+)
+_CHESTS = ("minecraft:chest", "minecraft:trapped_chest")  # Whose type says what it joins.
 
 
 @dataclass(frozen=True)
@@ -73,6 +83,7 @@ def plan_build(
         UsageError: a state or an entity's id is none, or the box leaves the world's layers.
     """
     _check_layers(volume, version)
+    volume = in_game(volume, version.data_version)
     lost = Losses() if losses is None else losses
     air = (volume.states == 0) & (True if built is None else built)
     blocks = [*air_commands(volume, air), *block_commands(volume, version)]
@@ -83,7 +94,6 @@ def plan_build(
     return BuildPlan(
         load=tuple(f"forceload add {row}" for row in rows),
         loaded=_corners(volume),
-    volume = in_game(volume, version.data_version)
         work=(*blocks, *data, *gone, *entities),
         entities_from=len(blocks) + len(data),
         probes=_probes(volume, version, samples, air),
@@ -115,6 +125,19 @@ def _corners(volume: BlockVolume) -> tuple[tuple[int, int, int], ...]:
     return tuple((px, y, pz) for px in xs for pz in zs)
 
 
+def lasting_state(state: str) -> str:
+    """Return a state without the properties that the blocks around it may change at once.
+
+    Example:
+        >>> lasting_state("minecraft:oak_stairs[facing=east,half=top,shape=inner_left]")
+        'minecraft:oak_stairs[facing=east,half=top]'
+    """
+    parsed = parse_state(state)
+    dropped = _FROM_NEIGHBOURS | ({"type"} if parsed.name in _CHESTS else set())
+    kept = {key: value for key, value in parsed.properties if key not in dropped}
+    return str(BlockState(parsed.name, kept))
+
+
 def _probes(
     volume: BlockVolume, version: GameVersion, samples: int, air: np.ndarray
 ) -> tuple[Probe, ...]:
@@ -127,7 +150,7 @@ def _probes(
     ):
         count = min(len(kind), samples // 2)
         chosen.append(np.sort(rng.choice(kind, count, replace=False)) if count else kind[:0])
-    names = [state_in_version(state, version) for state in volume.palette]
+    names = [state_in_version(lasting_state(state), version) for state in volume.palette]
     cells = np.column_stack(np.unravel_index(np.concatenate(chosen), volume.states.shape))
     places = (cells + np.array(volume.corner)).tolist()
     return tuple(

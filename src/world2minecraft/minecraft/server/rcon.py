@@ -56,9 +56,12 @@ class RconClient:
             ServerError: it refused the password.
         """
         self.close()
-        self._socket = socket.create_connection((self.host, self.port), self.timeout_s)
+        try:
+            self._socket = socket.create_connection((self.host, self.port), self.timeout_s)
+        except UnicodeError as error:  # A name with an empty part, or one of over 63 letters.
+            raise ServerError(f"{self.host} is no name of a server; check --rcon") from error
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self._send(LOG_IN, self._password.encode())
+        self._send(LOG_IN, self._password.encode("utf-8", "surrogateescape"))
         number, _ = self._receive()
         while number not in (REFUSED, self._number):  # Some servers send an empty reply first.
             number, _ = self._receive()
