@@ -2,6 +2,7 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import anvil
@@ -24,7 +25,7 @@ from world2minecraft.minecraft.worlds import world as our_world
 from world2minecraft.minecraft.worlds.anvil import pack_region, read_region
 from world2minecraft.minecraft.worlds.level import GAME_RULES
 from world2minecraft.minecraft.worlds.world import read_world, write_world
-from world2minecraft.types import AIR
+from world2minecraft.types import AIR, Entity
 
 VOLUMES = {
     "one chunk": random_volume((16, 16, 16), 10, (0, 64, 0)),
@@ -87,6 +88,27 @@ def test_a_box_of_a_world_is_read(tmp_path):
     assert found.corner == (-18, 55, -500)
     np.testing.assert_array_equal(state_texts(found)[:, :15], state_texts(volume)[2:32, 5:, 20:517])
     assert not found.states[:, 15:].any()
+
+
+def test_of_a_box_nothing_else_of_the_world_is_read(tmp_path):
+    volume = VOLUMES["many regions"]
+    stands = Entity((-10.5, 60.0, -510.5), "minecraft:armor_stand", {"CustomName": "far"})
+    near = Entity((-10.5, 60.0, -490.5), "minecraft:armor_stand", {"CustomName": "near"})
+    folder = write(replace(volume, entities=(stands, near)), tmp_path / "world")
+    broken = bytearray(8192)
+    broken[3] = 1  # A chunk on the head.
+    for kind in ("region", "entities"):
+        (folder / kind / "r.7.7.mca").write_bytes(broken)
+        path = folder / kind / "r.-1.-1.mca"
+        chunks = dict(read_region(path))
+        changed = {place: b"no NBT" if place[1] == -32 else data for place, data in chunks.items()}
+        assert changed != chunks
+        path.write_bytes(pack_region(changed)[0])
+    found = read_world(folder, box=(-18, 55, -496, 12, 72, -3))
+    np.testing.assert_array_equal(state_texts(found)[:, :15], state_texts(volume)[2:32, 5:, 24:517])
+    assert [entity.nbt["CustomName"] for entity in found.entities] == ["near"]
+    with pytest.raises(DamagedFileError):
+        read_world(folder)
 
 
 def test_a_world_of_air_can_be_written_and_read(tmp_path):
@@ -220,6 +242,16 @@ def test_a_world_that_was_played_in_is_left_alone(tmp_path):
     assert (folder / "region" / "r.0.0.mca").read_bytes() == before
 
 
+def test_a_world_that_was_built_into_is_left_alone(tmp_path):
+    folder = write(VOLUMES["one chunk"], tmp_path / "world")
+    (folder / "w2m_undo" / "0001").mkdir(parents=True)
+    with pytest.raises(OutputError, match="was built into.*take that back with w2m undo"):
+        write(VOLUMES["one layer"], folder)
+    assert (folder / "w2m_undo" / "0001").is_dir()
+    (folder / "w2m_undo" / "0001").rmdir()
+    write(VOLUMES["one layer"], folder)  # An empty one is what undo may leave.
+
+
 def test_a_folder_with_other_files_and_a_file_are_left_alone(tmp_path):
     folder = tmp_path / "papers"
     folder.mkdir()
@@ -266,6 +298,16 @@ def test_a_folder_that_is_no_world_is_refused(tmp_path):
         read_world(tmp_path)
     with pytest.raises(InputError, match="is no world folder"):
         read_world(tmp_path / "missing")
+
+
+def test_a_world_of_bedrock_and_the_folder_around_a_world_are_told_of(world):
+    with pytest.raises(InputError, match=rf"no level.dat; {world} is one$"):
+        read_world(world.parent)
+    shutil.rmtree(world / "region")
+    (world / "db").mkdir()
+    (world / "level.dat").write_bytes(b"\x0a\0\0\0\x10\0\0\0\x0a\0\0")
+    with pytest.raises(InputError, match="is a world of Bedrock Edition, and Java's are read"):
+        read_world(world)
 
 
 def test_a_world_without_regions_is_refused(world):
@@ -375,7 +417,7 @@ def test_a_world_too_wide_to_hold_asks_for_a_box(world):
     )
     far = world / "region" / "r.900.0.mca"
     far.write_bytes(pack_region({(31 + 32 * 900, 0): stone})[0])
-    with pytest.raises(LimitError, match=r"blocks; at most 67,108,864 are read: give a box"):
+    with pytest.raises(LimitError, match=r"blocks; at most 67,108,864 are read: give a --box"):
         read_world(world)
     assert read_world(world, box=(0, 64, 0, 16, 80, 16)).states.any()
 

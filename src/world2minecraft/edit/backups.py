@@ -20,9 +20,9 @@ from typing import Any
 from world2minecraft.edit.journal import write_journal
 from world2minecraft.errors import ConflictError, DamagedFileError, InputError, OutputError
 from world2minecraft.files import read_bytes, read_json, write_bytes, write_json
+from world2minecraft.minecraft.worlds.level import UNDO_FOLDER as FOLDER
 from world2minecraft.types import BlockEdit
 
-FOLDER = "w2m_undo"
 MANIFEST, JOURNAL = "manifest.json", "edit.journal"
 PREPARED, DONE, UNDOING = "prepared", "done", "undoing"
 MAX_FILE_BYTES = 512 << 20

@@ -3,7 +3,7 @@
 import os
 import struct
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import BinaryIO
 
@@ -71,10 +71,16 @@ def pack_chunk(data: bytes, kind: int = ZLIB, level: int = 1) -> bytes:
     return pack_gzip(data, level) if kind == GZIP else zlib.compress(data, level)
 
 
-def read_region(path: Path) -> Iterator[tuple[tuple[int, int], bytes]]:
+def read_region(
+    path: Path, is_wanted: Callable[[tuple[int, int]], bool] | None = None
+) -> Iterator[tuple[tuple[int, int], bytes]]:
     """Read the chunks of a region file: the position of each in the world and its NBT bytes.
 
     One chunk is held at a time, however large the file is.
+
+    Args:
+        path: the file, ``r.X.Z.mca``.
+        is_wanted: told a chunk's position, says whether it is read; all are where it is left out.
 
     Raises:
         InputError: the file cannot be read. DamagedFileError: it is no region file.
@@ -86,7 +92,8 @@ def read_region(path: Path) -> Iterator[tuple[tuple[int, int], bytes]]:
             size = os.fstat(stream.fileno()).st_size
             for slot, sectors in _slots(stream.read(2 * SECTOR), size, path):
                 position = (region_x * 32 + slot % 32, region_z * 32 + slot // 32)
-                yield position, _read_chunk(path, stream, position, sectors)
+                if is_wanted is None or is_wanted(position):
+                    yield position, _read_chunk(path, stream, position, sectors)
     except OSError as error:
         raise InputError(path, f"cannot be read: {error.strerror or error}") from error
 
@@ -157,7 +164,10 @@ def unpack_chunk(packed: bytes, kind: int, source: Path, position: tuple[int, in
         return unpack_lz4(packed, source, MAX_CHUNK_BYTES)
     if kind not in (GZIP, ZLIB, PLAIN):
         reason = f"chunk {position} is packed in {_way(packed, kind)}, which is not read"
-        raise InputError(source, f"{reason}; open the world once with deflate and save it")
+        advice = (
+            "set region-file-compression=deflate in server.properties and let it save the world"
+        )
+        raise InputError(source, f"{reason}; {advice}")
     if kind == PLAIN:
         return packed
     result = unpack(packed, source, MAX_CHUNK_BYTES)

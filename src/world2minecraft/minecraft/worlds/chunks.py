@@ -157,7 +157,8 @@ def read_chunk(
     version = root.get("DataVersion", 0)
     if not isinstance(version, int) or version < FIRST_DATA_VERSION:
         reason = f"chunk {place} is of a game before 1.13 (data version {version})"
-        raise InputError(path, f"{reason}; open the world once in a newer game, then try again")
+        advice = "in a newer game's list of worlds choose Edit, then Optimize World"
+        raise InputError(path, f"{reason}; {advice}, or give a --box that was played in since")
     is_old = version < FIRST_WITHOUT_LEVEL or "Level" in root
     if is_old:
         root = flattened(root, place, path)

@@ -1,12 +1,15 @@
 """``level.dat``: creative, a void, always one hour, nothing that moves, the player in the room."""
 
+from pathlib import Path
 from typing import Any
 
+from world2minecraft.errors import InputError
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 from world2minecraft.minecraft.versions import GameVersion
 
 MAKER = "world2minecraft"  # The game drops unknown tags when it saves: then the mark is gone.
 MAKER_TAG = "MadeBy"
+UNDO_FOLDER = "w2m_undo"  # In a world that was built into since: how to take that back.
 TICKS_PER_HOUR = 1000
 FIRST_WITH_DIMENSIONS = 2554  # 20w22a, of 1.16.
 FIRST_WITHOUT_SEEDS = 3105  # 1.19.
@@ -41,6 +44,16 @@ GAME_RULES = {
     "snowAccumulationHeight": "0",
     "spawnRadius": "0",
 }
+
+
+def no_world(folder: Path) -> InputError:
+    """Return the error over a folder without a ``level.dat``; it names a world that lies in it."""
+    reason = "is no world folder: it has no level.dat"
+    try:
+        inner = sorted(path.parent for path in folder.glob("*/level.dat"))
+    except OSError:
+        inner = []
+    return InputError(folder, f"{reason}; {inner[0]} is one" if inner else reason)
 
 
 def level_data(

@@ -18,8 +18,9 @@ from world2minecraft.minecraft.schematics.unlabelled import (
     unlabelled,
 )
 from world2minecraft.minecraft.sign_texts import signs_of_today
-from world2minecraft.minecraft.worlds.anvil import read_region
+from world2minecraft.minecraft.worlds.anvil import read_region, region_position
 from world2minecraft.minecraft.worlds.chunks import read_chunk
+from world2minecraft.minecraft.worlds.level import no_world
 from world2minecraft.minecraft.worlds.sections import Section
 from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
@@ -54,7 +55,7 @@ def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
     regions = region_files(root)
     if not regions:
         raise InputError(root, "holds no region files of an overworld; nothing to read")
-    found = _gather(regions, box)
+    found = _gather([path for path in regions if _may_meet(path, box)], box)
     palette, number_of = palette_of(found.numbers, root)
     numbers = np.array([number_of[state] for state in found.numbers], np.uint16)
     states, corner = _fill(root, found.sections, numbers, box)
@@ -65,7 +66,7 @@ def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
     def inside(position: Any) -> bool:
         return bool((np.array(corner) <= position).all() and (position < high).all())
 
-    found.add_entity_files(regions)
+    found.add_entity_files(entity_files(regions, box), box)
     return unlabelled(
         states,
         palette,
@@ -83,7 +84,10 @@ def read_level(folder: Path) -> dict[str, Any]:
     """
     path = folder / "level.dat"
     if not path.is_file():
-        raise InputError(folder, "is no world folder: it has no level.dat")
+        raise no_world(folder)
+    if (folder / "db").is_dir() and not region_files(folder):
+        reason = "is a world of Bedrock Edition, and Java's are read"
+        raise InputError(folder, f"{reason}; save what you want of it as a .mcstructure there")
     data = unpack(read_bytes(path, LEVEL_LIMITS.bytes), path, LEVEL_LIMITS.bytes)
     _, root = read_nbt(data, path, LEVEL_LIMITS)
     if not isinstance(root.get("Data"), dict):
@@ -105,9 +109,7 @@ def _gather(regions: list[Path], box: Box | None) -> "_Found":
     known: dict[bytes, str] = {}
     unpacked = 0
     for path in regions:
-        for place, data in read_region(path):
-            if box is not None and not _meets(place, box):
-                continue
+        for place, data in read_region(path, lambda place: _meets(place, box)):
             unpacked += len(data)
             root, sections = read_chunk(data, place, path, known)
             for section in sections:
@@ -115,7 +117,7 @@ def _gather(regions: list[Path], box: Box | None) -> "_Found":
                     found.add_section(section, path)
             if unpacked > MAX_UNPACKED_BYTES or len(found.sections) > MAX_SECTIONS:
                 reason = f"the world has more than {MAX_CELLS:,} blocks"
-                raise LimitError(path, f"{reason}, or takes too much memory; give a box of it")
+                raise LimitError(path, f"{reason}, or takes too much memory; give a --box of it")
             held = _block_entities(root, path)
             found.block_entities += found.within(signs_of_today(held, root["DataVersion"]), path)
             found.entities += found.within(_entities(root.get("Entities", []), path), path)
@@ -137,13 +139,14 @@ class _Found:
         numbers = self.numbers
         own = [numbers.setdefault(state, len(numbers)) for state in section.palette]
         if len(numbers) > MAX_STATES:
-            raise LimitError(path, f"has over {MAX_STATES:,} block states; give a box of the world")
+            reason = f"has over {MAX_STATES:,} block states"
+            raise LimitError(path, f"{reason}; give a --box of the world")
         self.sections.append((section.place, np.array(own, np.uint16), section.words))
 
-    def add_entity_files(self, regions: list[Path]) -> None:
-        """Read the entities beside the regions; since 1.17 they lie in files of their own."""
-        for path in sorted((regions[0].parent.parent / "entities").glob("r.*.mca")):
-            for _, data in read_region(path):
+    def add_entity_files(self, paths: list[Path], box: Box | None) -> None:
+        """Read files of entities; since 1.17 they are none of the regions'."""
+        for path in paths:
+            for _, data in read_region(path, lambda place: _meets(place, box)):
                 _, root = read_nbt(data, path)
                 self.entities += self.within(_entities(root.get("Entities"), path), path)
 
@@ -152,7 +155,7 @@ class _Found:
         self._held_bytes += sum(tree_bytes(dict(entity.nbt)) for entity in held)
         if self._held_bytes > MAX_HELD_BYTES:
             reason = f"the world's entities take more than {MAX_HELD_BYTES:,} bytes"
-            raise LimitError(path, f"{reason}; give a box of it")
+            raise LimitError(path, f"{reason}; give a --box of it")
         return held
 
 
@@ -160,7 +163,23 @@ def _is_level(section: Section, box: Box) -> bool:
     return box[1] < section.place[1] * 16 + 16 and section.place[1] * 16 < box[4]
 
 
-def _meets(place: Place, box: Box) -> bool:
+def entity_files(regions: list[Path], box: Box | None) -> list[Path]:
+    """Return the files of entities beside a world's regions that may hold some of a box."""
+    folder = regions[0].parent.parent / "entities"
+    return [path for path in sorted(folder.glob("r.*.mca")) if _may_meet(path, box)]
+
+
+def _may_meet(path: Path, box: Box | None) -> bool:
+    """Whether a region may hold chunks of a box: of others not even the head is read."""
+    if box is None:
+        return True
+    x, z = (side * 512 for side in region_position(path))
+    return box[0] < x + 512 and x < box[3] and box[2] < z + 512 and z < box[5]
+
+
+def _meets(place: Place, box: Box | None) -> bool:
+    if box is None:
+        return True
     x, z = place[0] * 16, place[1] * 16
     return box[0] < x + 16 and x < box[3] and box[2] < z + 16 and z < box[5]
 
@@ -186,7 +205,7 @@ def _fill(
     size = high - low
     if (size <= 0).any() or size.astype(float).prod() > MAX_CELLS:
         shown = " x ".join(str(side) for side in size.tolist())
-        raise LimitError(root, f"{shown} blocks; at most {MAX_CELLS:,} are read: give a box")
+        raise LimitError(root, f"{shown} blocks; at most {MAX_CELLS:,} are read: give a --box")
     states = np.zeros(tuple(size.tolist()), np.uint16)
     for place, own, words in sections:
         origin = np.array(place, np.int64) * 16 - low

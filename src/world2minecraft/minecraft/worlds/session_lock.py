@@ -10,7 +10,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import ConflictError, InputError, OutputError
+from world2minecraft.errors import ConflictError, OutputError
+from world2minecraft.minecraft.worlds.level import no_world
 
 try:
     import fcntl
@@ -34,7 +35,7 @@ def session_lock(world: Path) -> Iterator[None]:
         InputError: there is no such world. OutputError: the world may not be written.
     """
     if not (world / "level.dat").is_file():
-        raise InputError(world, "is no world folder: it has no level.dat")
+        raise no_world(world)
     path = world / LOCK_FILE
     was_there = path.exists()
     try:

@@ -19,7 +19,7 @@ from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.worlds.anvil import pack_region
 from world2minecraft.minecraft.worlds.chunks import ChunkWriter
-from world2minecraft.minecraft.worlds.level import MAKER, MAKER_TAG, level_data
+from world2minecraft.minecraft.worlds.level import MAKER, MAKER_TAG, UNDO_FOLDER, level_data
 from world2minecraft.minecraft.worlds.old_chunks import (
     FIRST_ENTITY_FILES,
     FIRST_WITHOUT_LEVEL,
@@ -46,7 +46,8 @@ def write_world(
     """Write a volume as a world that opens in creative mode, at one hour of the day, in a void.
 
     The folder is written beside its place and moved there at the end. A world of this program
-    that no game has saved yet is replaced; any other folder with files in it is left alone.
+    that no game has saved yet, and into which nothing was built, is replaced; any other folder
+    with files in it is left alone.
 
     Args:
         volume: the blocks; states are written as they stand in its palette.
@@ -89,12 +90,16 @@ def _check_heights(volume: BlockVolume, version: GameVersion) -> None:
     if low < version.min_y or high > version.max_y:
         raise UsageError(
             f"the build reaches from layer {low} to {high}, but Minecraft {version.name} has "
-            f"{version.min_y} to {version.max_y}; choose fewer blocks per metre"
+            f"{version.min_y} to {version.max_y}; choose fewer blocks per metre, or a place for "
+            "it: w2m build ... --into WORLD --at X Y Z"
         )
 
 
 def _check_free(target: Path) -> None:
-    """Refuse a folder with something in it that is not an untouched world of this program."""
+    """Refuse a folder with something in it that is not an untouched world of this program.
+
+    The game drops the mark when it saves; building into a world leaves it.
+    """
     try:
         if not target.exists() or (target.is_dir() and not any(target.iterdir())):
             return
@@ -106,6 +111,9 @@ def _check_free(target: Path) -> None:
     if mark != MAKER:
         reason = "holds a world that has been played in or made elsewhere"
         raise OutputError(target, f"{reason}; move it away or choose another folder")
+    if any((target / UNDO_FOLDER).glob("*")):
+        reason = "holds a world that was built into since, by w2m build --into"
+        raise OutputError(target, f"{reason}; take that back with w2m undo, or move it away")
 
 
 def _move(draft: Path, target: Path) -> None:
