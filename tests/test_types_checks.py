@@ -93,6 +93,7 @@ GOOD = {
     types.Opening: dict(kind="door", start_m=[0, 0], end_m=[1, 0], sill_m=0.0, head_m=2.0),
     types.LayoutObject: dict(class_id=5, center_m=[1, 1, 0], size_m=[1, 1, 1], yaw_deg=0.0),
     types.Layout: dict(floor_polygon_m=[[0, 0], [4, 0], [4, 3]], wall_height_m=2.5),
+    types.Entity: dict(position=(0.5, 64.0, 1.0), id="minecraft:cow"),
     types.BlockVolume: dict(
         states=zeros(2, 3, 4, dtype=np.uint16),
         palette=(types.AIR,),
@@ -313,6 +314,11 @@ BAD = [
         "palette must begin with minecraft:air, not ('minecraft:stone',)",
     ),
     (types.BlockVolume, dict(palette=()), "palette must begin with minecraft:air, not ()"),
+    (
+        types.Entity,
+        dict(position=(0.0, float("nan"), 1.0)),
+        "position must be three finite numbers, not (0.0, nan, 1.0)",
+    ),
     (
         types.BlockVolume,
         dict(states=np.ones((2, 3, 4), np.uint16)),

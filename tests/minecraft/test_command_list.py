@@ -1,5 +1,6 @@
 """Command lists and data packs, read back as what they build."""
 
+import re
 import zipfile
 from contextlib import suppress
 
@@ -17,7 +18,7 @@ from world2minecraft.minecraft.commands.writing import snbt
 from world2minecraft.minecraft.formats import WriteOptions, read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
-from world2minecraft.types import AIR
+from world2minecraft.types import AIR, Entity
 
 VOLUME = random_volume((9, 6, 7), 6, (2, 60, -3))
 
@@ -130,8 +131,12 @@ def test_what_is_wrong_is_named(text, reason, tmp_path):
 def test_a_pack_of_others_is_refused(tmp_path):
     with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
         archive.writestr("pack.mcmeta", "{}")
-    with pytest.raises(InputError, match="only packs of this program are read"):
+    with pytest.raises(InputError, match="is no data pack of this program .*others are not read"):
         read_datapack(tmp_path / "a.zip")
+    with zipfile.ZipFile(tmp_path / "c.zip", "w") as archive:
+        archive.writestr("My World/level.dat", b"")
+    with pytest.raises(InputError, match="is a world in a zip; unpack it"):
+        read_blocks(tmp_path / "c.zip")
     (tmp_path / "b.zip").write_bytes(b"no zip")
     with pytest.raises(InputError, match="is no readable data pack"):
         read_datapack(tmp_path / "b.zip")
@@ -154,9 +159,26 @@ def test_any_text_is_read_or_refused(tmp_path_factory, text):
         built("setblock 0 0 0 stone\n" + text, tmp_path_factory.mktemp("list"))
 
 
+@pytest.mark.parametrize("name", ["a.mcfunction", "a.zip", "a.nbt"])
+def test_tags_that_are_none_and_letters_that_end_lines_do_no_harm(name, tmp_path):
+    held = {"Tags": 7, "CustomName": "a\nsay hello\r\x0bb\x7f", "Air": float("nan")}
+    cat = Entity((0.5, 1.0, 0.5), "minecraft:cat", held)
+    volume = volume_of(np.ones((49, 1, 1)), (AIR, "minecraft:stone"), (0, 0, 0), entities=(cat,))
+    write_blocks(volume, tmp_path / name)
+    if name != "a.nbt":
+        found = read_blocks(tmp_path / name).entities[0].nbt
+        assert (found["CustomName"], found["Air"]) == ("a say hello  b ", 0.0)
+
+
+def test_a_pack_s_namespace_is_made_of_any_name(tmp_path):
+    write_blocks(VOLUME, tmp_path / "My Room.zip", WriteOptions(name="My Room"))
+    with zipfile.ZipFile(tmp_path / "My Room.zip") as archive:
+        assert "data/my_room/function/build.mcfunction" in archive.namelist()
+
+
 # NBT as text.
 
-_WORDS = st.text(max_size=10).filter(lambda t: "\n" not in t and "\r" not in t)
+_WORDS = st.text(max_size=10).filter(lambda t: not re.search(r"[\x00-\x1f\x7f]", t))
 _LEAVES = st.one_of(
     st.integers(-(1 << 31), (1 << 31) - 1),
     st.integers(-128, 127).map(Byte),

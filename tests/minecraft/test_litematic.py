@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nbt_equality import same_block_entities, same_entities
 
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.errors import InputError, LimitError, UsageError
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, unpack, write_nbt
+from world2minecraft.minecraft.schematics import litematic
 from world2minecraft.minecraft.schematics.litematic import (
     read_litematic,
     read_regions,
@@ -311,6 +312,15 @@ def test_a_damaged_file_is_refused_by_name(tree, reason, tmp_path):
         read_litematic(path)
     text = str(caught.value)
     assert text.startswith(f"{path}: ") and reason in text and "\n" not in text
+
+
+def test_regions_in_one_another_that_ask_for_too_much_together_are_refused(tmp_path, monkeypatch):
+    small = VOLUMES["small"]
+    write_regions({"a": small, "b": small}, tmp_path / "a.litematic")
+    assert len(read_regions(tmp_path / "a.litematic")) == 2
+    monkeypatch.setattr(litematic, "MAX_CELLS", 2 * small.states.size - 1)
+    with pytest.raises(LimitError, match="its regions have 120 blocks together; at most 119 are"):
+        read_regions(tmp_path / "a.litematic")
 
 
 def test_an_empty_volume_is_refused(tmp_path):

@@ -28,6 +28,7 @@ from world2minecraft.minecraft.nbt import (
     write_nbt,
 )
 from world2minecraft.minecraft.schematics import structure as our_structure
+from world2minecraft.minecraft.schematics import structure_pack
 from world2minecraft.minecraft.schematics.structure import (
     read_structure,
     structure_of,
@@ -292,6 +293,17 @@ def test_a_damaged_pack_is_refused_by_name(change, reason, tmp_path):
         read_blocks(repacked(path, change))
     text = str(caught.value)
     assert text.startswith(f"{path}: ") and reason in text and "\n" not in text
+
+
+def test_a_pack_whose_pieces_together_ask_for_too_much_is_refused(tmp_path, monkeypatch):
+    path = tmp_path / "pack.zip"
+    write_structure_pack(random_volume((130, 3, 3), 4, (0, 60, 9)), path)
+    limit = 3 * (48 * 3 * 3) - 1
+    monkeypatch.setattr(structure_pack, "MAX_CELLS", limit)
+    assert read_blocks(path).states.size <= limit  # 130 of 144 cells a row.
+    monkeypatch.setattr(structure_pack, "MAX_CELLS", 130 * 9 - 1)
+    with pytest.raises(LimitError, match="its pieces have over 1,169 blocks together"):
+        read_blocks(path)
 
 
 def test_a_large_structure_gets_its_pack_beside_it(tmp_path):

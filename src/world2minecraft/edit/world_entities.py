@@ -9,7 +9,7 @@ import numpy as np
 
 from world2minecraft.edit.world_box import Place, chunks_of, overworld_folder, region_of
 from world2minecraft.errors import DamagedFileError
-from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.entities import entity_nbt, entity_tags
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
 from world2minecraft.minecraft.worlds.region_edit import RegionFile, read_region_file
 from world2minecraft.types import Entity
@@ -110,7 +110,7 @@ def marked(entities: Sequence[Entity]) -> tuple[Entity, ...]:
     found = []
     for number, entity in enumerate(entities):
         nbt = entity_nbt(entity, number)
-        tags = [tag for tag in nbt.get("Tags", []) if tag != BUILT]
+        tags = [tag for tag in entity_tags(nbt) if tag != BUILT]
         found.append(entity_of(nbt | {"Tags": [*tags, BUILT]}))
     return tuple(found)
 
@@ -121,8 +121,7 @@ def with_uuid(entity: Entity) -> Entity:
 
 
 def _is_built(nbt: dict[str, Any]) -> bool:
-    tags = nbt.get("Tags", [])
-    return isinstance(tags, list) and BUILT in tags
+    return BUILT in entity_tags(nbt)
 
 
 def _uuid(nbt: Any) -> bytes:

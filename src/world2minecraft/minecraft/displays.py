@@ -17,6 +17,7 @@ import numpy as np
 
 from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.errors import UsageError
+from world2minecraft.minecraft.entities import entity_tags
 from world2minecraft.minecraft.nbt import Float
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.versions import GameVersion
@@ -103,9 +104,8 @@ def tags_of(class_id: int, instance: int) -> list[str]:
 def owner_of(entity: Entity) -> tuple[int, int]:
     """Return the class and the object that an entity belongs to: its own, else by its tags."""
     class_id, instance = entity.class_id, entity.instance
-    tags = entity.nbt.get("Tags", ())
-    for tag in tags if isinstance(tags, list | tuple) else ():
-        kind, _, name = str(tag).removeprefix(f"{TAG}_").partition("_")
+    for tag in entity_tags(entity.nbt):
+        kind, _, name = tag.removeprefix(f"{TAG}_").partition("_")
         if kind == "class" and not class_id and name in CLASS_NAMES:
             class_id = CLASS_NAMES.index(name)
         elif kind == "object" and not instance and name.isdecimal() and int(name) < 1 << 16:

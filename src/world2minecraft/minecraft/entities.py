@@ -1,6 +1,7 @@
 """Entities as NBT."""
 
 import hashlib
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -18,3 +19,14 @@ def entity_nbt(entity: Entity, number: int) -> dict[str, Any]:
         "UUID": np.frombuffer(digest[:16], ">i4").astype(np.int32),
     }
     return {**common, **entity.nbt, "id": entity.id, "Pos": [float(v) for v in entity.position]}
+
+
+def entity_tags(nbt: Mapping[str, Any]) -> list[str]:
+    """Return the tags by which commands know an entity; none where a file has other things there.
+
+    Example:
+        >>> entity_tags({"Tags": ["chair", 7]}), entity_tags({"Tags": 7})
+        (['chair', '7'], [])
+    """
+    tags = nbt.get("Tags")
+    return [str(tag) for tag in tags] if isinstance(tags, list | tuple) else []

@@ -182,7 +182,7 @@ class SchemFormat(FileFormat):
         """Read version 1, 2 or 3."""
         from world2minecraft.minecraft.schematics.schem import read_schem  # noqa: PLC0415  # It needs numba.
 
-        return read_schem(path)
+        return read_schem(path, losses)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write version 2, or 1 or 3 where the options say so."""
@@ -228,11 +228,14 @@ class DatapackFormat:
         return read_datapack(path, losses)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
-        """Write the pack under the namespace of the options' name."""
-        from world2minecraft.minecraft.commands.datapack import write_datapack  # noqa: PLC0415  # numba.
+        """Write the pack under the namespace that the options' name makes."""
+        from world2minecraft.minecraft.commands.datapack import (  # noqa: PLC0415  # numba.
+            namespace_of,
+            write_datapack,
+        )
         from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         version = game_version(options.mc_version)
         count_unknown(volume, version, losses)
-        write_datapack(volume, path, version=version, name=options.name)
+        write_datapack(volume, path, version=version, name=namespace_of(options.name))

@@ -1,5 +1,6 @@
 """What stage 7 gives: blocks."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -29,6 +30,10 @@ class Entity:
     nbt: Mapping[str, Any] = field(default_factory=dict)
     class_id: int = 0
     instance: int = 0
+
+    def __post_init__(self):
+        if not all(map(math.isfinite, self.position)):
+            raise ValueError(f"position must be three finite numbers, not {self.position}")
 
 
 @dataclass(frozen=True, eq=False)

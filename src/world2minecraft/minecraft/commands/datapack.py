@@ -59,6 +59,17 @@ def write_datapack(
     write_bytes(path, pack_zip(datapack_files(volume, version or game_version(), name)))
 
 
+def namespace_of(name: str) -> str:
+    """Return a name as a pack's namespace may be: what none can hold of it becomes ``_``.
+
+    Example:
+        >>> namespace_of("My Room"), namespace_of("minecraft"), namespace_of("")
+        ('my_room', 'room', 'room')
+    """
+    lowered = re.sub(r"[^a-z0-9_.-]", "_", name.lower())
+    return lowered if lowered not in ("", "minecraft") else "room"
+
+
 def has_packs(version: GameVersion) -> bool:
     """Whether data packs are written for a version of the game."""
     return version in game_versions()
@@ -67,11 +78,13 @@ def has_packs(version: GameVersion) -> bool:
 def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict[str, str]:
     """Return the pack's files by path. Raises what ``write_datapack`` raises."""
     if not _NAMESPACE.fullmatch(name) or name == "minecraft":
-        raise UsageError(f"data pack name {name!r} must be lower case letters, digits, _ . or -")
+        wanted = "must be lower case letters, digits, _ . or -, and not minecraft"
+        raise UsageError(f"data pack name {name!r} {wanted}; try {namespace_of(name)}")
     check_displays(volume, version)
     if not has_packs(version):
         first = game_versions()[0].name
         raise UsageError(f"data packs are written for {first} and later, not {version.name}")
+    volume = in_game(volume, version.data_version)
     files = {"pack.mcmeta": pack_mcmeta(f"Builds {name}", version)}
     files |= size_functions(volume.blocks_per_metre)
     commands = [
@@ -84,7 +97,6 @@ def datapack_files(volume: BlockVolume, version: GameVersion, name: str) -> dict
     files |= job_files(volume, name, "build", commands, "built")
     files |= job_files(volume, name, "clear", clear_commands(volume), "cleared")
     return files
-    volume = in_game(volume, version.data_version)
 
 
 def job_files(

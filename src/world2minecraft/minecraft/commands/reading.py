@@ -84,12 +84,14 @@ def read_datapack(path: str | Path, losses: Losses | None = None) -> BlockVolume
             if sum(part.file_size for part in parts) > MAX_BYTES:
                 raise LimitError(source, f"unpacks to more than {MAX_BYTES:,} bytes of commands")
             texts = [archive.read(part) for part in parts]
+            is_world = any(Path(name).name == "level.dat" for name in archive.namelist())
     except UNREADABLE as error:
         raise DamagedFileError(source, f"is no readable data pack ({error})") from error
+    if not texts and is_world:
+        raise InputError(source, "is a world in a zip; unpack it, and give the folder of level.dat")
     if not texts:
-        raise InputError(
-            source, "has no function build/part_0; only packs of this program are read"
-        )
+        reason = "is no data pack of this program (it has no function build/part_0)"
+        raise InputError(source, f"{reason}; others are not read")
     lines = (line for text in texts for line in _lines(text, source))
     return _built(lines, source, Losses() if losses is None else losses)
 

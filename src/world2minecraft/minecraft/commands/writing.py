@@ -4,6 +4,7 @@ Every name that enters a command was read by ``parse_state`` or matched here, so
 slip a command of its own in.
 """
 
+import math
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -12,6 +13,7 @@ import numpy as np
 
 from world2minecraft.errors import UsageError
 from world2minecraft.minecraft.commands.boxes import MAX_FILL, merge_boxes
+from world2minecraft.minecraft.entities import entity_tags
 from world2minecraft.minecraft.game_names import written_state
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 from world2minecraft.minecraft.shapes import is_full_cube
@@ -20,6 +22,7 @@ from world2minecraft.minecraft.versions import GameVersion
 from world2minecraft.types import BlockVolume
 
 MAX_LOADED_CHUNKS = 256  # What one forceload command takes.
+_CONTROLS = re.compile(r"[\x00-\x1f\x7f]")
 _ENTITY_ID = re.compile(r"[a-z0-9_.-]+:[a-z0-9_./-]+")
 
 
@@ -74,7 +77,7 @@ def entity_commands(volume: BlockVolume) -> list[str]:
         if not _ENTITY_ID.fullmatch(entity.id):
             raise UsageError(f"entity id {entity.id!r} must be like minecraft:block_display")
         x, y, z = entity.position
-        tags = [*entity.nbt.get("Tags", []), entity_tag(volume)]
+        tags = [*entity_tags(entity.nbt), entity_tag(volume)]
         place = f"{x:.6f} {y:.6f} {z:.6f}"
         commands.append(f"summon {entity.id} {place} {snbt({**entity.nbt, 'Tags': tags})}")
     return commands
@@ -141,12 +144,13 @@ def snbt(value: Any) -> str:
     if isinstance(value, bool):
         return "1b" if value else "0b"
     if isinstance(value, float):
+        value = value if math.isfinite(value) else type(value)(0)  # Commands know no other.
         return f"{float(value)!r}{'f' if isinstance(value, Float) else 'd'}"
     suffixes: dict[type, str] = {Byte: "b", Short: "s", Long: "L"}
     return f"{int(value)}{suffixes.get(type(value), '')}"
 
 
 def _quoted(text: str) -> str:
-    """Commands stand on one line, so a line break is dropped."""
+    """Commands stand on one line without control characters; a blank takes the place of each."""
     plain = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + plain.replace("\n", " ").replace("\r", " ") + '"'
+    return '"' + _CONTROLS.sub(" ", plain) + '"'

@@ -6,17 +6,18 @@ from ``Position``. Block (x, y, z) of a region of width W and length L is number
 (y * L + z) * W + x, in ``max(2, ceil log2)`` bits, packed without gaps.
 """
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.files import read_bytes, write_bytes
 from world2minecraft.minecraft.entities import entity_nbt
-from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.game_data import in_game
+from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import (
     Long,
     NbtLimits,
@@ -27,6 +28,7 @@ from world2minecraft.minecraft.nbt import (
 )
 from world2minecraft.minecraft.rules.attached import attached
 from world2minecraft.minecraft.schematics.unlabelled import (
+    MAX_CELLS,
     MAX_FILE_BYTES,
     MISSHAPEN,
     check_size,
@@ -211,6 +213,10 @@ def read_regions(path: str | Path, losses: Losses | None = None) -> dict[str, Bl
             raise DamagedFileError(source, f"has {len(named)} regions; 1 to {MAX_REGIONS:,} are")
         boxes = {name: _box(region, source) for name, region in named.items()}
         check_size(enclosing(list(boxes.values()))[1], source)
+        cells = sum(math.prod(size.tolist()) for _, size in boxes.values())
+        if cells > MAX_CELLS:  # Regions may lie in one another.
+            reason = f"its regions have {cells:,} blocks together"
+            raise LimitError(source, f"{reason}; at most {MAX_CELLS:,} are read")
         shift, game = _shift(root, boxes, source), root.get("MinecraftDataVersion", DEFAULT_GAME)
         found = {
             name: _region_volume(region, boxes[name], shift, game, source)

@@ -13,12 +13,13 @@ import numpy as np
 
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.files import UNREADABLE, write_bytes
-from world2minecraft.minecraft.commands.datapack import job_files
+from world2minecraft.minecraft.commands.datapack import job_files, namespace_of
 from world2minecraft.minecraft.commands.sizes import pack_mcmeta, pack_zip, size_functions
 from world2minecraft.minecraft.commands.writing import entity_tag
+from world2minecraft.minecraft.entities import entity_tags
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.schematics.structure import structure_bytes, structure_of
-from world2minecraft.minecraft.schematics.unlabelled import joined
+from world2minecraft.minecraft.schematics.unlabelled import MAX_CELLS, joined
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.types import BlockVolume, Entity
 
@@ -28,7 +29,6 @@ FIRST_PLACE_VERSION = 3105  # 1.19, the first game with /place template.
 MAX_PIECES = 4096
 MAX_BYTES = 64 << 20  # Of all pieces, packed; they are gzip themselves.
 FOLDERS = ("structure", "structures")  # From 1.21 on, and before.
-_NAME = re.compile(r"[a-z0-9_.-]+")
 _PART = re.compile(r"data/[^/]+/functions?/place/part_\d+\.mcfunction")
 _PLACE = re.compile(
     r"place template ([a-z0-9_.-]+):([a-z0-9_./-]+) (-?\d{1,8}) (-?\d{1,8}) (-?\d{1,8})"
@@ -65,7 +65,7 @@ def write_structure_pack(
             f"Minecraft {version.name} places no structures by command; choose 1.19 or later, or "
             "write a .schem"
         )
-    space = _namespace(name)
+    space = namespace_of(name)
     files: dict[str, str | bytes] = {
         "pack.mcmeta": pack_mcmeta(f"Places {space}", version),
         **size_functions(volume.blocks_per_metre),
@@ -112,9 +112,12 @@ def read_structure_pack(path: str | Path, losses: Losses | None = None) -> Block
                 )
             if len(sizes) < len(files):
                 raise DamagedFileError(source, "places a piece that it does not hold")
-            parts = [
-                _read_piece(archive.read(name), source, place, losses) for name, place in files
-            ]
+            parts, cells = [], 0
+            for name, place in files:
+                parts.append(_read_piece(archive.read(name), source, place, losses))
+                cells += parts[-1].states.size
+                if cells > MAX_CELLS:  # A piece of nothing but air says its size in a few bytes.
+                    raise LimitError(source, f"its pieces have over {MAX_CELLS:,} blocks together")
     except UNREADABLE as error:
         raise DamagedFileError(source, f"is no readable zip ({error})") from error
     return joined(parts, source)
@@ -181,11 +184,6 @@ def _piece(volume: BlockVolume, number: tuple[int, int, int]) -> BlockVolume:
 
 def _tagged(volume: BlockVolume, tag: str) -> BlockVolume:
     def with_tag(entity: Entity) -> Entity:
-        return replace(entity, nbt={**entity.nbt, "Tags": [*entity.nbt.get("Tags", []), tag]})
+        return replace(entity, nbt={**entity.nbt, "Tags": [*entity_tags(entity.nbt), tag]})
 
     return replace(volume, entities=tuple(map(with_tag, volume.entities)))
-
-
-def _namespace(name: str) -> str:
-    lowered = re.sub(r"[^a-z0-9_.-]", "_", name.lower())
-    return lowered if _NAME.fullmatch(lowered) and lowered != "minecraft" else "room"
