@@ -1,5 +1,6 @@
 """Building into a world: what is built is there, all else stays, and every byte comes back."""
 
+import json
 import subprocess
 import sys
 from dataclasses import replace
@@ -25,9 +26,10 @@ from world2minecraft.edit.backups import steps_of, take_back
 from world2minecraft.edit.into_world import build_into, built_mask, take_blocks_out
 from world2minecraft.edit.placing import moved, placed, trimmed
 from world2minecraft.errors import ConflictError, InputError, UsageError
-from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
+from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, write_nbt
+from world2minecraft.minecraft.signs import sign_entity
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.worlds import region_edit
+from world2minecraft.minecraft.worlds import region_edit, section_words
 from world2minecraft.minecraft.worlds.anvil import pack_region, read_region
 from world2minecraft.minecraft.worlds.level import level_data
 from world2minecraft.minecraft.worlds.reading import read_world
@@ -116,6 +118,68 @@ def test_data_and_entities_are_merged(world):
     assert ids == {(20, 66, 20): "minecraft:chest", (-9, 59, -11): "minecraft:sign"}
     kinds = sorted(e.id for e in found.entities)
     assert kinds == ["minecraft:armor_stand", "minecraft:block_display", "minecraft:block_display"]
+
+
+@pytest.mark.parametrize(
+    ("data_version", "is_as_wanted"),
+    [
+        (2975, lambda nbt: json.loads(nbt["Text1"]) == {"text": "Küche"}),
+        (3337, lambda nbt: "front_text" not in nbt),
+        (3465, lambda nbt: json.loads(nbt["front_text"]["messages"][0]) == {"text": "Küche"}),
+        (4440, lambda nbt: nbt["front_text"]["messages"][0] == {"text": "Küche"}),
+    ],
+)
+def test_a_sign_is_written_as_the_game_of_its_chunk_has_it(world, data_version, is_as_wanted):
+    path = world / "region" / "r.-1.-1.mca"
+    region = read_region_file(path)
+    chunks = {}
+    for place in region.records:
+        root = read_nbt(region.chunk(place), path)[1]
+        chunks[place] = write_nbt(root | {"DataVersion": data_version})
+    path.write_bytes(pack_region(chunks)[0])
+    volume = room()
+    (sign,) = volume.block_entities
+    text = sign_entity(sign.block_pos, ["Küche"])
+    build_into(world, replace(volume, block_entities=(text,), entities=()))
+    x, _, z = sign.block_pos
+    root = read_nbt(read_region_file(path).chunk((x >> 4, z >> 4)), path)[1]
+    (held,) = [nbt for nbt in root["block_entities"] if nbt["id"] == "minecraft:sign"]
+    assert is_as_wanted(held)
+
+
+def test_a_chunk_of_entities_of_an_older_game_stays_so_while_others_are_in_it(world):
+    path = world / "entities" / "r.0.0.mca"
+    (place,) = read_region_file(path).records  # Of the armor stand.
+    root = read_nbt(read_region_file(path).chunk(place), path)[1]
+    old = write_nbt(root | {"DataVersion": 3463, "mod:tag": "kept"})
+    path.write_bytes(pack_region({place: old})[0])
+    volume = room((-6, 60, 2))  # Its displays stand to both sides of x 0 or 1.
+    build_into(world, volume)
+    chunks = {
+        (x >> 4, z >> 4): read_nbt(read_region_file(file).chunk((x >> 4, z >> 4)), file)[1]
+        for x, _, z in (np.floor(e.position).astype(int).tolist() for e in volume.entities)
+        for file in (world / "entities" / f"r.{x >> 9}.{z >> 9}.mca",)
+    }
+    assert {at: int(held["DataVersion"]) for at, held in chunks.items()} == {(0, 0): 3463}
+    assert chunks[place]["mod:tag"] == "kept"
+    assert sorted(nbt["id"] for nbt in chunks[place]["Entities"]) == [
+        "minecraft:armor_stand", "minecraft:block_display", "minecraft:block_display"
+    ]  # fmt: skip
+
+
+def test_a_section_that_keeps_more_bits_than_it_needs_is_built_into(world):
+    path = world / "region" / "r.-1.-1.mca"
+    region, before = read_region_file(path), world_blocks(world)
+    chunks = {place: read_nbt(region.chunk(place), path)[1] for place in region.records}
+    for root in chunks.values():
+        for section in root["sections"]:
+            blocks = section["block_states"]
+            cells = section_words._padded_cells(blocks["data"].view(np.uint64), 4)
+            blocks["data"] = section_words._padded(cells, 7).view(np.int64)
+    path.write_bytes(pack_region({place: write_nbt(root) for place, root in chunks.items()})[0])
+    volume = room()
+    build_into(world, volume)
+    assert world_blocks(world) == slowly(before, volume)
 
 
 def test_the_same_build_again_changes_nothing(world):

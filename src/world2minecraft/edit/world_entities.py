@@ -30,6 +30,7 @@ class WorldEntities:
         self._data_version = data_version
         self._regions: dict[Place, RegionFile] = {}
         self._held: dict[Place, list[dict[str, Any]]] = {}
+        self._roots: dict[Place, dict[str, Any]] = {}  # What lies there beside the entities.
         folder = overworld_folder(world) / "entities"
         for place in chunks_of(low, size):
             region = region_of(place)
@@ -73,7 +74,8 @@ class WorldEntities:
         if raw is None:
             return []
         _, root = read_nbt(raw, region.path)
-        held = root.get("Entities", [])
+        held = root.pop("Entities", [])
+        self._roots[place] = root
         try:
             for nbt in held:
                 entity_of(nbt)
@@ -82,13 +84,19 @@ class WorldEntities:
         return held
 
     def _packed(self, place: Place, held: list[dict[str, Any]]) -> bytes:
-        return write_nbt(
-            {
-                "DataVersion": self._data_version,
-                "Position": np.array(place, np.int32),
-                "Entities": held,
-            }
-        )
+        """Return a chunk of entities; with those of others in it, it stays as old as it was.
+
+        The game brings entities up to date by what their chunk says: one that said too much would
+        leave what they carry in the form of an older game, which the newer one drops.
+        """
+        root = {
+            "DataVersion": self._data_version,
+            "Position": np.array(place, np.int32),
+            **self._roots.get(place, {}),
+        }
+        if all(map(_is_built, held)):
+            root["DataVersion"] = self._data_version
+        return write_nbt({**root, "Entities": held})
 
     def _new_region(self, region: Place) -> RegionFile:
         folder = overworld_folder(self._world) / "entities"

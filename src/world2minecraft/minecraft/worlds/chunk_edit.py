@@ -11,7 +11,7 @@ from world2minecraft.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.minecraft.nbt import Byte, Long, NbtLimits, NbtReader
 from world2minecraft.minecraft.packing import SECTION, pack_section, unpack_section
 from world2minecraft.minecraft.worlds.entries import state_entry, state_text
-from world2minecraft.minecraft.worlds.section_words import word_count
+from world2minecraft.minecraft.worlds.section_words import words_of_today
 from world2minecraft.types import AIR, BlockEntity
 
 FIRST_DATA_VERSION = 2860  # 1.18, the first game with this layout.
@@ -121,10 +121,12 @@ def read_sections(root: dict[str, Any], path: Path, numbers: StateNumbers) -> di
         except (KeyError, TypeError, AttributeError, ValueError, UsageError) as error:
             raise DamagedFileError(path, f"has a broken section ({error})") from error
         cells = np.zeros((16, 16, 16), np.uint16)
-        if not 1 <= len(local) <= SECTION or len(words) != word_count(len(local)):
+        is_sized = 1 <= len(local) <= SECTION
+        packed = words_of_today(words, len(local), straddles=False) if is_sized else None
+        if packed is None:
             reason = f"{len(local)} states in {len(words)} words"
             raise DamagedFileError(path, f"section {place} has {reason}")
-        if not unpack_section(words, np.array(local, np.uint16), cells, np.zeros(3, np.int64)):
+        if not unpack_section(packed, np.array(local, np.uint16), cells, np.zeros(3, np.int64)):
             raise DamagedFileError(path, f"section {place} points outside its palette")
         found[place] = cells
     return found
