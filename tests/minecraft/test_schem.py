@@ -1,5 +1,6 @@
 import gzip
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import mcschematic
@@ -9,11 +10,13 @@ import pytest
 from block_volumes import furnished_volume, random_volume, state_texts, volume_of
 
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.minecraft.formats import read_blocks
+from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Short, pack_gzip, read_nbt, unpack, write_nbt
 from world2minecraft.minecraft.schematics.schem import read_schem, write_schem
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.types import AIR
+from world2minecraft.types import AIR, Entity
 
 VOLUMES = {
     "small": random_volume((5, 4, 3), 10, (-2, 63, 8)),
@@ -99,6 +102,47 @@ def test_a_schematic_of_mcschematic_is_read(tmp_path):
     for place, state in blocks.items():
         assert texts[tuple(np.subtract(place, found.corner))] == state
     assert (found.states > 0).sum() == len(blocks)
+
+
+def test_what_hangs_in_a_file_of_worldedit_names_a_block_beside_it(tmp_path):
+    # Copied from 1200 70 -300 by a player at 1203 71 -295: version 3 counts from him. The
+    # painting is 4 blocks wide, so that it names a block beside the one of its middle.
+    names = dict(zip(("TileX", "TileY", "TileZ"), (1202, 71, -299), strict=True))
+    frame = Entity((1201.5, 71.5, -298.97), "minecraft:painting", names)
+    volume = volume_of(np.ones((4, 3, 2)), (AIR, "minecraft:stone"), (1200, 70, -300))
+    write_schem(replace(volume, entities=(frame,)), tmp_path / "a.schem", schem_version=3)
+    root = read_nbt(unpack((tmp_path / "a.schem").read_bytes(), "a"), "a")[1]
+    root["Schematic"]["Offset"] = np.array((-3, -1, -5), np.int32)
+    for tags, expected in (
+        ({"WorldEdit": {"Origin": np.array((1203, 71, -295), np.int32)}}, (-1, 0, -4)),
+        ({}, (-2, 0, -4)),  # What lies nowhere near becomes the entity's own block.
+        ({"WorldEdit": 5}, (-2, 0, -4)),
+    ):
+        tree = {"Schematic": {**root["Schematic"], "Metadata": tags}}
+        (tmp_path / "b.schem").write_bytes(pack_gzip(write_nbt(tree)))
+        (found,) = read_schem(tmp_path / "b.schem").entities
+        np.testing.assert_allclose(found.position, (-1.5, 0.5, -3.97))
+        assert tuple(found.nbt[key] for key in names) == expected
+
+
+@pytest.mark.parametrize(("schem_version", "key"), [(2, "BiomeData"), (3, "Biomes")])
+def test_biomes_are_told_of(tmp_path, schem_version, key):
+    write_schem(furnished_volume(), tmp_path / "a.schem", schem_version=schem_version)
+    root = read_nbt(unpack((tmp_path / "a.schem").read_bytes(), "a"), "a")[1]
+    root.get("Schematic", root)[key] = np.zeros(3, np.int8)
+    (tmp_path / "b.schem").write_bytes(pack_gzip(write_nbt(root)))
+    losses = Losses()
+    read_blocks(tmp_path / "b.schem", losses)
+    assert dict(losses) == {"biomes": 1}
+
+
+def test_an_entity_that_is_nowhere_is_refused(tmp_path):
+    write_schem(furnished_volume(), tmp_path / "a.schem")
+    root = read_nbt(unpack((tmp_path / "a.schem").read_bytes(), "a"), "a")[1]
+    root["Entities"][0]["Pos"] = [0.0, float("nan"), 0.0]
+    (tmp_path / "a.schem").write_bytes(pack_gzip(write_nbt(root, "Schematic")))
+    with pytest.raises(DamagedFileError, match="is no Sponge schematic"):
+        read_schem(tmp_path / "a.schem")
 
 
 def test_names_follow_the_version(tmp_path):

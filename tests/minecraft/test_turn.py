@@ -1,5 +1,6 @@
 """The laws of turning and mirroring, held against the public shape table for every state."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -8,7 +9,8 @@ import pytest
 from world2minecraft.coordinates import apply as carried
 from world2minecraft.coordinates import block_to_room
 from world2minecraft.errors import UsageError
-from world2minecraft.minecraft.nbt import Float
+from world2minecraft.minecraft.nbt import Byte, Float
+from world2minecraft.minecraft.rules.attached import named_block
 from world2minecraft.minecraft.shapes import boxes_of
 from world2minecraft.minecraft.states import known_blocks, parse_state, states_of
 from world2minecraft.minecraft.turn import mirror_state, turn_state, turn_volume
@@ -256,6 +258,31 @@ def test_what_lies_in_a_volume_turns_with_it():
         np.testing.assert_allclose(found, expected, atol=1e-12)
     assert turned.entities[0].nbt["Rotation"][0] == -180.0  # From east to north.
     assert isinstance(turned.entities[0].nbt["Rotation"][0], Float)
+
+
+@pytest.mark.parametrize(
+    ("kind", "key", "sides"),
+    [("item_frame", "Facing", (5, 2, 4, 3)), ("painting", "facing", (3, 2, 1, 0))],
+)
+def test_what_hangs_turns_with_the_block_that_it_names(kind, key, sides):
+    volume = an_unsymmetric_volume()  # Its corner is -2 60 7, and it is 3 wide and 5 long.
+    tile = dict(zip(("TileX", "TileY", "TileZ"), (-1, 61, 10), strict=True))
+    new = {"block_pos": np.array((-1, 61, 10), np.int32)}
+    held = tuple(
+        Entity((-0.5, 61.5, 10.03), f"minecraft:{kind}", {**named, key: Byte(sides[0])})
+        for named in (tile, new)
+    )
+    turned = replace(volume, entities=held)
+    for side in (*sides[1:], sides[0]):
+        turned = turn_volume(turned, 1)
+        for entity in turned.entities:
+            named = named_block(entity.nbt)
+            assert named == tuple(np.floor(entity.position).astype(int).tolist())
+            assert entity.nbt[key] == side and isinstance(entity.nbt[key], Byte)
+    assert turned.entities[0].nbt.items() >= held[0].nbt.items()
+    up = Entity((0.5, 61, 9), "minecraft:item_frame", {"Facing": Byte(1)})
+    (still,) = turn_volume(replace(volume, entities=(up,)), 1).entities
+    assert still.nbt["Facing"] == 1 and still.nbt["Rotation"][0] == -90
 
 
 def an_unsymmetric_volume() -> BlockVolume:

@@ -1,16 +1,14 @@
 """A volume moved to another place of the world, whole: blocks, data, entities and its frame."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from world2minecraft.errors import UsageError
+from world2minecraft.minecraft.rules.attached import attached
 from world2minecraft.minecraft.turn import turn_volume
-from world2minecraft.types import BlockVolume
-
-TILE_KEYS = ("TileX", "TileY", "TileZ")  # Where a painting or an item frame hangs.
+from world2minecraft.types import BlockVolume, Entity
 
 
 def placed(
@@ -73,19 +71,15 @@ def moved(volume: BlockVolume, step: np.ndarray) -> BlockVolume:
             replace(
                 e,
                 position=(e.position[0] + dx, e.position[1] + dy, e.position[2] + dz),
-                nbt=_moved_nbt(e.nbt, (dx, dy, dz)),
+                nbt=_moved_nbt(e, (dx, dy, dz)),
             )
             for e in volume.entities
         ),
     )
 
 
-def _moved_nbt(nbt: Mapping[str, Any], step: tuple[int, int, int]) -> dict[str, Any]:
+def _moved_nbt(entity: Entity, step: tuple[int, int, int]) -> dict[str, Any]:
     """Tags that repeat an entity's place go with it; its UUID must be another elsewhere."""
-    result = {key: value for key, value in nbt.items() if key not in ("UUID", "Pos")}
-    for key, by in zip(TILE_KEYS, step, strict=True):
-        if key in result:
-            result[key] = int(result[key]) + by
-    if isinstance(result.get("block_pos"), np.ndarray):
-        result["block_pos"] = (result["block_pos"] + np.array(step)).astype(np.int32)
-    return result
+    x, y, z = (place + by for place, by in zip(entity.position, step, strict=True))
+    moved = attached(entity.nbt, (x, y, z), step)
+    return {key: value for key, value in moved.items() if key not in ("UUID", "Pos")}

@@ -8,10 +8,12 @@ they hold for mods that keep to the game's property names.
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
+from world2minecraft.minecraft.nbt import Byte, Float
+from world2minecraft.minecraft.rules.attached import named_block, naming
 from world2minecraft.minecraft.states import BlockState, parse_state
 from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
@@ -25,6 +27,9 @@ _LEFT_RIGHT = {
     "outer_left": "outer_right",
     "outer_right": "outer_left",
 }
+# The game numbers the six sides from below: 2 north, 3 south, 4 west, 5 east. Paintings count four,
+# clockwise from the south.
+_TURNED_SIDES = {5: 2, 2: 4, 4: 3, 3: 5}
 _SLOTS = {"slot_0": "slot_2", "slot_2": "slot_0", "slot_3": "slot_5", "slot_5": "slot_3"}
 
 
@@ -125,14 +130,21 @@ def _turn_once(volume: BlockVolume) -> BlockVolume:
     def turned_grid(values: np.ndarray) -> np.ndarray:
         return np.ascontiguousarray(np.rot90(values, 1, axes=(2, 0)))
 
-    def turned_block(entity: BlockEntity) -> BlockEntity:
-        center = old_to_new @ [*(np.array(entity.block_pos) + 0.5), 1.0]
+    def cell_of(block_pos: tuple[int, int, int]) -> tuple[int, int, int]:
+        center = old_to_new @ [*(np.array(block_pos) + 0.5), 1.0]
         x, y, z = np.floor(center[:3]).astype(int).tolist()
-        return replace(entity, block_pos=(x, y, z))
+        return x, y, z
+
+    def turned_block(entity: BlockEntity) -> BlockEntity:
+        return replace(entity, block_pos=cell_of(entity.block_pos))
 
     def turned_entity(entity: Entity) -> Entity:
         x, y, z = (old_to_new @ [*entity.position, 1.0])[:3].tolist()
-        return replace(entity, position=(x, y, z), nbt=_turned_nbt(dict(entity.nbt)))
+        nbt = _turned_nbt(dict(entity.nbt), entity.id)
+        held = named_block(nbt)
+        return replace(
+            entity, position=(x, y, z), nbt=nbt if held is None else naming(nbt, cell_of(held))
+        )
 
     return replace(
         volume,
@@ -156,10 +168,16 @@ def _quarter_turn(volume: BlockVolume) -> np.ndarray:
     return transform
 
 
-def _turned_nbt(nbt: dict[str, object]) -> dict[str, object]:
-    """An entity's yaw grows clockwise from above."""
-    rotation = nbt.get("Rotation")
+def _turned_nbt(nbt: dict[str, Any], kind: str) -> dict[str, Any]:
+    """An entity's yaw grows clockwise from above; what hangs says where it looks by a number."""
+    rotation = nbt.get("Rotation", [Float(0), Float(0)])  # Without one it looks south.
     if isinstance(rotation, list) and len(rotation) == 2:
         yaw = type(rotation[0])((float(rotation[0]) - 90.0 + 180.0) % 360.0 - 180.0)
         nbt["Rotation"] = [yaw, rotation[1]]
+    for key in ("Facing", "facing"):
+        side = nbt.get(key)
+        if isinstance(side, int):
+            flat = kind.endswith("painting")
+            turned = (side - 1) % 4 if flat else _TURNED_SIDES.get(int(side), int(side))
+            nbt[key] = Byte(turned)
     return nbt

@@ -26,7 +26,7 @@ def attached_block(
         position: where the entity is, in the same coordinates.
     """
     own = tuple(int(value // 1) for value in position)
-    stated = _stated(nbt)
+    stated = named_block(nbt)
     if stated is not None:
         near = [abs(s + 0.5 - p) <= _REACH + 0.5 for s, p in zip(stated, position, strict=True)]
         if all(near):
@@ -44,18 +44,23 @@ def attached(
         position: where the entity is after the move.
         shift: blocks along x, y, z from the coordinates of ``nbt`` to those of ``position``.
     """
-    stated = _stated(nbt)
+    stated = named_block(nbt)
     if stated is None:
         return dict(nbt)
-    steps = (s + d for s, d in zip(stated, shift, strict=True))
-    moved: dict[str, Any] = dict(zip(TILE, steps, strict=True))
-    block = attached_block(moved, position)
+    x, y, z = (s + d for s, d in zip(stated, shift, strict=True))
+    moved = naming(nbt, (x, y, z))
+    return naming(moved, attached_block(moved, position))
+
+
+def naming(nbt: Mapping[str, Any], block: tuple[int, int, int]) -> dict[str, Any]:
+    """Return an entity's tags with another block to hang on, in the form that they have."""
     if "block_pos" in nbt:
         return {**nbt, "block_pos": np.array(block, np.int32)}
     return {**nbt, **dict(zip(TILE, block, strict=True))}
 
 
-def _stated(nbt: Mapping[str, Any]) -> tuple[int, int, int] | None:
+def named_block(nbt: Mapping[str, Any]) -> tuple[int, int, int] | None:
+    """Return the block that an entity's tags say it hangs on; None where they name none."""
     try:
         held = nbt["block_pos"] if "block_pos" in nbt else [nbt[key] for key in TILE]
         x, y, z = (int(value) for value in held)

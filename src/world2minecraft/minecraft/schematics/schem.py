@@ -12,6 +12,7 @@ from world2minecraft.files import read_bytes, write_bytes
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.game_names import read_state, written_state
+from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import (
     NbtLimits,
     Short,
@@ -21,6 +22,7 @@ from world2minecraft.minecraft.nbt import (
     write_nbt,
 )
 from world2minecraft.minecraft.packing import read_varints, write_varints
+from world2minecraft.minecraft.rules.attached import attached
 from world2minecraft.minecraft.schematics.unlabelled import (
     MAX_FILE_BYTES,
     MISSHAPEN,
@@ -34,6 +36,7 @@ from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
 LIMITS = NbtLimits()
+Corner = tuple[int, int, int]
 DEFAULT_GAME = 1952  # 1.14: version 1 does not say its game, and is that old.
 
 
@@ -85,8 +88,12 @@ def write_schem(
     write_bytes(path, pack_gzip(write_nbt(root, name), level=4))
 
 
-def read_schem(path: str | Path) -> BlockVolume:
+def read_schem(path: str | Path, losses: Losses | None = None) -> BlockVolume:
     """Read a Sponge schematic of version 1, 2 or 3.
+
+    Args:
+        path: the file.
+        losses: told of biomes, which a volume has no place for.
 
     Returns:
         The volume, without labels and with one block a metre: a schematic does not say its scale.
@@ -101,6 +108,8 @@ def read_schem(path: str | Path) -> BlockVolume:
     _, root = read_nbt(raw, source, LIMITS)
     tree = root["Schematic"] if isinstance(root.get("Schematic"), dict) else root
     try:
+        if losses is not None:
+            losses.add("biomes", int("BiomeData" in tree or "Biomes" in tree))
         return _volume_of(tree, source)
     except MISSHAPEN as error:
         missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
@@ -192,6 +201,7 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
     _fill(states.transpose(1, 2, 0), data, number_of, source)
     del data
     corner = _corner(tree)
+    shift = _shift(tree, version)
     nbts = blocks.get("BlockEntities", tree.get("TileEntities", []))
     held = [_block_entity(nbt, corner, version) for nbt in nbts]
     return unlabelled(
@@ -199,15 +209,27 @@ def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
         palette,
         corner,
         signs_of_today(held, game),
-        [_entity(nbt, corner, version) for nbt in tree.get("Entities", [])],
+        [_entity(nbt, corner, version, shift) for nbt in tree.get("Entities", [])],
     )
 
 
-def _corner(tree: Mapping[str, Any]) -> tuple[int, int, int]:
+def _corner(tree: Mapping[str, Any]) -> Corner:
     """Offset; where a file of version 2 has none, some tools keep it in WorldEdit's own keys."""
     kept = tree.get("Metadata", {})
     x, y, z = tree.get("Offset", [kept.get(f"WEOffset{axis}", 0) for axis in "XYZ"])
     return int(x), int(y), int(z)
+
+
+def _shift(tree: Mapping[str, Any], version: int) -> Corner:
+    """How far what hangs moves: WorldEdit leaves world coordinates in the tags of its entities.
+
+    In version 3 all else counts from the place where the player stood, which its own tags tell.
+    """
+    try:
+        x, y, z = (int(step) for step in tree["Metadata"]["WorldEdit"]["Origin"])
+    except MISSHAPEN:
+        return 0, 0, 0
+    return (-x, -y, -z) if version == 3 else (0, 0, 0)
 
 
 def _palette(
@@ -244,16 +266,16 @@ def _fill(cells: np.ndarray, data: np.ndarray, number_of: Mapping[int, int], sou
         )
 
 
-def _block_entity(nbt: dict[str, Any], corner: tuple[int, int, int], version: int) -> BlockEntity:
+def _block_entity(nbt: dict[str, Any], corner: Corner, version: int) -> BlockEntity:
     x, y, z = (int(low + step) for low, step in zip(corner, nbt["Pos"], strict=True))
     rest = nbt.get("Data", {}) if version == 3 else nbt
     rest = {key: rest[key] for key in rest if key not in ("Id", "Pos", "ContentVersion")}
     return BlockEntity((x, y, z), str(nbt["Id"]), rest)
 
 
-def _entity(nbt: dict[str, Any], corner: tuple[int, int, int], version: int) -> Entity:
+def _entity(nbt: dict[str, Any], corner: Corner, version: int, shift: Corner) -> Entity:
     start = corner if version == 3 else (0, 0, 0)
     x, y, z = (float(low + step) for low, step in zip(start, nbt["Pos"], strict=True))
-    rest = nbt.get("Data", {}) if version == 3 else nbt
+    rest = attached(nbt.get("Data", {}) if version == 3 else nbt, (x, y, z), shift)
     rest = {key: rest[key] for key in rest if key not in ("Id", "Pos")}
     return Entity((x, y, z), str(nbt["Id"]), rest)
