@@ -226,6 +226,7 @@ def test_each_game_gets_the_attributes_that_it_knows(version):
         assert text == (
             f"attribute @s minecraft:{prefix}scale base set 4\n"
             f"attribute @s minecraft:{prefix}step_height base set 2.4\n"
+            "tag @s add w2m.human_size\n"
         )
 
 
@@ -244,20 +245,30 @@ def test_the_size_of_the_game_comes_back():
     assert re.findall(r"set (\S+)", text) == ["1", "0.6"]
 
 
-def test_the_size_is_changed_in_turn():
-    """The toggle, run as the game runs it: each call makes large, then small again."""
-    lines = size_functions(4)["data/w2m/function/toggle_size.mcfunction"].splitlines()
+@pytest.mark.parametrize("overlay", ["scale_old_names/", "scale_plain_names/"])
+def test_the_size_is_changed_in_turn(overlay):
+    """The functions, run as the game runs them: a click makes large, the next one small again."""
+    files = size_functions(4)
     tags: set[str] = set()
-    sizes = []
-    for line in lines * 3:
-        words = line.replace("@s[tag=", "@s ").replace("]", "").split()
-        if words[0] == "execute":
-            if (words[4] in tags) == (words[1] == "if"):
-                sizes.append(words[-1])
-        elif words[2] in ("add", "remove") or words[2] in tags:
-            change = tags.add if "add" in words else tags.discard
-            change(words[-1])
-    assert sizes == ["w2m:human_size", "w2m:game_size", "w2m:human_size"]
+    sizes: list[str] = []
+
+    def run(name):
+        path = f"data/w2m/function/{name}.mcfunction"
+        for line in files.get(overlay + path, files[path]).splitlines():
+            words = line.replace("@s[tag=", "@s ").replace("]", "").split()
+            if words[0] == "execute":
+                if (words[4] in tags) == (words[1] == "if"):
+                    run(words[-1].removeprefix("w2m:"))
+            elif words[0] == "attribute":
+                sizes.extend([words[-1]] if words[2].endswith("scale") else [])
+            elif words[2] in ("add", "remove") or words[2] in tags:
+                change = tags.add if "add" in words else tags.discard
+                change(words[-1])
+
+    for name in ("toggle_size", "toggle_size", "human_size", "toggle_size", "toggle_size"):
+        run(name)
+    assert sizes == ["4", "1", "4", "1", "4"]
+    assert tags == {"w2m.human_size"}
 
 
 def test_the_zip_holds_the_files_and_no_time(tmp_path):

@@ -21,13 +21,12 @@ SCALE_LIMITS = (0.0625, 16.0)
 STEP_LIMITS = (0.0, 10.0)
 FIRST_SCALE_FORMAT = 41  # 1.20.5
 PLAIN_NAMES_FORMAT = 57  # 1.21.2
-# A click on a plaque makes large and small in turn; a tag remembers which it was.
+# A click on a plaque makes large and small in turn; a tag remembers which it is, and the functions
+# set it, so that one who typed the command before clicks to come back.
 _TOGGLE = """\
 tag @s[tag=w2m.human_size] add w2m.back
 execute if entity @s[tag=w2m.back] run function w2m:game_size
 execute unless entity @s[tag=w2m.back] run function w2m:human_size
-tag @s add w2m.human_size
-tag @s[tag=w2m.back] remove w2m.human_size
 tag @s[tag=w2m.back] remove w2m.back
 """
 
@@ -51,13 +50,15 @@ def size_functions(blocks_per_metre: float) -> dict[str, str]:
     text = "This game is older than 1.20.5 and cannot change a player's size."
     line = f"tellraw @s {json.dumps({'text': text})}\n"
     files = {}
-    for name, values in (("human_size", (scale, step)), ("game_size", (1.0, STEP_BLOCKS))):
+    sizes = (("human_size", (scale, step), "add"), ("game_size", (1.0, STEP_BLOCKS), "remove"))
+    for name, values, tagged in sizes:
         files |= function_files(NAMESPACE, name, line)
         for overlay, prefix in (("scale_old_names", "generic."), ("scale_plain_names", "")):
             commands = "".join(
                 f"attribute @s minecraft:{prefix}{attribute} base set {value:g}\n"
                 for attribute, value in zip(("scale", "step_height"), values, strict=True)
             )
+            commands += f"tag @s {tagged} {NAMESPACE}.human_size\n"
             for path, held in function_files(NAMESPACE, name, commands).items():
                 files[f"{overlay}/{path}"] = held
     return files | function_files(NAMESPACE, "toggle_size", _TOGGLE)
