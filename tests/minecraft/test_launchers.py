@@ -127,3 +127,32 @@ def test_broken_settings_are_passed_over(tmp_path, junk):
 def test_a_name_with_control_characters_is_shown_without_them(tmp_path):
     instance(tmp_path / ".local/share/PrismLauncher", "a", "Red\x1b[31m   pack")
     assert find_games("linux", tmp_path, {})[0].name == "Prism: Red[31m pack"
+
+
+def test_drives_that_are_away_and_folders_of_others_are_passed_over(tmp_path, monkeypatch):
+    is_dir, iterdir = Path.is_dir, Path.iterdir
+
+    def guarded(look):
+        def of(path):
+            if "locked" in path.name:
+                raise PermissionError(13, "Permission denied", str(path))
+            return look(path)
+
+        return of
+
+    (tmp_path / ".minecraft").mkdir()
+    profiles = {"a": {"gameDir": str(tmp_path / "locked drive"), "name": "away"}}
+    (tmp_path / ".minecraft" / "launcher_profiles.json").write_text(
+        json.dumps({"profiles": profiles})
+    )
+    seen = instance(tmp_path / ".local/share/PrismLauncher", "a", "Mine")
+    instance(tmp_path / ".local/share/PrismLauncher", "locked", "Another's")
+    instances = tmp_path / "locked instances"
+    instances.mkdir()
+    poly = tmp_path / ".local/share/PolyMC"
+    poly.mkdir()
+    (poly / "polymc.cfg").write_text(f"InstanceDir={instances}\n")
+    monkeypatch.setattr(Path, "is_dir", guarded(is_dir))
+    monkeypatch.setattr(Path, "iterdir", guarded(iterdir))
+    saves = [game.saves for game in find_games("linux", tmp_path, {})]
+    assert saves == [tmp_path / ".minecraft" / "saves", seen / "saves"]

@@ -63,7 +63,8 @@ def run(
     world = world_of(source)
     chosen = Game("the game", saves) if saves else choose(games, game)
     if not chosen.saves.parent.is_dir():
-        raise InputError(chosen.saves, "is no saves folder, nor is there one to make it in")
+        reason = "is no saves folder, nor is there one to make it in"
+        raise InputError(chosen.saves, f"{reason}; give --saves DIR, the folder of a game's worlds")
     target = install_world(world, chosen.saves, name or None)
     print(f"Copied to {target}")
     if note := age_note(world, chosen):

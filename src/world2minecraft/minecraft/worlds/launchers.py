@@ -101,30 +101,30 @@ def _instance_roots(
 
 
 def _launcher_games(root: Path) -> Iterator[Game]:
-    if not root.is_dir():
+    if not _is_folder(root):
         return
     yield Game(LAUNCHER, root / "saves")
     for name in PROFILE_FILES:
         profiles = _json(root / name).get("profiles")
         for profile in profiles.values() if isinstance(profiles, dict) else ():
             folder = profile.get("gameDir") if isinstance(profile, dict) else None
-            if isinstance(folder, str) and Path(folder).is_absolute() and Path(folder).is_dir():
+            if isinstance(folder, str) and Path(folder).is_absolute() and _is_folder(Path(folder)):
                 title = _line(profile.get("name")) or _line(profile.get("lastVersionId"))
                 yield Game(f"{LAUNCHER}: {title or Path(folder).name}", Path(folder) / "saves")
 
 
 def _instance_games(kind: str, root: Path) -> Iterator[Game]:
-    if not root.is_dir():
+    if not _is_folder(root):
         return
     chosen = _setting(root / SETTINGS_FILES[kind], "InstanceDir") or "instances"
     folder = root / chosen  # An absolute one stands for itself.
-    if not folder.is_dir():
+    if not _is_folder(folder):
         return
-    for instance in sorted(folder.iterdir())[:MAX_INSTANCES]:
+    for instance in _folders_in(folder)[:MAX_INSTANCES]:
         game = instance / ".minecraft"
-        if not game.is_dir():
+        if not _is_folder(game):
             game = instance / "minecraft"
-        if game.is_dir() and (instance / "instance.cfg").is_file():
+        if _is_folder(game) and (instance / "instance.cfg").is_file():
             title = _setting(instance / "instance.cfg", "name") or instance.name
             yield Game(f"{kind}: {title}", game / "saves", _version(instance))
 
@@ -172,6 +172,21 @@ def _line(value: Any) -> str:
     """A text from a file as one short printable line."""
     text = " ".join(value.split()) if isinstance(value, str) else ""
     return "".join(letter for letter in text if letter.isprintable())[:200]
+
+
+def _is_folder(path: Path) -> bool:
+    """Whether a folder is there that may be looked at: a drive may be away, a folder another's."""
+    try:
+        return path.is_dir()
+    except OSError:
+        return False
+
+
+def _folders_in(folder: Path) -> list[Path]:
+    try:
+        return sorted(path for path in folder.iterdir() if _is_folder(path))
+    except OSError:
+        return []
 
 
 def _roaming(home: Path, environment: Mapping[str, str]) -> Path:
