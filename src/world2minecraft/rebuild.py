@@ -32,6 +32,9 @@ def rebuild(source: Path, out: Path, parameters: Parameters, progress: Progress 
     """
     if out.exists() and source.exists() and out.samefile(source):
         raise UsageError(f"{out} is the source; give another folder to --out")
+    if is_block_file(source):
+        ways = f"w2m convert {source} {out} makes a world of it, --into WORLD --at X Y Z adds it"
+        raise UsageError(f"{source} holds blocks, and --out takes a room; {ways} to one")
     if source.is_dir():
         _copy_run(source, out)
         stages = ("build",)

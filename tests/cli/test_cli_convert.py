@@ -13,6 +13,7 @@ from world2minecraft.exchange.glb import GlbWriter, read_glb
 from world2minecraft.exchange.objects import write_placements
 from world2minecraft.exchange.scene import scene_of, write_scene
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
+from world2minecraft.minecraft.worlds import session_lock
 from world2minecraft.types import AIR, BlockVolume, Entity, Placement
 
 
@@ -82,6 +83,15 @@ def test_a_world_is_replaced_whole(schem, tmp_path):
     assert (world / "level.dat").is_file()
 
 
+def test_a_world_that_the_game_has_open_is_not_replaced(schem, tmp_path, monkeypatch, capsys):
+    assert convert(schem, tmp_path / "house") == 0
+    before = (tmp_path / "house" / "level.dat").stat().st_ino
+    monkeypatch.setattr(session_lock, "_take", lambda *_: False)
+    assert convert(schem, tmp_path / "house", "--force") == 3
+    assert "is open in the game" in capsys.readouterr().err
+    assert (tmp_path / "house" / "level.dat").stat().st_ino == before
+
+
 def test_a_world_comes_back_where_its_successor_cannot_be_put(schem, tmp_path, monkeypatch):
     world, replace = tmp_path / "house", os.replace
     assert convert(schem, world) == 0
@@ -136,6 +146,7 @@ def test_a_write_that_fails_leaves_the_old_one_and_no_litter(schem, tmp_path, mo
         ("damaged.schem", "b.schem", 3, "damaged.schem: "),
         ("notes.txt", "b.schem", 3, "notes.txt: is no block file"),
         ("a.schem", "b.xyz", 2, "b.xyz: no block format ends in .xyz; known: "),
+        ("a.schem", "My 1.20 World", 2, "; the name of a world folder has no dot"),
         ("a.schem", "notes.txt/b.schem", 3, "notes.txt: is a file"),
     ],
 )
@@ -149,6 +160,19 @@ def test_bad_input_is_one_line_and_writes_nothing(schem, tmp_path, capsys, a, b,
     assert err.count("\n") == 1
     assert out == ""
     assert sorted(os.listdir(tmp_path)) == before
+
+
+@pytest.mark.parametrize("name", ["a.schem", "house"])
+def test_a_box_of_blocks_is_converted(schem, volume, tmp_path, name, capsys):
+    if name != "a.schem":
+        assert convert(schem, tmp_path / name) == 0
+    x, y, z = volume.corner
+    box = f"{x},{y},{z},{x + 1},{y + 3},{z + 2}"
+    assert convert(tmp_path / name, tmp_path / "part.schem", "--box", box) == 0
+    part = read_blocks(tmp_path / "part.schem")
+    assert (part.corner, part.states.shape) == (volume.corner, (1, 1, 2))  # Air around is cut.
+    assert convert(tmp_path / name, tmp_path / "b.schem", "--box", "1,2,3") == 2
+    assert "--box is six whole numbers" in capsys.readouterr().err
 
 
 def test_the_same_input_gives_the_same_bytes(schem, tmp_path):

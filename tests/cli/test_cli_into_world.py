@@ -146,6 +146,7 @@ def test_force_brings_the_old_files_back(schem, world):
             2,
             "the build would reach from layer 400 to 401, but the world has -64 to 319",
         ),
+        (["{schem}", "--out", "x"], 2, "a.schem holds blocks, and --out takes a room; w2m convert"),
         (["nothing.npz", "--into", "{world}", "--at", "1", "70", "3"], 3, "nothing.npz: is not"),
     ],
 )
@@ -163,6 +164,8 @@ def test_what_cannot_be_is_one_line_and_changes_nothing(schem, world, capsys, wo
     [
         (["undo", "{world}"], 2, "nothing of World2Minecraft is there to undo"),
         (["undo", "{world}", "--blocks", "--force"], 2, "choose one"),
+        (["undo", "nowhere", "--list"], 3, "nowhere: is no world folder: it has no level.dat"),
+        (["undo", "{world}/..", "--list"], 3, "/home is one"),
         (["undo", "nowhere"], 3, "nowhere: is no world folder: it has no level.dat"),
     ],
 )

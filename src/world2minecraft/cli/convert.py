@@ -11,6 +11,7 @@ import typer
 from world2minecraft.errors import InputError, OutputError, UsageError
 
 if TYPE_CHECKING:
+    from world2minecraft.exchange.cutting import Box
     from world2minecraft.minecraft.formats import WriteOptions
     from world2minecraft.minecraft.losses import Losses
     from world2minecraft.types import BlockVolume
@@ -21,6 +22,7 @@ w2m convert worlds/house house.litematic    a world folder to a Litematica file
 w2m convert OUT room.glb                    a run: one mesh for each of its objects
 w2m convert OUT kitchen.habitat             a run: a scene dataset for Habitat-Sim
 w2m convert OUT room.mcstructure            a run: a structure of Bedrock Edition
+w2m convert saves/Home hut.schem --box 0,60,0,32,80,32    a part of a large world
 w2m convert a.schem b.schem --schem-version 3 --force
 """
 HABITAT_MARK = "*.scene_dataset_config.json"
@@ -41,6 +43,10 @@ def run(
         float | None,
         typer.Option(help="How many blocks are a metre, where A does not say; 1."),
     ] = None,
+    box: Annotated[
+        str,
+        typer.Option(metavar="X0,Y0,Z0,X1,Y1,Z1", help="These blocks of A alone."),
+    ] = "",
     labels: Annotated[
         str, typer.Option(metavar="PALETTE", help="Whose names of blocks say what they are.")
     ] = "",
@@ -60,6 +66,7 @@ def run(
         schem_version: 1, 2 or 3, for a schematic.
         name: what a world or datapack is called; empty for the target's name.
         blocks_per_metre: the scale, for meshes and for the player's size.
+        box: which blocks of ``source``, the last ones not included; empty for all.
         labels: a palette by whose words blocks get classes and objects, such as ``tmeo``.
 
     Raises:
@@ -67,6 +74,7 @@ def run(
         InputError: ``source`` cannot be read, or ``target`` cannot be written.
     """
     check_target(source, target, force)
+    from world2minecraft.cli.render_options import box_of
     from world2minecraft.exchange.forms import templates_of_run
     from world2minecraft.minecraft.formats import WriteOptions
 
@@ -76,7 +84,7 @@ def run(
         name=name or target.stem,
         other={"templates": templates_of_run(source)},
     )
-    convert(source, target, options, blocks_per_metre, labels, force)
+    convert(source, target, options, blocks_per_metre, labels, force, box_of(box))
 
 
 def convert(
@@ -86,14 +94,16 @@ def convert(
     blocks_per_metre: float | None,
     labels: str,
     force: bool,
+    box: "Box | None" = None,
 ) -> None:
     """Read ``source``, write ``target`` and print what came of it. Raises what ``run`` raises."""
-    from world2minecraft.exchange.forms import read_form, write_form
+    from world2minecraft.exchange.forms import write_form
+    from world2minecraft.minecraft.commands.datapack import namespace_of
     from world2minecraft.minecraft.game_names import mod_blocks
     from world2minecraft.minecraft.losses import Losses
 
     unread, unwritten = Losses(), Losses()
-    volume = with_labels(scaled(read_form(source, unread), blocks_per_metre), labels)
+    volume = with_labels(scaled(read_part(source, box, unread), blocks_per_metre), labels)
     with_parent(target)
     with tempfile.TemporaryDirectory(dir=target.parent, prefix=".w2m-") as folder:
         # The new one is whole before the old one goes; both lie on one disk.
@@ -103,12 +113,27 @@ def convert(
     filled = int((volume.states != 0).sum())
     size = " x ".join(str(side) for side in volume.states.shape)
     print(f"{target}: {filled:,} blocks of {len(volume.palette) - 1} kinds, {size}")
+    if target.suffix.lower() == ".zip":
+        print(f"in the world that has it: /function {namespace_of(options.name)}:build")
     told = " ".join(what for what, _ in unwritten)
     for mod, count in mod_blocks(volume).items():
         if f"{mod}:" not in told:
             print(f"kept by their names: {count:,} blocks of the mod {mod}")
     tell_losses(unread, f"not read from {source.name}")
     tell_losses(unwritten, f"not written to {target.name}")
+
+
+def read_part(source: Path, box: "Box | None", losses: "Losses") -> "BlockVolume":
+    """Return the blocks of ``source``, or those in a box of it: of a world no others are read.
+
+    Raises:
+        InputError: it cannot be read, or nothing but air is in the box.
+        UsageError: the box lies beside the build.
+    """
+    from world2minecraft.exchange.forms import read_form
+    from world2minecraft.exchange.source import read_source
+
+    return read_form(source, losses) if box is None else read_source(source, box).volume
 
 
 def scaled(volume: "BlockVolume", blocks_per_metre: float | None) -> "BlockVolume":
@@ -159,6 +184,7 @@ def check_target(source: Path, target: Path, force: bool) -> None:
         InputError: ``source`` is not there.
         UsageError: ``target`` has no known suffix, is ``source``, is there without ``force``, or
             is a folder that holds other things than a world or a scene dataset.
+        ConflictError: ``target`` is a world that the game has open.
     """
     if not source.exists():
         raise InputError(source, "is not there")
@@ -171,6 +197,11 @@ def check_target(source: Path, target: Path, force: bool) -> None:
         raise UsageError(f"{target} is both A and B; give another name for B")
     if not force:
         raise UsageError(f"{target} is there already; add --force to replace it")
+    if (target / "level.dat").is_file():
+        from world2minecraft.minecraft.worlds.session_lock import session_lock
+
+        with session_lock(target):  # A world that the game has open is left alone.
+            pass
     if not target.is_dir() or not any(target.iterdir()):
         return
     if form.suffix == "" and not (target / "level.dat").is_file():

@@ -38,12 +38,16 @@ def run(
 
     Raises:
         UsageError: there is nothing to undo. ConflictError: the world was changed since.
+        InputError: there is no world.
     """
     if blocks and force:
         raise UsageError("--blocks and --force are two ways to undo; choose one")
     from world2minecraft.edit.backups import steps_of
+    from world2minecraft.minecraft.worlds.level import no_world
 
     if list_:
+        if not (world / "level.dat").is_file():
+            raise no_world(world)
         steps = steps_of(world)
         for step in steps:
             print(f"{step.folder.name}  {step.what}, {counted(len(step.files), 'file')}")

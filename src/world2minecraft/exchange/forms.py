@@ -138,7 +138,8 @@ def form_to_write(path: str | Path) -> BlockFormat:
                 return form
             raise UsageError(f"{path}: {suffix} is read and not written; write a .schem instead")
     known = known_forms("write")
-    raise UsageError(f"{path}: no block format ends in {suffix}; known: {known}")
+    dots = "; the name of a world folder has no dot" if not suffix[1:].isalpha() else ""
+    raise UsageError(f"{path}: no block format ends in {suffix}; known: {known}{dots}")
 
 
 def write_forms(

@@ -58,7 +58,9 @@ def write_habitat(volume: BlockVolume, folder: str | Path, *, name: str = "room"
             name is no file name. OutputError: a file cannot be written.
     """
     if not name or not all(letter.isalnum() or letter in "_-" for letter in name):
-        raise UsageError(f"scene name {name!r} must be letters, digits, _ and -")
+        raise UsageError(
+            f"scene name {name!r} must be letters, digits, _ and -; name it as room.habitat"
+        )
     target, render = Path(folder), gltf_bytes(volume, keep_blocks=False)
     bodies, _ = bodies_of(volume)
     ids = semantic_ids(bodies)
