@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from world2minecraft.errors import DamagedFileError
+from world2minecraft.files import write_npz
 from world2minecraft.label.channels import network_input
 from world2minecraft.learn.completion.augment import augmented, cropped, turned
 from world2minecraft.learn.completion.noise import draw_noise, lost_pixels, wrong_labels
@@ -48,6 +50,16 @@ def test_what_is_written_is_read(samples, tmp_path):
         assert (one.kind, one.hinted) == (other.kind, other.hinted)
         assert np.array_equal(one.truth, other.truth)
         assert np.array_equal(channels(one), channels(other))
+
+
+def test_a_file_that_is_no_samples_is_told(tmp_path):
+    path = tmp_path / "1.npz"
+    path.write_bytes(b"no archive")
+    with pytest.raises(DamagedFileError, match="is not a readable .npz"):
+        read_samples(path)
+    write_npz(path, {"count": np.array(1)})
+    with pytest.raises(DamagedFileError, match="holds no samples"):
+        read_samples(path)
 
 
 def test_four_turns_and_two_mirrors_are_none(samples):

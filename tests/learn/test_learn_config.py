@@ -69,7 +69,11 @@ GOLDEN = {
         UnknownNameError,
         "no setting of data is named 'wait'; did you mean 'weight'?",
     ),
-    "network: iso\ndata: a:0": (UsageError, "the weight of a must be above 0, not 0"),
+    "network: iso\ndata: a:0": (UsageError, "the weight of a must be above 0 and finite, not 0"),
+    "network: iso\ndata: a:inf": (
+        UsageError,
+        "the weight of a must be above 0 and finite, not inf",
+    ),
     "network: iso\ndata: []": (
         UsageError,
         "nothing to train on; give --data DIR, as w2m dataset build makes one",

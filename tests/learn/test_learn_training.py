@@ -1,6 +1,7 @@
 """Runs of a toy network: they learn, stop, go on where they were killed, and say what they did."""
 
 import json
+import shutil
 import subprocess
 import sys
 
@@ -11,9 +12,15 @@ from safetensors.torch import load_file
 from tests.learn import toy_network
 from tests.learn.toy_sets import toy_config, write_toy_store
 
-from world2minecraft.errors import ConflictError, DamagedFileError, InputError
+from world2minecraft.errors import ConflictError, DamagedFileError, InputError, UsageError
 from world2minecraft.learn import training
-from world2minecraft.learn.checkpoints import load_weights, read_facts, weights_config
+from world2minecraft.learn.batch import OccOutput
+from world2minecraft.learn.checkpoints import (
+    load_weights,
+    read_facts,
+    weights_config,
+    write_checkpoint,
+)
 from world2minecraft.learn.config import RunConfig, read_config
 from world2minecraft.learn.data.opening import CachePlace
 from world2minecraft.learn.journal import read_rows
@@ -82,6 +89,56 @@ def test_a_killed_run_goes_on_to_the_same_bytes(whole, store, cache, tmp_path, s
     trained(toy_config(store), tmp_path / "run", cache)
     for name in ("last.safetensors", "weights.safetensors", "metrics.csv"):
         assert (tmp_path / "run" / name).read_bytes() == (whole / name).read_bytes(), name
+
+
+def test_a_run_that_ends_between_its_last_checkpoint_and_its_last_files(
+    whole, store, cache, tmp_path
+):
+    """Such a run counted as finished, and lacked last.safetensors and run.json for good."""
+
+    def kill(stage, done, total, note=""):
+        if stage == "train" and done == 6:
+            raise RuntimeError("killed")
+
+    with pytest.raises(RuntimeError, match="killed"):
+        trained(toy_config(store), tmp_path / "run", cache, progress=kill)
+    assert not (tmp_path / "run/last.safetensors").exists()
+    trained(toy_config(store), tmp_path / "run", cache)
+    for name in ("last.safetensors", "weights.safetensors", "metrics.csv"):
+        assert (tmp_path / "run" / name).read_bytes() == (whole / name).read_bytes(), name
+    assert json.loads((tmp_path / "run/run.json").read_text())["steps"] == 6
+
+
+def test_a_loss_that_is_no_number_ends_a_run(store, cache, tmp_path, monkeypatch):
+    class Lost(toy_network.Toy):
+        calls = 0
+
+        def forward(self, inputs):
+            self.calls += self.training
+            said = super().forward(inputs)
+            return OccOutput(said.logits * (float("nan") if self.calls > 4 else 1.0))
+
+    monkeypatch.setattr(training, "make_network", lambda *_, **__: Lost())
+    told = "the loss of step 5 is no number, at a learning rate of .*; train in another --out"
+    with pytest.raises(UsageError, match=told):
+        trained(toy_config(store), tmp_path / "run", cache)
+    assert read_facts(tmp_path / "run" / "checkpoint.safetensors")["step"] == 3
+    load_weights(tmp_path / "run" / "weights.safetensors", toy_network.Toy())
+
+
+def test_what_lies_in_a_run_s_folder_and_is_not_of_it_is_told(whole, store, cache, tmp_path):
+    shutil.copytree(whole, tmp_path / "run")
+    (tmp_path / "run/metrics.csv").write_text("step;name;value\n1;train_loss;2.0\n")
+    with pytest.raises(DamagedFileError, match=r"metrics.csv: holds no rows .*; remove it"):
+        read_rows(tmp_path / "run/metrics.csv")
+    write_checkpoint(
+        tmp_path / "run/checkpoint.safetensors",
+        network := toy_network.Toy(),
+        torch.optim.AdamW(network.parameters()),
+        {"step": 3, "mood": "good"},
+    )
+    with pytest.raises(DamagedFileError, match="is of another version of w2m train; choose anoth"):
+        trained(toy_config(store), tmp_path / "run", cache)
 
 
 def test_a_finished_run_is_left_as_it_is(whole, store, cache):

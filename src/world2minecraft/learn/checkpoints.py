@@ -65,13 +65,20 @@ def read_facts(path: Path) -> dict[str, Any]:
         raise DamagedFileError(path, "is no checkpoint of w2m train") from error
 
 
-def load_checkpoint(path: Path, network: nn.Module, optimiser: torch.optim.Optimizer) -> None:
-    """Put a half-done run into its network and its optimiser. Raises what ``load_weights`` does."""
+def load_checkpoint(
+    path: Path, network: nn.Module, optimiser: torch.optim.Optimizer | None = None
+) -> None:
+    """Put a half-done run into its network, and its optimiser if one is given.
+
+    Raises what ``load_weights`` does.
+    """
     tensors, _ = _read(path)
     model = {
         name.removeprefix(MODEL): value for name, value in tensors.items() if name.startswith(MODEL)
     }
     _fill(path, network, model)
+    if optimiser is None:
+        return
     state: dict[int, dict[str, Tensor]] = {}
     for name, value in tensors.items():
         if name.startswith(OPTIMISER):

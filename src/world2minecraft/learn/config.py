@@ -4,6 +4,7 @@ The same file trains the same network again. Settings that are not there keep th
 that nobody knows is refused, with the nearest name.
 """
 
+import math
 from contextlib import suppress
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
@@ -47,8 +48,10 @@ class DataSource:
     def __post_init__(self):
         if not self.path:
             raise UsageError("a data set needs a path; give --data DIR or --data DIR:WEIGHT")
-        if not self.weight > 0:
-            raise UsageError(f"the weight of {self.path} must be above 0, not {self.weight:g}")
+        if not 0 < self.weight < math.inf:
+            raise UsageError(
+                f"the weight of {self.path} must be above 0 and finite, not {self.weight:g}"
+            )
 
     @classmethod
     def parsed(cls, text: str) -> "DataSource":

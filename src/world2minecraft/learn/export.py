@@ -75,7 +75,11 @@ def export_network(
     whole = _asked(model.SerializeToString(), example)
     difference = float(np.abs(whole - said).max())
     if not difference <= MOST_DIFFERENCE:  # Holds for what is no number too.
-        raise OutputError(path, f"the ONNX file's logits would differ by {difference:.3g}")
+        raise OutputError(
+            path,
+            f"the ONNX file's logits would differ by {difference:.3g} from the network's, and "
+            f"{MOST_DIFFERENCE:g} is the most; no file is written",
+        )
     data = with_stored_weights(model, weights).SerializeToString()
     stored = whole if weights == "float" else _asked(data, example)
     if not np.isfinite(stored).all():

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.errors import DamagedFileError
 from world2minecraft.files import write_text
 
 METRICS = "metrics.csv"
@@ -56,11 +57,21 @@ class Journal:
 def read_rows(path: Path) -> list[tuple[int, str, float]]:
     """Return the rows of a ``metrics.csv``; none where there is no file.
 
+    Raises:
+        DamagedFileError: it holds something else.
+
     Example:
         >>> read_rows(Path("nowhere.csv"))
         []
     """
     if not path.is_file():
         return []
-    with path.open(newline="", encoding="utf-8") as file:
-        return [(int(step), name, float(value)) for step, name, value in list(csv.reader(file))[1:]]
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))[1:]
+        return [(int(step), name, float(value)) for step, name, value in rows]
+    except ValueError as error:
+        raise DamagedFileError(
+            path,
+            f"holds no rows of step, name, value ({error}); remove it, and the run goes on",
+        ) from error

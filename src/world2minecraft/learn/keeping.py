@@ -4,6 +4,7 @@ Files of a run: ``checkpoint.safetensors`` (to go on from), ``weights.safetensor
 mIoU on the validation frames), ``last.safetensors``, ``metrics.csv`` and ``tensorboard/``.
 """
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
@@ -12,6 +13,7 @@ from typing import Any
 
 import lightning
 
+from world2minecraft.errors import UsageError
 from world2minecraft.learn.checkpoints import write_checkpoint, write_weights
 from world2minecraft.learn.config import RunConfig
 from world2minecraft.learn.journal import Journal
@@ -64,6 +66,7 @@ class Keeper(lightning.Callback):
         steps: Steps = pl_module
         state, config = self.state, self._config
         state.step += 1
+        self._check(steps)
         self._sum_up(steps)
         is_last = state.step == config.steps
         if state.step % config.validate_every == 0 or is_last:
@@ -72,6 +75,16 @@ class Keeper(lightning.Callback):
         if state.step % config.checkpoint_every == 0 or is_last or state.stopped:
             self._keep(steps, trainer.optimizers[0])
         self._tell(state.sums)
+
+    def _check(self, steps: Steps) -> None:
+        """End a run whose loss is no number: its weights are none any more, and never will be."""
+        if not math.isfinite(float(steps.found["loss"])):
+            rate = rate_of(self._config, self.state.step - 1)
+            raise UsageError(
+                f"the loss of step {self.state.step:,} is no number, at a learning rate of "
+                f"{rate:.2g}; train in another --out with a lower --lr, or with --precision 32 "
+                "(the best weights so far are kept)"
+            )
 
     def _sum_up(self, steps: Steps) -> None:
         state = self.state

@@ -55,7 +55,9 @@ class SavedPredictions:
             if not set(names) & set(NAMES):
                 self._members = names
         elif not path.is_file():
-            raise InputError(path, "is not there")
+            raise InputError(
+                path, "is not there; give a run, weights, an .onnx or a folder of KEY.npz"
+            )
         if path.is_dir() and not self._files:
             raise InputError(path, "holds no KEY.npz, KEY.npy or KEY.pkl")
 

@@ -29,9 +29,14 @@ from torch import nn
 
 from world2minecraft import __version__
 from world2minecraft.dataset.importers import open_occupancy
-from world2minecraft.errors import ConflictError, UsageError
+from world2minecraft.errors import ConflictError, DamagedFileError, UsageError
 from world2minecraft.files import write_json
-from world2minecraft.learn.checkpoints import load_checkpoint, load_weights, read_facts
+from world2minecraft.learn.checkpoints import (
+    load_checkpoint,
+    load_weights,
+    read_facts,
+    write_weights,
+)
 from world2minecraft.learn.config import OWN_FRAMES, RunConfig, read_config, write_config
 from world2minecraft.learn.data.batches import drawn_batches
 from world2minecraft.learn.data.classes import class_weights
@@ -98,7 +103,8 @@ def train_run(
 
     Raises:
         ConflictError: the folder holds a run of other settings, or another process trains in it.
-        InputError, UsageError: the sets or the settings cannot be used.
+        InputError, UsageError: the sets or the settings cannot be used, or the loss came to be no
+        number.
     """
     check_folder(config, folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -140,10 +146,10 @@ def _said(value: Any) -> str:
 def _fit(
     config: RunConfig, folder: Path, data: RunData, device: torch.device, progress: Progress
 ) -> RunState:
-    state = RunState()
-    if (folder / CHECKPOINT).is_file():
-        state = RunState(**read_facts(folder / CHECKPOINT))
+    state = _state_of(folder / CHECKPOINT)
     if state.step >= config.steps or state.stopped:
+        if not (folder / LAST).is_file() or not (folder / FACTS).is_file():
+            _finish_again(config, folder, device, state)
         return state
     network = network_of(config)
     if config.frames > 1 and config.network not in OWN_FRAMES:
@@ -180,6 +186,26 @@ def _fit(
     keeper.finish(steps)
     _write_facts(folder, config, network, device, keeper.state, time.monotonic() - began)
     return keeper.state
+
+
+def _state_of(checkpoint: Path) -> RunState:
+    """Return where a run stands; at its beginning where there is no checkpoint."""
+    if not checkpoint.is_file():
+        return RunState()
+    facts = read_facts(checkpoint)
+    if facts.keys() != vars(RunState()).keys():
+        raise DamagedFileError(
+            checkpoint, "is of another version of w2m train; choose another --out"
+        )
+    return RunState(**facts)
+
+
+def _finish_again(config: RunConfig, folder: Path, device: torch.device, state: RunState) -> None:
+    """Write what comes after the last checkpoint, of a run that was ended between the two."""
+    network = network_of(config)
+    load_checkpoint(folder / CHECKPOINT, network)
+    write_weights(folder / LAST, network, config)
+    _write_facts(folder, config, network, device, state, 0.0)
 
 
 class _Loader(lightning.Callback):

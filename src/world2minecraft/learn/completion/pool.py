@@ -35,7 +35,8 @@ class SamplePool:
     def refresh(self) -> None:
         """Take in files that are new."""
         found = sorted(self.folder.glob("*.npz"))
-        self._paths = [path for path in found if int(path.stem) in self.seeds]
+        named = [path for path in found if path.stem.isdecimal()]
+        self._paths = [path for path in named if int(path.stem) in self.seeds]
 
     def __len__(self) -> int:
         """The number of rooms."""

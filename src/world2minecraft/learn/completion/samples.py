@@ -12,8 +12,8 @@ from scipy import ndimage
 
 from world2minecraft.classes import UNKNOWN
 from world2minecraft.coordinates import apply, rotation_about_z
-from world2minecraft.errors import CaptureError
-from world2minecraft.files import write_npz
+from world2minecraft.errors import CaptureError, DamagedFileError
+from world2minecraft.files import array_names, read_npz, write_npz
 from world2minecraft.fuse import CleanParameters, read_out, remove_floaters
 from world2minecraft.label.channels import Sight, sight_of
 from world2minecraft.label.completion import hint_of
@@ -213,8 +213,14 @@ def read_samples(path: Path) -> list[Sample]:
     Raises:
         InputError: the file is missing. DamagedFileError: it is damaged.
     """
-    with np.load(path, allow_pickle=False) as held:
-        arrays = {name: held[name] for name in held.files}
+    arrays = read_npz(path, array_names(path))
+    try:
+        return _samples_of(arrays)
+    except (KeyError, ValueError) as error:
+        raise DamagedFileError(path, f"holds no samples ({error})") from error
+
+
+def _samples_of(arrays: dict[str, np.ndarray]) -> list[Sample]:
     samples = []
     for n in range(int(arrays["count"])):
         voxel_m, bottom_m, hinted, false = arrays[f"facts_{n}"].tolist()
