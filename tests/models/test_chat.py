@@ -4,7 +4,16 @@ import json
 import time
 
 import pytest
-from tests.models.scripted_server import BUSY, MEGABYTE, NO_SCHEMA, SLOW, Answer, proper, scripted
+from tests.models.scripted_server import (
+    BUSY,
+    MEGABYTE,
+    NO_SCHEMA,
+    SLOW,
+    Answer,
+    completion,
+    proper,
+    scripted,
+)
 
 from world2minecraft.errors import (
     BudgetError,
@@ -266,6 +275,55 @@ def test_failed_calls_count_but_cost_nothing():
         assert (ledger.calls, ledger.usd) == (1, 0)
         with pytest.raises(BudgetError, match="1 calls were made"):
             model_at(server, ledger=ledger).ask(HELLO)
+
+
+def test_an_attempt_without_a_reply_counts_by_the_most_that_it_may_have_cost():
+    """A server that is late, or says what is no reply, has worked, and is paid."""
+    price = Price(0.0, 100.0)  # 1,024 tokens of reply: at most 10.24 cents an attempt.
+    ledger = Ledger(price, max_usd=0.25)
+    with scripted([SLOW]) as server:
+        with pytest.raises(BudgetError, match=r"\$0.2048 is spent .* over the \$0.2500"):
+            model_at(server, ledger=ledger, attempts=5, timeout_s=0.3).ask(HELLO)
+        assert len(server.requests) == 2
+    assert (ledger.calls, ledger.usd) == (1, pytest.approx(0.2048))
+    ledger = Ledger(price, max_usd=1.0)
+    with scripted([MEGABYTE]) as server, pytest.raises(UselessReplyError):
+        model_at(server, ledger=ledger).ask(HELLO)
+    with scripted([BUSY]) as server, pytest.raises(BusyServerError):  # Not begun, so not paid,
+        model_at(server, ledger=ledger).ask(HELLO)
+    with pytest.raises(BusyServerError):  # and nobody is there any more.
+        model_at(server, ledger=ledger).ask(HELLO)
+    assert ledger.usd == pytest.approx(0.1024)
+
+
+def test_thoughts_that_a_server_counts_in_the_total_alone_are_paid():
+    told = completion("fine", prompt_tokens=21, completion_tokens=2)
+    told["usage"]["total_tokens"] = 83  # Gemini's: 60 tokens of thought.
+    with scripted([Answer(body=json.dumps(told).encode())]) as server:
+        _, reply = model_at(server).ask(HELLO)
+    assert (reply.prompt_tokens, reply.completion_tokens, reply.is_estimated) == (21, 62, False)
+
+
+def test_a_key_that_a_server_says_back_is_in_no_error_and_no_record(tmp_path, monkeypatch):
+    monkeypatch.setenv("MY_KEY", "sesame-4711")
+    store = ReplyStore(tmp_path / "replies.jsonl")
+    echo = b"what is Bearer sesame-4711?"
+    for answer in (Answer(400, echo), Answer(401, echo), Answer(body=echo)):
+        with scripted([answer]) as server:
+            model = open_chat(server.url, model="m", key_name="MY_KEY", store=store)
+            with pytest.raises(ServerError, match=r"Bearer \(the key\)") as caught:
+                model.ask(HELLO)
+        assert "sesame" not in str(caught.value)
+    assert "sesame" not in (tmp_path / "replies.jsonl").read_text()
+
+
+@pytest.mark.parametrize("text", ["my notes", "{}", '{"keys": 1', "[\n  1\n]"])
+def test_a_file_that_is_no_record_is_left_as_it_is(tmp_path, text):
+    path = tmp_path / "replies.jsonl"
+    path.write_text(text)
+    with pytest.raises(InputError, match="is no reply"):
+        ReplyStore(path)
+    assert path.read_text() == text
 
 
 def test_money_cannot_be_capped_at_an_unknown_price():

@@ -6,7 +6,7 @@ import pytest
 from tests.models.scripted_server import BUSY, MEGABYTE, NO_SCHEMA, proper, scripted
 from tests.models.test_chat import HELLO, model_at
 
-from world2minecraft.models.chat_forms import Form, UnreadableError, ask_form, json_of
+from world2minecraft.models.chat_forms import Form, UnreadableError, ask_form, json_of, spoken
 from world2minecraft.models.chat_wire import RefusedQuestionError
 
 
@@ -100,3 +100,29 @@ def test_a_busy_moment_in_between_is_no_repair():
     with scripted([BUSY, GREEN]) as server:
         formed = ask_form(model_at(server), HELLO, COLOUR)
     assert len(formed.tries) == 1 and formed.tries[0].reply.attempts == 2
+
+
+@pytest.mark.parametrize(
+    "reply",
+    [
+        '<think>{"colour": "red"}? No.</think>' + GREEN,
+        'It is {"colour": "red"}. No.\n</think>\n' + GREEN,  # The template said the first tag.
+        "<THINKING>{</THINKING>" + GREEN,
+    ],
+)
+def test_what_a_model_thinks_is_no_answer(reply):
+    with scripted([reply]) as server:
+        formed = ask_form(model_at(server), HELLO, COLOUR)
+        assert (formed.value, len(server.requests)) == ("green", 1)
+    assert formed.raw == reply  # Kept as it came.
+
+
+def test_thoughts_are_taken_out_in_linear_time():
+    assert spoken("<think>" * 40_000 + "x" * 40_000).endswith("x")
+    assert spoken("</think>" * 40_000) == ""
+
+
+def test_a_cut_reply_says_how_long_it_could_be():
+    with scripted([proper("", finish="length")]) as server:
+        formed = ask_form(model_at(server), HELLO, COLOUR, repairs=0)
+    assert formed.problem == "the reply was cut at 1,024 tokens; be shorter"

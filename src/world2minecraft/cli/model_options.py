@@ -41,6 +41,12 @@ MaxPixels = Annotated[
     ),
 ]
 MAX_PIXELS = 1_048_576  # models.chat_pictures.MOST_PX, which a test holds it to.
+MaxTokens = Annotated[
+    int,
+    typer.Option(
+        "--max-tokens", help="Of a reply, thoughts included; models that think want 8192.", min=1
+    ),
+]
 Timeout = Annotated[
     float, typer.Option("--timeout", help="Seconds that one attempt may take.", min=0.1)
 ]
@@ -64,6 +70,7 @@ class ModelOptions:
     max_usd: MaxUsd = None
     max_calls: MaxCalls = None
     prices: Prices = None
+    max_tokens: MaxTokens = 1024
     timeout: Timeout = 60.0
     temperature: Temperature = 0.0
     replay: Replay = None
@@ -86,6 +93,7 @@ class ModelOptions:
             prices=str(self.prices) if self.prices else None,
             max_usd=self.max_usd,
             max_calls=self.max_calls,
+            max_tokens=self.max_tokens,
             timeout_s=self.timeout,
             temperature=None if self.temperature < 0 else self.temperature,
         )

@@ -72,11 +72,12 @@ def _rewritten(
     made: "NavigationSet", chat: "ChatModel", jobs: int
 ) -> "tuple[NavigationSet, Counter[str]]":
     from world2minecraft.cli.progress import shown
+    from world2minecraft.models.chat_forms import spoken
     from world2minecraft.models.chat_messages import Turn
     from world2minecraft.vln.data.rewording import rewritten_set
 
     def ask(prompt: str) -> str:
-        return chat.ask((Turn("user", (prompt,)),))[1].text
+        return spoken(chat.ask((Turn("user", (prompt,)),))[1].text)
 
     with shown() as progress:
         return rewritten_set(made, ask, chat.name, jobs, progress)

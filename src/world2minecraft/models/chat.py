@@ -92,24 +92,33 @@ class ChatModel:
     def _paid(self, wire: Wire, question: Question) -> Reply:
         held = self.ledger.hold(question)
         try:
-            reply = self._patiently(wire, question)
+            reply = self._patiently(wire, question, held)
         except BaseException:
             self.ledger.settle(held, None)
             raise
         self.ledger.settle(held, reply)
         return reply
 
-    def _patiently(self, wire: Wire, question: Question) -> Reply:
+    def _patiently(self, wire: Wire, question: Question, held_usd: float) -> Reply:
         import tenacity  # noqa: PLC0415  # An extra.
+
+        def once() -> Reply:
+            try:
+                return wire.ask(question)
+            except ServerError as error:
+                if getattr(error, "may_cost", False):
+                    self.ledger.lose(held_usd)
+                raise
 
         repeats = tenacity.Retrying(
             stop=tenacity.stop_after_attempt(self.attempts),
             wait=wait_s,
             retry=tenacity.retry_if_exception_type(BusyServerError),
+            before_sleep=lambda _: self.ledger.hold_again(held_usd),
             sleep=self._sleep,
             reraise=True,
         )
-        reply = repeats(wire.ask, question)
+        reply = repeats(once)
         return replace(reply, attempts=repeats.statistics.get("attempt_number", 1))
 
 

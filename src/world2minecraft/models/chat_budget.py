@@ -1,7 +1,8 @@
 """What calls of a model cost, and where they stop: prices by model, and a ledger with caps.
 
 Servers tell tokens, not money; so money is counted here, before a call by the most that it may
-cost and after it by what it took. A ledger is shared by threads.
+cost and after it by what it took. An attempt that came too late, broke off or gave no reply may
+have been paid all the same, and counts by its most. A ledger is shared by threads.
 """
 
 import threading
@@ -100,15 +101,16 @@ class Ledger:
             raise UsageError("caps on money and calls are 0 or more")
         self.price, self.max_usd, self.max_calls = price, max_usd, max_calls
         self.calls = self.replayed = self.prompt_tokens = self.completion_tokens = 0
-        self._held_usd = 0.0  # What the calls under way may cost.
+        self._held_usd = 0.0  # What the calls under way may cost,
+        self._lost_usd = 0.0  # and what those may have that nothing came of.
         self._lock = threading.Lock()
 
     @property
     def usd(self) -> float | None:
-        """What was spent, None where the price is not known."""
+        """What was spent at most, None where the price is not known."""
         if self.price is None:
             return None
-        return self.price.of(self.prompt_tokens, self.completion_tokens)
+        return self.price.of(self.prompt_tokens, self.completion_tokens) + self._lost_usd
 
     def hold(self, question: Question) -> float:
         """Set aside the most that a call may cost and return it; ``settle`` gives it back.
@@ -124,18 +126,32 @@ class Ledger:
                 raise BudgetError(
                     f"{self.calls:,} calls were made, all that --max-calls allows; give more"
                 )
-            spent = (self.usd or 0.0) + self._held_usd
-            if self.max_usd is not None and spent + most > self.max_usd:
-                raise BudgetError(
-                    f"${spent:.4f} is spent and the next call may cost ${most:.4f}: "
-                    f"over the ${self.max_usd:.4f} of --max-usd; give more"
-                )
+            self._check(self._held_usd, most)
             self.calls += 1
             self._held_usd += most
         return most
 
+    def lose(self, held_usd: float) -> None:
+        """Book an attempt that the server may have worked on, and that gave no reply: its most."""
+        with self._lock:
+            self._lost_usd += held_usd
+
+    def hold_again(self, held_usd: float) -> None:
+        """Make sure that a held call may be attempted once more. Raises BudgetError."""
+        with self._lock:
+            self._check(self._held_usd - held_usd, held_usd)
+
+    def _check(self, others_usd: float, most_usd: float) -> None:
+        """Refuse what may pass the cap beside what was spent and what other calls may cost."""
+        spent = (self.usd or 0.0) + others_usd
+        if self.max_usd is not None and spent + most_usd > self.max_usd:
+            raise BudgetError(
+                f"${spent:.4f} is spent and the next call may cost ${most_usd:.4f}: "
+                f"over the ${self.max_usd:.4f} of --max-usd; give more"
+            )
+
     def settle(self, held_usd: float, reply: Reply | None) -> None:
-        """Book what a call took, nothing where it failed."""
+        """Book what a call took, nothing where it failed; see ``lose``."""
         with self._lock:
             self._held_usd -= held_usd
             if reply is not None:

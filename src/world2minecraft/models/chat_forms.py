@@ -7,6 +7,7 @@ twice at most; then there is no value, and the tries tell why. Nothing is ever g
 """
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
@@ -18,7 +19,8 @@ from world2minecraft.models.chat_wire import RefusedQuestionError, UselessReplyE
 RUNGS = ("json_schema", "json_object", "text")
 REPAIRS = 2
 MAX_QUOTED = 2000  # Characters of a bad reply that it is shown again.
-CUT = "the reply was cut; be shorter"
+_THOUGHT = re.compile(r"<think(?:ing)?>(?:(?!<think).)*?</think(?:ing)?>", re.S | re.I)
+_THOUGHT_END = re.compile(r"</think(?:ing)?>", re.I)
 
 Value = TypeVar("Value")
 
@@ -138,9 +140,10 @@ def _once(
     except UselessReplyError as error:
         return Try(rung, "", None, str(error)), None
     if reply.finish == "length":
-        return Try(rung, key, reply, CUT), None
+        problem = f"the reply was cut at {model.max_tokens:,} tokens; be shorter"
+        return Try(rung, key, reply, problem), None
     try:
-        return Try(rung, key, reply), form.read(reply.text)
+        return Try(rung, key, reply), form.read(spoken(reply.text))
     except UnreadableError as error:
         return Try(rung, key, reply, str(error)), None
 
@@ -150,6 +153,19 @@ def _repair(tried: Try, form: Form[Any]) -> tuple[Turn, ...]:
     told = f"That cannot be used: {tried.problem}. {form.words}"
     spoken = Turn("assistant", (said or "(nothing that can be read)",))
     return (spoken, Turn("user", (told,)))
+
+
+def spoken(text: str) -> str:
+    """Return what a reply says, without the thoughts before it, which are no answer.
+
+    Servers that do not part them leave ``<think>`` around thoughts, or its end alone, where their
+    template has said the beginning.
+
+    Example:
+        >>> [spoken(text) for text in ("<think>B? No.</think> A", "Not B.</think>A", "<b>C</b>")]
+        [' A', 'A', '<b>C</b>']
+    """
+    return _THOUGHT_END.split(_THOUGHT.sub("", text))[-1]
 
 
 def json_of(text: str) -> dict[str, Any] | None:

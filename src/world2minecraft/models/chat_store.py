@@ -33,6 +33,7 @@ FAILURES: dict[str, type[ServerError]] = {
     "useless": UselessReplyError,
 }
 MAX_STORE_BYTES = 1 << 30
+LINE_HEADS = (b'{"failure": ', b'{"key": ')  # Keys are sorted.
 TYPES = {"text": str, "prompt_tokens": int, "completion_tokens": int, "finish": str}
 
 
@@ -108,12 +109,14 @@ class ReplyStore:
 
     def _read(self) -> None:
         data = read_bytes(self.path, MAX_STORE_BYTES)
-        whole = data.rpartition(b"\n")[0]
-        if len(whole) + 1 < len(data) and self.mode == "record":
-            self._drop_after(len(whole) + 1 if whole else 0)
+        whole, end, rest = data.rpartition(b"\n")
         for number, line in enumerate(whole.splitlines(), start=1):
             if line.strip():
                 self._take(line, number)
+        if not any(rest.startswith(head) or head.startswith(rest) for head in LINE_HEADS):
+            raise DamagedFileError(self.path, "ends with what is no reply; is it another file?")
+        if rest and self.mode == "record":
+            self._drop_after(len(whole) + len(end))
 
     def _drop_after(self, size: int) -> None:
         try:

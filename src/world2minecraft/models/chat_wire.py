@@ -4,17 +4,19 @@ A server may answer late, by drops, with a megabyte, or with anything but what w
 reply is read in pieces until it is whole, too large or too late, and nothing of it is taken
 without a look at its type. What goes wrong is one of three errors, by what helps: ask again later
 (``BusyServerError``), ask otherwise (``RefusedQuestionError``), or read nothing of it
-(``UselessReplyError``). Errors of keys and addresses are plain ``ServerError``.
+(``UselessReplyError``). Errors of keys and addresses are plain ``ServerError``. An error says
+whether the server may have been at work on the reply (``may_cost``), and never the key.
 """
 
 import json
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from world2minecraft.errors import MissingExtraError, ServerError
 from world2minecraft.models.chat_budget import CHARACTERS_A_TOKEN, estimated_tokens
-from world2minecraft.models.chat_endpoints import Endpoint
+from world2minecraft.models.chat_endpoints import NO_KEY, Endpoint
 from world2minecraft.models.chat_messages import Question, Reply
 
 MAX_REPLY_BYTES = 256 << 10  # 1,024 tokens are about 4 KiB.
@@ -22,14 +24,15 @@ MAX_TOLD = 300  # Characters of a server's own words in an error.
 MAX_TOKENS_COUNTED = 10_000_000
 BUSY = (408, 409, 425, 429, 500, 502, 503, 504, 529)
 REFUSED = (400, 413, 415, 422, 501)
+UNSENT = ("ConnectError", "ConnectTimeout", "PoolTimeout")  # Of httpx, whose name SDKs change.
 
 
 class BusyServerError(ServerError):
     """The server is busy, late or away; the same question may be answered later."""
 
-    def __init__(self, text: str, retry_after_s: float | None = None):
+    def __init__(self, text: str, retry_after_s: float | None = None, *, may_cost: bool = False):
         super().__init__(text)
-        self.retry_after_s = retry_after_s
+        self.retry_after_s, self.may_cost = retry_after_s, may_cost
 
 
 class RefusedQuestionError(ServerError):
@@ -38,6 +41,8 @@ class RefusedQuestionError(ServerError):
 
 class UselessReplyError(ServerError):
     """The server replied with what is no reply: too large, or not of the protocol."""
+
+    may_cost = True
 
 
 class ChatWire:
@@ -62,11 +67,12 @@ class ChatWire:
             raise MissingExtraError("asking a language model", "vln") from None
         self.endpoint, self.timeout_s = endpoint, timeout_s
         self._limit, self._clock, self._sdk = max_reply_bytes, clock, openai
+        self._key = endpoint.key()
         browser = openai.DefaultHttpxClient(
             event_hooks={"response": [self._refuse_failures]}, follow_redirects=False
         )
         self._client = openai.OpenAI(
-            api_key=endpoint.key(),
+            api_key=self._key,
             base_url=endpoint.url,
             timeout=timeout_s,
             max_retries=0,
@@ -77,12 +83,14 @@ class ChatWire:
     def ask(self, question: Question) -> Reply:
         """Ask once. Raises the errors of this module, or ServerError."""
         began = self._clock()
-        data = self._called(self._client.chat.completions, self._words(question))
-        return _reply(data, question, self._clock() - began)
+        with self._without_key():
+            data = self._called(self._client.chat.completions, self._words(question))
+            return _reply(data, question, self._clock() - began)
 
     def models(self) -> tuple[str, ...]:
         """Return the names of the models that the server has. Raises as ``ask``."""
-        told = self._called(self._client.models, None)
+        with self._without_key():
+            told = self._called(self._client.models, None)
         listed = told.get("data") if isinstance(told, dict) else None
         entries = [one for one in _list(listed) if isinstance(one, dict)]
         return tuple(clean(str(one.get("id", ""))) for one in entries)
@@ -90,6 +98,16 @@ class ChatWire:
     def close(self) -> None:
         """Close the connection."""
         self._client.close()
+
+    @contextmanager
+    def _without_key(self) -> Iterator[None]:
+        """Take the key out of what errors tell: some servers say it back, and errors are kept."""
+        try:
+            yield
+        except ServerError as error:
+            if self._key != NO_KEY:
+                error.args = (str(error).replace(self._key, "(the key)"),)
+            raise
 
     def _words(self, question: Question) -> dict[str, Any]:
         words: dict[str, Any] = {
@@ -113,16 +131,18 @@ class ChatWire:
                 data = self._read(response.iter_bytes(), response.headers, deadline)
         except ServerError:
             raise
-        except self._sdk.APITimeoutError:
-            raise self._late() from None
+        except self._sdk.APITimeoutError as error:
+            raise self._late(_is_sent(error)) from None
         except self._sdk.APIConnectionError as error:
             if isinstance(error.__cause__, ServerError):  # Raised by _refuse_failures.
                 raise error.__cause__ from None
             raise BusyServerError(
-                f"{self.endpoint.url} cannot be reached: {_cause(error)}"
+                f"{self.endpoint.url} cannot be reached: {_cause(error)}",
+                may_cost=_is_sent(error),
             ) from None
         except Exception as error:  # Whatever the SDK and its transport raise on odd bytes.
-            raise BusyServerError(f"{self.endpoint.url} broke off: {_cause(error)}") from None
+            text = f"{self.endpoint.url} broke off: {_cause(error)}"
+            raise BusyServerError(text, may_cost=True) from None
         try:
             return json.loads(data)
         except (ValueError, RecursionError):
@@ -142,8 +162,11 @@ class ChatWire:
                 raise self._late()
         return bytes(data)
 
-    def _late(self) -> BusyServerError:
-        return BusyServerError(f"{self.endpoint.url} took over {self.timeout_s:g} s")
+    def _late(self, is_sent: bool = True) -> BusyServerError:
+        return BusyServerError(
+            f"{self.endpoint.url} took over {self.timeout_s:g} s; --timeout gives it longer",
+            may_cost=is_sent,
+        )
 
     def _refuse_failures(self, response: Any) -> None:
         """Raise what a status says, after a look at the first bytes of the body alone."""
@@ -188,6 +211,8 @@ def _reply(told: Any, question: Question, latency_s: float) -> Reply:
     prompt, completion = (
         own if own is not None else guess for own, guess in zip(counts, guessed, strict=True)
     )
+    if (total := _count(usage, "total_tokens")) is not None and None not in counts:
+        completion = max(completion, total - prompt)  # Gemini leaves thoughts out of the others.
     finish = clean(str(first.get("finish_reason") or ""))[:40] if isinstance(first, dict) else ""
     return Reply(text, prompt, completion, finish, None in counts, round(latency_s, 3))
 
@@ -223,6 +248,11 @@ def _seconds(header: str | None) -> float | None:
 def _told(data: bytes) -> str:
     words = clean(data[:4096].decode("utf-8", "replace")).split()
     return " ".join(words)[:MAX_TOLD]
+
+
+def _is_sent(error: BaseException) -> bool:
+    """Whether a question may have reached the server before its connection failed."""
+    return type(error.__cause__).__name__ not in UNSENT
 
 
 def _cause(error: BaseException) -> str:

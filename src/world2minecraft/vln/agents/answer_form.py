@@ -18,7 +18,6 @@ THINK = (
     "First think it through inside <think> </think>. Then give the letter of your choice, and "
     "nothing else, inside <answer> </answer>."
 )
-_THOUGHT = re.compile(r"<think>.*?</think>", re.S | re.I)
 _TAGGED = re.compile(r"<answer>(.*?)</answer>", re.S | re.I)
 _LINE = re.compile(r"^\W*(?:final\s+)?answer\W*(?:is\W*)?[:=](.*)$", re.M | re.I)
 _LETTER = re.compile(r"^[\s\"'(*\[`]*([A-Ha-h])[\s\"')*\]`.:]*$")
@@ -65,16 +64,15 @@ def read_answer(text: str, options: Mapping[str, str]) -> str:
         >>> [read_answer(text, told) for text in ("b.", "<answer>A</answer>", "Turn left")]
         ['B', 'A', 'A']
     """
-    plain = _THOUGHT.sub("", text)
-    found = json_of(plain)
+    found = json_of(text)
     if found is not None and isinstance(found.get("answer"), str):
         return _option(found["answer"], options)
-    tagged, lines = _TAGGED.findall(plain), _LINE.findall(plain)
+    tagged, lines = _TAGGED.findall(text), _LINE.findall(text)
     if tagged:
         return _option(_one(tagged, options), options)
     if lines:
         return _option(_one(lines, options), options)
-    return _option(plain, options)
+    return _option(text, options)
 
 
 def _one(said: list[str], options: Mapping[str, str]) -> str:
