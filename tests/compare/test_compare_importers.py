@@ -107,7 +107,7 @@ def test_layoutvlm_names_assets_of_one_category_by_letters(tmp_path):
     names = ("lamp_A-0", "lamp_B-0", "chair-0", "chair-1")
     told = {name: here for name in names}
     (less,) = read_layouts_of(write(tmp_path / "layout.json", {**told, "chair-1": {}}))
-    assert less.skipped == ("chair-1: 'position'",) and not less.unplaced
+    assert less.skipped == ("chair-1: has no 'position'",) and not less.unplaced
     del told["chair-1"]
     (none,) = read_layouts_of(write(tmp_path / "layout.json", told))
     assert none.unplaced == ("chair-1",)
@@ -147,9 +147,10 @@ def test_the_name_of_an_asset_is_no_path(tmp_path):
 
 
 BAD_OBJECTS = [
-    (["lamp"], "lamp: list index out of range"),
-    (["lamp", {"left": 1}], "lamp: 'length'"),
-    (["window", {}], "window: 'length'"),
+    (["lamp"], "lamp: is no [category, {length, width, height, left, top, ...}]"),
+    ({"lamp": {}}, "object: is no [category, {length, width, height, left, top, ...}]"),
+    (["lamp", {"left": 1}], "lamp: has no 'length'"),
+    (["window", {}], "window: has no 'length'"),
 ]
 
 
@@ -178,6 +179,36 @@ def test_a_wild_number_is_left_out(values, reason, tmp_path):
     assert scene.skipped == (f"bed: {reason}",)
 
 
+@pytest.mark.parametrize("unit", ["px", ""])
+def test_layoutgpt_in_pixels_that_are_metres(unit, tmp_path):
+    """Its script without --normalize: numbers are metres, whatever unit is said behind them."""
+    record = gpt_record([("bed", 1, 1, 0.25, 1.6, 2, 0.5, 0)], unit="m")
+    record["prompt"] = f"Room Size: max length 4.0{unit}, max width 3.0{unit}\n"
+    (scene,) = read_layouts_of(write(tmp_path / "a.json", [record]))
+    assert np.ptp(scene.rooms[0].floor_polygon_m, axis=0) == pytest.approx([4, 3])
+    assert scene.objects[0].size_m == pytest.approx([2.0, 1.6, 0.5])
+
+
+def test_layoutgpt_in_metres_of_which_the_shorter_side_is_one(tmp_path):
+    """Its script with --unit m --normalize: the same room as in 256 pixels."""
+    sizes = {"left": 0.5, "top": 0.5, "depth": 0.1, "length": 0.4, "width": 0.5, "height": 0.2}
+    told = {"prompt": "Room Size: max length 1.00m, max width 1.70m", "object_list": []}
+    told["object_list"].append(["bed", {**sizes, "orientation": 0}])
+    (scene,) = read_layouts_of(write(tmp_path / "a.json", [told]))
+    assert np.ptp(scene.rooms[0].floor_polygon_m, axis=0) == pytest.approx([3.5, 5.95])
+    assert scene.objects[0].size_m == pytest.approx([1.75, 1.4, 0.7])
+    (half,) = read_layouts_of(tmp_path / "a.json", How(px_m=2 / 256))
+    assert np.ptp(half.rooms[0].floor_polygon_m, axis=0) == pytest.approx([2, 3.4])
+
+
+def test_a_turn_may_be_a_plain_number(tmp_path):
+    (bedroom,) = read_layouts_of(as_layoutvlm(tmp_path))
+    told = json.loads((tmp_path / "vlm/layout.json").read_text())
+    plain = {k: {**v, "rotation": v["rotation"][2]} for k, v in told.items()}
+    (scene,) = read_layouts_of(write(tmp_path / "vlm/layout.json", plain))
+    assert [one.yaw_deg for one in scene.objects] == [one.yaw_deg for one in bedroom.objects]
+
+
 def test_numbers_may_carry_their_unit(tmp_path):
     record = gpt_record([("bed", 1, 1, 0.25, 1.6, 2, 0.5, 0)])
     told = record["object_list"][0][1]
@@ -194,6 +225,9 @@ def test_numbers_may_carry_their_unit(tmp_path):
         ([{"object_list": [], "prompt": "a bedroom"}],
          "is not what its format says (record 0 says no room size: 'max length 270px, max width "
          "252px')"),
+        ([{"object_list": [["dog", [0.5, 0.5, 1.0, 0.9]]], "prompt": "a toilet left of a dog"}],
+         "is not what its format says (record 0 is the layout of a picture; rooms are in "
+         "LayoutGPT's llm_output/3D)"),
         ([{"new_object_id": "bed"}],
          "is not what its format says (has no east_wall, so the room's size is not known)"),
         ({"bed-0": {"position": [0, 0, 0]}},

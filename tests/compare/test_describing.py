@@ -14,6 +14,7 @@ from world2minecraft.compare.describing import (
     describe_photos,
     describe_scene,
     for_method,
+    layoutgpt_px_m,
     room_kind,
 )
 from world2minecraft.compare.importers.reading import Box, object_of
@@ -86,6 +87,8 @@ def test_the_form_of_each_method():
     condition = for_method("layoutgpt", SCENE, WORDS)
     assert condition.endswith("Room Size: max length 341px, max width 256px\n")
     assert "Room Type: bedroom" in condition
+    px_m = layoutgpt_px_m(SCENE)  # What comes back by this is as large as the room is.
+    assert [round(side * px_m, 2) for side in (341, 256)] == [4.0, 3.0]
     told = for_method("idesign", SCENE, WORDS)
     assert told["room_dimensions"] == [4.0, 3.0, 2.6] and told["no_of_objects"] == 4
     task = for_method("layoutvlm", SCENE, WORDS)

@@ -60,7 +60,12 @@ def run(
     Raises:
         InputError: the scene cannot be read. ServerError, BudgetError: the model cannot be asked.
     """
-    from world2minecraft.compare.describing import METHODS, describe_scene, for_method
+    from world2minecraft.compare.describing import (
+        METHODS,
+        describe_scene,
+        for_method,
+        layoutgpt_px_m,
+    )
     from world2minecraft.compare.importers import read_layouts_of
     from world2minecraft.compare.truths import true_scene
     from world2minecraft.errors import UnknownNameError, UsageError
@@ -70,6 +75,7 @@ def run(
         raise UnknownNameError("form", method, METHODS)
     if agent and method != "text":
         raise UsageError("photos tell no sizes: --agent goes with --for text")
+    more = ""
     if agent:
         chat = asked.open(agent, keep)
         text = photo_words(scene, photos, chat)
@@ -77,12 +83,15 @@ def run(
     else:
         known = true_scene(scene) if from_truth else read_layouts_of(scene)[0]
         told = for_method(method, known, describe_scene(known))
+        if method == "layoutgpt":
+            more = f" --px-m {layoutgpt_px_m(known):.6f}"
         text = told if isinstance(told, str) else json.dumps(told, indent=1) + "\n"
     if out is None:
         print(text, end="")
         return
     write_text(out, text)
-    print(f"words  {out}\nnext: give it to the method, then w2m compare layouts ITS_LAYOUT {scene}")
+    print(f"words  {out}\nnext: give it to the method, then")
+    print(f"  w2m compare layouts ITS_LAYOUT {scene}{more}")
 
 
 def photo_words(capture: Path, count: int, chat: object) -> str:

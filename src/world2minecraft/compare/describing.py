@@ -11,19 +11,20 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.compare.importers.layoutgpt import SHORTER_PX
 from world2minecraft.compare.importers.reading import clean_name
 from world2minecraft.compare.judge import prompt_text
 from world2minecraft.compare.values import ComparedScene
 from world2minecraft.errors import ServerError, UnknownNameError
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.models.chat import ChatModel
+from world2minecraft.models.chat_forms import spoken
 from world2minecraft.models.chat_messages import Picture, Turn
 from world2minecraft.types import Layout, LayoutObject, Opening, Placement
 
 METHODS = ("text", "layoutgpt", "idesign", "layoutvlm")
 AT_WALL_M = 0.25  # What is nearer to a wall stands at it.
 SIDES = ("west", "east", "south", "north")
-PX = 256
 DESCRIBE = "describe.md"
 # The first kind of which a word is in a room's things.
 KINDS = (
@@ -56,7 +57,7 @@ def describe_photos(model: ChatModel, photos: Sequence[Picture]) -> str:
         ServerError: the model cannot be asked, or says nothing. BudgetError: a cap is reached.
     """
     _, reply = model.ask((Turn("user", (prompt_text(DESCRIBE), *photos)),))
-    text = reply.text.strip()
+    text = spoken(reply.text).strip()
     if not text:
         raise ServerError(f"{model.name} says nothing of the photos; try another model")
     return f"{text}\n"
@@ -79,7 +80,7 @@ def for_method(method: str, scene: ComparedScene, words: str) -> Any:
     room = scene.rooms[0]
     size = np.ptp(room.floor_polygon_m, axis=0)
     if method == "layoutgpt":
-        length, width = (round(float(side) / float(size.min()) * PX) for side in size)
+        length, width = (round(float(side) / layoutgpt_px_m(scene)) for side in size)
         return (
             f"Condition:\nRoom Type: {room_kind(scene)}\n"
             f"Room Size: max length {length}px, max width {width}px\n"
@@ -102,6 +103,11 @@ def for_method(method: str, scene: ComparedScene, words: str) -> Any:
             "assets": {},
         }
     return words
+
+
+def layoutgpt_px_m(scene: ComparedScene) -> float:
+    """Return the metres of a pixel of what LayoutGPT lays out for a scene's first room."""
+    return float(np.ptp(scene.rooms[0].floor_polygon_m, axis=0).min()) / SHORTER_PX
 
 
 def room_kind(scene: ComparedScene) -> str:

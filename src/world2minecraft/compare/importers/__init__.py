@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.compare.importers.reading import READ_ERRORS, why
 from world2minecraft.compare.values import ComparedScene
 from world2minecraft.errors import DamagedFileError, InputError
 from world2minecraft.files import read_json
@@ -70,8 +71,8 @@ def read_layouts_of(path: Path, how: How | None = None, name: str = "") -> list[
 def _read(found: Any, path: Path, told: Any, how: How) -> list[ComparedScene]:
     try:
         scenes = found.read(path, told, how)
-    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
-        raise DamagedFileError(path, f"is not what its format says ({error})") from error
+    except READ_ERRORS as error:
+        raise DamagedFileError(path, f"is not what its format says ({why(error)})") from error
     if not scenes:
         raise DamagedFileError(path, "holds no scene")
     return scenes

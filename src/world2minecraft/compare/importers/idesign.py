@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 from world2minecraft.compare.importers.reading import (
     MOST_OBJECTS,
+    READ_ERRORS,
     Box,
     checked_count,
     clean_name,
     number,
     object_of,
     rectangle,
+    why,
 )
 from world2minecraft.compare.values import ComparedScene
 from world2minecraft.types import LayoutObject
@@ -54,8 +56,8 @@ class Format:
                 continue
             try:
                 objects.append(_object(one, name))
-            except (KeyError, TypeError, ValueError, AttributeError) as error:
-                skipped.append(f"{name}: {error}")
+            except READ_ERRORS as error:
+                skipped.append(f"{name}: {why(error)}")
         name = path.parent.name if path.stem == "scene_graph" else path.stem
         room = rectangle(*_sides(shell))
         return [ComparedScene(name, METHOD, (room,), tuple(objects), tuple(unplaced),
@@ -79,5 +81,6 @@ def _object(one: dict[str, Any], name: str) -> LayoutObject:
     place, size = one["position"], one["size_in_meters"]
     x, y, z = (number(place[axis], axis) for axis in "xyz")
     length, width, height = (number(size[key], key) for key in ("length", "width", "height"))
-    bearing = number((one.get("rotation") or {}).get("z_angle", 0.0), "z_angle")
+    turn = one.get("rotation") or {}
+    bearing = number(turn.get("z_angle", 0.0) if isinstance(turn, dict) else turn, "z_angle")
     return object_of(Box(name, (x, y, z), (width, length, height), 90 - bearing))

@@ -7,9 +7,11 @@ runs along 3D-FRONT's x and ``top`` along its z, which seen from above runs down
 the room's width less ``top``, and nothing is mirrored. At 0 degrees a front looks along ``top``:
 so four fifths of the published beds and nightstands have their back to the nearest wall.
 
-**Pixels.** The published files are in pixels and hold no metres, so a scale is assumed: 256 pixels
-are 3.5 m. With it their desks are 0.75 m high and their chairs 0.89 m. Files in metres are read as
-they are.
+**Pixels.** In the published files the shorter side of a room has 256 pixels. They hold no metres,
+so a scale is assumed: 256 pixels are 3.5 m. With it their desks are 0.75 m high and their chairs
+0.89 m. Files in metres are read as they are. The script's options make two more kinds: by
+``--unit m --normalize`` the shorter side is 1.00 m whatever the room, which is taken for those 256
+pixels; by ``--unit px`` alone nothing is normalised, and some "pixels" are as many metres.
 """
 
 import re
@@ -19,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 from world2minecraft.compare.importers.reading import (
     MOST_OBJECTS,
     MOST_SCENES,
+    READ_ERRORS,
     Box,
     checked_count,
     clean_name,
@@ -26,6 +29,7 @@ from world2minecraft.compare.importers.reading import (
     number,
     object_of,
     rectangle,
+    why,
 )
 from world2minecraft.compare.values import ComparedScene
 from world2minecraft.types import LayoutObject
@@ -36,6 +40,9 @@ if TYPE_CHECKING:
 METHOD = "LayoutGPT"
 _SIDE = r"\s*([0-9]+(?:\.[0-9]+)?)\s*(px|m)?\b"
 _SIZE = re.compile(rf"max\s+length{_SIDE}\s*,\s*max\s+width{_SIDE}", re.I)
+SHORTER_PX = 256  # Of a room that is normalised, its shorter side;
+SLACK = 0.005  # in metres it is 1, told by two decimals.
+MOST_M = 40.0  # Of a room; what has no more pixels was not normalised.
 
 
 class Format:
@@ -60,15 +67,15 @@ FORMAT = Format()
 def _scene(record: dict[str, Any], count: int, px_m: float) -> ComparedScene:
     found = _SIZE.search(str(record.get("prompt", "")))
     if found is None:
-        raise ValueError(f"record {count} says no room size: 'max length 270px, max width 252px'")
-    unit_m = 1.0 if "m" in (found[2], found[4]) else px_m
+        raise ValueError(_no_room(record, count))
+    unit_m = _unit_m(found, px_m)
     length_m, width_m = float(found[1]) * unit_m, float(found[3]) * unit_m
     objects, skipped = [], []
     for item in checked_count(record["object_list"], MOST_OBJECTS, "objects"):
         try:
             objects.append(_object(item, unit_m, width_m))
-        except (KeyError, TypeError, ValueError, IndexError) as error:
-            skipped.append(f"{_name(item)}: {error}")
+        except READ_ERRORS as error:
+            skipped.append(f"{_name(item)}: {why(error)}")
     room = rectangle(length_m, width_m, height_over(objects))
     name = clean_name(record.get("query_id", record.get("id", f"record {count}")))
     return ComparedScene(
@@ -76,11 +83,30 @@ def _scene(record: dict[str, Any], count: int, px_m: float) -> ComparedScene:
     )
 
 
+def _unit_m(found: re.Match[str], px_m: float) -> float:
+    """Return the metres of one of a record's numbers, by the sides of its room."""
+    shorter, longer = sorted(float(found[group]) for group in (1, 3))
+    if "m" in (found[2], found[4]):
+        return SHORTER_PX * px_m if abs(shorter - 1) <= SLACK else 1.0
+    return px_m if longer > MOST_M else 1.0
+
+
+def _no_room(record: dict[str, Any], count: int) -> str:
+    """Return why a record is no room: LayoutGPT lays out pictures, too."""
+    items = record.get("object_list")
+    first = items[0] if isinstance(items, list) and items else None
+    if isinstance(first, list) and len(first) == 2 and isinstance(first[1], list):
+        return f"record {count} is the layout of a picture; rooms are in LayoutGPT's llm_output/3D"
+    return f"record {count} says no room size: 'max length 270px, max width 252px'"
+
+
 def _name(item: Any) -> str:
     return clean_name(item[0] if isinstance(item, (list, tuple)) and item else None)
 
 
 def _object(item: Any, unit_m: float, width_m: float) -> LayoutObject:
+    if not (isinstance(item, (list, tuple)) and len(item) == 2 and isinstance(item[1], dict)):
+        raise ValueError("is no [category, {length, width, height, left, top, ...}]")
     told = item[1]
     length, width, height = (
         number(told[key], key) * unit_m for key in ("length", "width", "height")

@@ -21,12 +21,14 @@ from world2minecraft.compare.importers.reading import (
     FARTHEST_M,
     MOST_CORNERS,
     MOST_OBJECTS,
+    READ_ERRORS,
     USUAL_HEIGHT_M,
     Box,
     checked_count,
     clean_name,
     number,
     object_of,
+    why,
 )
 from world2minecraft.compare.values import ComparedScene
 from world2minecraft.errors import InputError
@@ -69,8 +71,8 @@ class Format:
         for key, one in told.items():
             try:
                 objects.append(_object(key, one, assets))
-            except (KeyError, TypeError, ValueError, IndexError) as error:
-                skipped.append(f"{clean_name(key)}: {error}")
+            except READ_ERRORS as error:
+                skipped.append(f"{clean_name(key)}: {why(error)}")
         names = _names(task, how.assets)
         unplaced = [clean_name(name) for name, own in names if not {name, own} & set(told)]
         room = _room(task["boundary"])
@@ -190,5 +192,6 @@ def _object(key: str, one: dict[str, Any], assets: dict[str, Any]) -> LayoutObje
         raise ValueError("has no size; give the folder of assets with --assets")
     x, y, z = (number(value, "position") for value in one["position"])
     side, deep, high = (number(box[axis], f"size {axis}") for axis in "xyz")
-    turned = number(one["rotation"][2], "rotation")
+    turn = one["rotation"]
+    turned = number(turn[2] if isinstance(turn, list) else turn, "rotation")
     return object_of(Box(_category(known, key), (x, y, z), (deep, side, high), turned))

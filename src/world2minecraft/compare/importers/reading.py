@@ -18,7 +18,8 @@ MOST_OBJECTS = 1000  # Of a scene: pairs of them are looked at.
 MOST_CORNERS = 1000
 MOST_NAME = 80
 USUAL_HEIGHT_M = 2.6  # Of a room that does not say.
-_UNIT = re.compile(r"\s*(px|m|degrees?|deg)?\s*;?\s*$")
+READ_ERRORS = (KeyError, TypeError, ValueError, AttributeError, IndexError)  # Of wrong contents.
+_UNIT = re.compile(r"\s*(px|m|met(?:er|re)s?|degrees?|deg|°)?\s*;?\s*$")
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,18 @@ def number(value: Any, what: str) -> float:
     if not math.isfinite(found):
         raise ValueError(f"{what} is no finite number")
     return found
+
+
+def why(error: BaseException) -> str:
+    """Return what is wrong with contents, of one of ``READ_ERRORS``.
+
+    Example:
+        >>> why(KeyError("length")), why(ValueError("has no size")), why(IndexError("out of range"))
+        ("has no 'length'", 'has no size', 'is not of the form (out of range)')
+    """
+    if isinstance(error, KeyError):
+        return f"has no {error}"
+    return str(error) if isinstance(error, ValueError) else f"is not of the form ({error})"
 
 
 def clean_name(value: Any) -> str:
