@@ -261,6 +261,10 @@ DAMAGE = [
     ("accuracy", []),
     ("right", {"a": 1}),
     ("right", None),
+    (
+        "accuracy",
+        {"next_view": {"base": {"share": 1, "low": 0, "high": 1, "invalid": 0, "total": 1e999}}},
+    ),
 ]
 
 
@@ -269,6 +273,11 @@ def test_a_result_of_anyone_is_checked(tmp_path, name, value):
     path = write_run(tmp_path, "tiny", "none", lambda item: "A") / "result.json"
     path.write_text(json.dumps(json.loads(path.read_text()) | {name: value}))
     with pytest.raises(InputError, match=r"is no result of|lacks what a table shows"):
+        read_result(tmp_path)
+
+
+def test_a_run_that_is_not_done_is_told(tmp_path):
+    with pytest.raises(InputError, match=r"result.json: is not there; w2m vln run and w2m vln ev"):
         read_result(tmp_path)
 
 

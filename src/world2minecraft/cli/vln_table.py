@@ -24,6 +24,7 @@ def run(runs: Runs, markdown: Markdown = False) -> None:
         InputError: a run has no result.
     """
     from world2minecraft.vln.running.tables import (
+        HEADS_NOTE,
         answers_table,
         markdown_of,
         paired_table,
@@ -37,7 +38,7 @@ def run(runs: Runs, markdown: Markdown = False) -> None:
     walks = [one for one in results if one["kind"] == "walks"]
     answers = [one for one in results if one["kind"] == "answers"]
     if walks:
-        print(write(walks_table(walks)))
+        print(f"{write(walks_table(walks))}\n\n{HEADS_NOTE}")
     if answers:
         print("\n" * bool(walks) + write(answers_table(answers)))
         print("\npercent right, with the interval (Wilson, 95 %)")

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, UsageError
+from world2minecraft.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.files import read_json
 from world2minecraft.vln.agents.choice import BESIDE
 from world2minecraft.vln.running.evaluating import COMPOSITIONS, RESULT_FILE, TRAININGS
@@ -19,6 +19,10 @@ from world2minecraft.vln.values import TASKS
 
 MAX_RESULT_BYTES = 256 << 20
 _WALKED = ("ne_m", "spl", "soft_spl", "ndtw", "sdtw", "cls", "collisions", "steps")
+HEADS_NOTE = (
+    "NE: metres on foot still to go; SR: share that said STOP within so many metres; SPL and SDTW "
+    "at 3 m; docs/vln-scores.md has all heads"
+)
 _TITLES = {"next_view": "Next-View", "next_action": "Next-Action"}
 _HEADS = ("Base", "Extend", "Combined")
 
@@ -32,13 +36,16 @@ def read_result(path: str | Path) -> dict[str, Any]:
         InputError: it is missing. DamagedFileError: it is no result.
     """
     place = Path(path)
-    place = place / RESULT_FILE if place.is_dir() else place
+    if place.is_dir():
+        place = place / RESULT_FILE
+        if not place.is_file():
+            raise InputError(place, "is not there; w2m vln run and w2m vln evaluate end with one")
     told = read_json(place, MAX_RESULT_BYTES)
     if not isinstance(told, dict) or told.get("kind") not in ("walks", "answers"):
         raise DamagedFileError(place, "is no result of w2m vln run or evaluate")
     try:
         _check(told)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         raise DamagedFileError(place, f"lacks what a table shows ({error})") from error
     return told
 
