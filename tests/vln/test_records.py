@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -17,6 +18,7 @@ from world2minecraft.vln.records import (
     read_items,
     read_trajectories,
     record_of,
+    scene_place,
     write_episodes,
     write_items,
     write_trajectories,
@@ -133,7 +135,7 @@ def test_deep_json_is_refused():
 def test_sizes_come_before_memory(tmp_path, monkeypatch):
     write_items(tmp_path / "items.jsonl", ITEMS)
     monkeypatch.setattr(records, "MAX_LINE_BYTES", 100)
-    with pytest.raises(LimitError, match="line 1: is too long"):
+    with pytest.raises(LimitError, match="line 1: has over 100 bytes"):
         read_items(tmp_path)
     monkeypatch.setattr(records, "MAX_FILE_BYTES", 100)
     with pytest.raises(LimitError, match="at most 100 are read"):
@@ -141,7 +143,9 @@ def test_sizes_come_before_memory(tmp_path, monkeypatch):
 
 
 def test_a_missing_file_is_told(tmp_path):
-    with pytest.raises(InputError, match="items.jsonl: cannot be read"):
+    with pytest.raises(
+        InputError, match="items.jsonl: is not there; w2m vln build SCENE --out SET"
+    ):
         read_items(tmp_path)
 
 
@@ -160,3 +164,16 @@ def test_what_is_not_sound_is_not_written(tmp_path):
 def test_a_name_that_leaves_the_folder_is_refused(name):
     with pytest.raises(UsageError, match="must be a path under the set's folder"):
         check_image_name(name)
+
+
+def test_a_set_that_was_moved_finds_its_scenes(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for place in ("worlds/here", "set/beside", "set/scenes/house_01"):
+        (tmp_path / place).mkdir(parents=True)
+    found = {
+        "worlds/here": "worlds/here",
+        "beside": "set/beside",
+        "old/set/scenes/house_01": "set/scenes/house_01",
+        "old/gone": "old/gone",  # So that an error names what the episode says.
+    }
+    assert {name: scene_place(name, Path("set")).as_posix() for name in found} == found

@@ -159,6 +159,15 @@ def test_what_is_wrong_is_told_in_a_line(
     assert text in told and told.count("\n") == 1
 
 
+def test_a_run_is_not_written_over_what_it_walks(tmp_path, capsys):
+    kept = "not looked at"
+    (tmp_path / "episodes.jsonl").write_text(kept)
+    for scene in (tmp_path, tmp_path / "episodes.jsonl"):
+        assert cli.run(["vln", "run", str(scene), "--out", str(tmp_path)]) == 2
+        assert "would be written over" in capsys.readouterr().err
+    assert (tmp_path / "episodes.jsonl").read_text() == kept
+
+
 def test_a_set_is_evaluated_and_told(tmp_path, capsys):
     items = [next_view("flat", step, "val_unseen") for step in (2, 3)]
     items += [next_action("flat", 7, "val_seen"), next_action("flat", 0, "train")]

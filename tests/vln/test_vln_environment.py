@@ -1,5 +1,6 @@
 """The environment: gymnasium's own checks, seeds, rewards, scores, and errors that teach."""
 
+import dataclasses
 import tomllib
 import warnings
 from importlib import import_module
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.vln.environment import ENV_ID
 from world2minecraft.vln.environment.env import VlnEnv
 from world2minecraft.vln.environment.senses import SENSES, Eyes
@@ -179,6 +180,7 @@ def test_a_longer_list_of_episodes_begins_with_the_shorter(flat):
         ({"observations": []}, UsageError, "observations are one or more of rgb, depth"),
         ({"move_set": "vln"}, UnknownNameError, "no set of moves is named 'vln'; did you mean"),
         ({"max_steps": 0}, UsageError, "max_steps is 1 or more, not 0"),
+        ({"success_m": 0}, UsageError, "success_m is a length above 0, in metres, not 0"),
         ({"span_m": (5, 2)}, UsageError, "span_m is the shortest and the longest way in metres"),
         ({"body": 0.5}, UsageError, "an open scene has its body, box and scale; leave them out"),
         ({"episodes": []}, UsageError, "none of 0 episodes is of the scene 'flat'; they are of"),
@@ -195,11 +197,39 @@ def test_what_reset_and_step_cannot_do_is_told(flat):
         env.reset(options={"gaol": "piano"})
     with pytest.raises(UsageError, match="the option 'episode' needs episodes"):
         env.reset(options={"episode": 1})
+    given = env_of(flat, observations=["pose"], episodes=random_episodes(flat, 2))
+    for wanted in (2, None, 0.5):
+        with pytest.raises(
+            UsageError, match=f"an episode is 0 to 1, or an episode_id, not {wanted}"
+        ):
+            given.reset(options={"episode": wanted})
     env.reset(seed=0)
-    with pytest.raises(UsageError, match=r"an action is one of Discrete\(4\), not 7"):
+    told = r"an action is one of Discrete\(4\), not 7: 0 stop, 1 forward, 2 left, 3 right"
+    with pytest.raises(UsageError, match=told):
         env.step(7)
     with pytest.raises(UsageError, match="a picture has 1 to 4096 pixels a side, not 0x24"):
         Eyes(0, 24)
+
+
+def test_an_instruction_of_any_alphabet_is_in_its_space(flat, monkeypatch):
+    """Furniture that a user added, and rooms of a plan, are called as he calls them."""
+    named = [dataclasses.replace(one, name=f"Küchentisch {n}") for n, one in
+             enumerate(flat.landmarks)]  # fmt: skip
+    monkeypatch.setitem(vars(flat), "landmarks", tuple(named))
+    env = env_of(flat, observations=["instruction"])
+    seen, _ = env.reset(seed=0, options={"goal": "Küchentisch 0"})
+    assert "Küchentisch 0" in seen["instruction"] and seen in env.observation_space
+
+
+def test_an_episode_that_no_way_solves_is_refused_when_it_begins(flat):
+    (fine,) = random_episodes(flat, 1)
+    walled = dataclasses.replace(fine, episode_id="walled", start=Stance(1.0, 65.0, 60.0))
+    env = env_of(flat, episodes=[walled, fine], observations=["pose"])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(type(flat), "distance_m", lambda *_: float("inf"))
+        with pytest.raises(InputError, match="no way leads from the start of episode walled"):
+            env.reset(seed=0)
+    assert env.reset()[1]["episode_id"] == fine.episode_id
 
 
 def test_the_entry_point_of_gymnasium_is_there():

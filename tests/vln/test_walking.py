@@ -84,6 +84,31 @@ def test_a_trace_tells_all_of_a_walk(tmp_path):
     assert [part["image_url"]["url"] for part in shown if "image_url" in part][-1] == view.url
 
 
+def test_the_views_of_a_longer_walk_before_are_not_kept(tmp_path):
+    forward, stop = Decision((F,)), Decision((S,))
+    for decisions in ((forward, forward, stop), (stop,)):
+        walk_episode(
+            OpenField(), an_episode(), Script(*decisions), observers=[TraceWriter(tmp_path)]
+        )
+    assert [path.name for path in (tmp_path / "views").iterdir()] == ["0000.jpg"]
+    assert len(read_trace(tmp_path / "trace.jsonl")) == 3
+
+
+def test_an_episode_that_cannot_be_walked_is_told_before_the_first_is(tmp_path):
+    class Walled(OpenField):
+        def distance_m(self, stance, goals):
+            return float("inf") if goals[0][0] > 4 else super().distance_m(stance, goals)
+
+    agent = Script(Decision((S,)))
+    episodes = [an_episode(), an_episode(name="lost", goal=(9.0, 64.0, 0.0))]
+    told = "field: no way leads from the start of episode lost to its goal; were the blocks changed"
+    with pytest.raises(InputError, match=told):
+        run_course(episodes, lambda _: Walled(), agent, observers=lambda *_: ())
+    assert not agent.sights
+    with pytest.raises(InputError, match=told):
+        walk_episode(Walled(), episodes[1], agent)
+
+
 def test_a_trace_of_anyone_is_checked(tmp_path):
     (tmp_path / "trace.jsonl").write_text('{"a": 1}\n[1]\n')
     with pytest.raises(InputError, match="line 2 is no object"):

@@ -125,7 +125,8 @@ def _built(
     from world2minecraft.machine import usable_cores
     from world2minecraft.run_folder import check_writable
     from world2minecraft.vln.data.building import build_set
-    from world2minecraft.vln.data.made_scenes import SCENES_FOLDER, make_scenes
+    from world2minecraft.vln.data.made_scenes import make_scenes
+    from world2minecraft.vln.records import SCENES_FOLDER
 
     check_writable(out)
     compiling_note()

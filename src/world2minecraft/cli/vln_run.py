@@ -113,6 +113,7 @@ def run(
     from world2minecraft.vln.running.asking import Wish
 
     folder = out or option.folder_of(agent)
+    _check_apart(folder, scene)
     chats: list[Any] = []
 
     def chat() -> Any:
@@ -126,6 +127,16 @@ def run(
         episodes = _episodes(scene, wish, count, grounds)
         told = _walk(folder, episodes, grounds, walker, seed, video, chats)
     _say(folder, told, episodes, video, chats)
+
+
+def _check_apart(folder: Path, scene: Path) -> None:
+    """Refuse to write what was walked over the very episodes that are walked."""
+    from world2minecraft.errors import UsageError
+    from world2minecraft.vln.records import EPISODES
+
+    source = scene if scene.suffix == ".jsonl" else scene / EPISODES
+    if source.is_file() and source.resolve() == (folder / EPISODES).resolve():
+        raise UsageError(f"--out {folder} would be written over {source}; name another folder")
 
 
 class _Grounds:
@@ -171,8 +182,10 @@ class _Grounds:
 
 
 def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "list[Episode]":
+    from dataclasses import replace
+
     from world2minecraft.errors import UsageError
-    from world2minecraft.vln.records import EPISODES, read_episodes
+    from world2minecraft.vln.records import EPISODES, read_episodes, scene_place
     from world2minecraft.vln.running.asking import episode_of
 
     if scene.suffix == ".jsonl" or (scene / EPISODES).is_file():
@@ -181,7 +194,8 @@ def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "
         found = read_episodes(scene)[:count]
         if not found:
             raise UsageError(f"{scene} has no episode")
-        return found
+        folder = scene if scene.is_dir() else scene.parent
+        return [replace(one, scene=str(scene_place(one.scene, folder))) for one in found]
     if not wish.instruction:
         raise UsageError('say what to do, such as w2m vln run OUT "Go to the table"')
     return [episode_of(grounds.scene(str(scene)), wish)]
@@ -253,10 +267,10 @@ def _place(episode: "Episode", episodes: "list[Episode]") -> str:
 def _say(
     folder: Path, told: dict[str, Any], episodes: "list[Episode]", video: bool, chats: list[Any]
 ) -> None:
-    from world2minecraft.vln.running.tables import text_of, walks_table
+    from world2minecraft.vln.running.tables import HEADS_NOTE, text_of, walks_table
 
     print()
-    print(text_of(walks_table([told])))
+    print(f"{text_of(walks_table([told]))}\n{HEADS_NOTE}")
     if chats:
         print(f"asked: {option.cost_line(chats[0])}")
     place = folder / _place(episodes[0], episodes)

@@ -28,6 +28,8 @@ def pressed_move(window: Window, patience_s: float = PATIENCE_S) -> Move:
         try:
             key = window.keys.get(timeout=patience_s)
         except queue.Empty:
-            raise UsageError(f"nobody pressed a key in {patience_s:g} s; {window.link}") from None
+            raise UsageError(
+                f"nobody pressed a key in {patience_s:g} s; {window.link} is the page for them"
+            ) from None
         if key in KEYS:
             return KEYS[key]

@@ -25,6 +25,7 @@ ITEMS = "items.jsonl"
 TRAJECTORIES = "trajectories.jsonl"
 EPISODES = "episodes.jsonl"
 ABOUT = "dataset.json"
+SCENES_FOLDER = "scenes"  # Of a set, where its scenes were made for it.
 
 # A set of the paper's size has 3,542 items of about 2 kB.
 MAX_FILE_BYTES = 1 << 30
@@ -167,6 +168,21 @@ def check_episode(episode: Episode) -> None:
         raise UsageError(f"max_steps: is {episode.max_steps}, not 1 to 100000")
 
 
+def scene_place(scene: str, folder: Path) -> Path:
+    """Return where an episode's scene lies: as its path says, or from the folder of its set.
+
+    A set that was moved brings along the scenes that were made for it, in its ``SCENES_FOLDER``.
+
+    Args:
+        scene: the path that the episode says.
+        folder: of the set.
+    """
+    stated = Path(scene)
+    own = folder / SCENES_FOLDER / stated.name
+    places = (stated, folder / stated, own)
+    return next((place for place in places if place.exists()), stated)
+
+
 def check_image_name(name: str) -> None:
     """Refuse a name of an image that is not a plain path under the folder of the set.
 
@@ -235,10 +251,16 @@ def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
             number = 0
             while line := stream.readline(MAX_LINE_BYTES + 1):
                 number += 1
-                if len(line) > MAX_LINE_BYTES or number > MAX_RECORDS:
-                    raise LimitError(path, f"line {number}: is too long, or one too many")
+                if len(line) > MAX_LINE_BYTES:
+                    raise LimitError(path, f"line {number}: has over {MAX_LINE_BYTES:,} bytes")
+                if number > MAX_RECORDS:
+                    raise LimitError(
+                        path, f"has over {MAX_RECORDS:,} lines, the most that are read"
+                    )
                 if line.strip():
                     yield number, line
+    except FileNotFoundError as error:
+        raise InputError(path, "is not there; w2m vln build SCENE --out SET writes it") from error
     except OSError as error:
         raise InputError(path, f"cannot be read: {error.strerror or error}") from error
 

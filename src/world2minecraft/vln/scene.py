@@ -263,7 +263,12 @@ class VlnScene:
             floor_m2 = sum(room.floor_m2 for room in rooms)
             if floor_m2 >= LEAST_FLOOR_M2 or (rooms and (body or size) == (body or BODIES[-1])):
                 return size, graph, rooms
-        raise InputError(self.path, "has no floor that a body can stand on")
+        size = min(BODIES) if body is None else body
+        raise InputError(
+            self.path,
+            f"has no floor that a body of {size:g} times a person can stand on; a smaller one may, "
+            "or a box around its rooms",
+        )
 
     def _room_of_point(self, point_m: np.ndarray) -> int:
         """Return the room of a thing: that of the place nearest to it on the floor under it."""

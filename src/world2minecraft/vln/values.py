@@ -5,11 +5,12 @@ looks south, to +z, and grows clockwise from above; pitch grows downward; degree
 name ends in ``_m`` are metres of the room.
 """
 
+import math
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
-from world2minecraft.errors import UsageError
+from world2minecraft.errors import InputError, UsageError
 
 INSTRUCTION_SOURCES = ("template", "human", "llm")
 LEVELS = ("goal", "route", "landmark")
@@ -110,6 +111,20 @@ class Episode:
         _known("split", self.split, SPLITS)
         if not self.goals:
             raise UsageError(f"episode {self.episode_id} has no goal")
+
+
+def check_reachable(episode: Episode, distance_m: float) -> None:
+    """Refuse an episode from whose start no way leads to its goal: nothing of it can be scored.
+
+    Raises:
+        InputError: ``distance_m``, the way on foot in metres, is infinite.
+    """
+    if not math.isfinite(distance_m):
+        raise InputError(
+            episode.scene,
+            f"no way leads from the start of episode {episode.episode_id} to its goal; were the "
+            "blocks changed since? Make episodes anew, with w2m vln build",
+        )
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """Recorded walks: what was walked comes back from a file, and files of others do no harm."""
 
 import json
+import shutil
 from collections import Counter
 
 import numpy as np
@@ -84,6 +85,12 @@ def test_a_run_of_an_agent_is_a_walk(flat, flat_path, tmp_path):
     assert scene_ids_of(out) == {"flat"}
     times = [one.t_s for one in walked]
     assert times == sorted(set(times))
+    for number in range(2):  # A run of a set lies so: a walk of each, and no way between them.
+        place = tmp_path / "many" / "episodes" / f"{number:05d}"
+        place.mkdir(parents=True)
+        shutil.copy(out / "trace.jsonl", place)
+    first, second = recorded_tours(flat, [tmp_path / "many"])
+    assert len(first) == len(second) == len(walked) and scene_ids_of(tmp_path / "many") == {"flat"}
 
 
 def test_who_flies_or_stands_on_a_table_is_left_out(flat):

@@ -25,7 +25,7 @@ class OracleAgent:
     def decide(self, sight: Sight) -> Decision:
         """Return the next move of the plan; after a collision a new plan is made."""
         if self._guide is None:
-            raise UsageError("the oracle begins with a task")
+            raise UsageError("call begin(task) before decide(sight)")
         if not self._left or any(collided for _, collided in sight.done):
             self._left = self._guide.expert(sight.stance)
         move, self._left = self._left[0], self._left[1:]
@@ -53,7 +53,7 @@ class ShortestAgent:
         """Return the first move of the best turn and step, STOP where none is nearer."""
         guide = self._guide
         if guide is None:
-            raise UsageError("this agent begins with a task")
+            raise UsageError("call begin(task) before decide(sight)")
         here = guide.distance_m(sight.stance)
         if here <= NEAR_M:
             return Decision((Move.STOP,))

@@ -42,7 +42,7 @@ class HumanAgent:
             UsageError: nobody pressed a key for long.
         """
         if self._task is None:
-            raise UsageError("an agent begins with a task")
+            raise UsageError("call begin(task) before decide(sight)")
         self.window.show(sight.colour, self._told(self._task, sight))
         return Decision((pressed_move(self.window, self.patience_s),))
 

@@ -85,7 +85,7 @@ class ModelAgent:
         """
         task = self._task
         if task is None:
-            raise UsageError("an agent begins with a task")
+            raise UsageError("call begin(task) before decide(sight)")
         self._stances.append(sight.stance)
         self._done = (self._done + list(sight.done))[-MOST_DONE:]
         moment = self._moment(task, sight)

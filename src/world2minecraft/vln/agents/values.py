@@ -79,7 +79,10 @@ class Decision:
 
     def __post_init__(self):
         if self.outcome not in OUTCOMES or bool(self.moves) != (self.outcome == "moves"):
-            raise ValueError(f"{self.outcome!r} with {len(self.moves)} moves is no decision")
+            raise ValueError(
+                f"{self.outcome!r} with {len(self.moves)} moves is no decision: there are moves "
+                "where the outcome is moves, and none where it is invalid or failed"
+            )
         if Move.STOP in self.moves[:-1]:
             raise ValueError("nothing comes after STOP")
 

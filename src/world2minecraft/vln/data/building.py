@@ -116,7 +116,10 @@ def build_set(
     kinds = {str(path): composition_of(path) for path in paths}
     wanted = {path: kind for path, kind in kinds.items() if how.composition in ("combined", kind)}
     if not wanted:
-        raise UsageError(f"none of the {len(kinds)} scenes is of composition {how.composition}")
+        raise UsageError(
+            f"none of the {len(kinds)} scenes is of composition {how.composition}: base are runs "
+            "of w2m reconstruct, extend all other worlds"
+        )
     scene_of = _names(list(wanted))
     unseen = 0.0 if how.paper_split else how.unseen_share
     named = {scene_of[path]: kind for path, kind in wanted.items()}
@@ -136,7 +139,10 @@ def build_set(
     items = without_shared_pictures(items_of(works, how.work.seed))
     items = cut_as_the_paper(items, how.paper_split) if how.paper_size else items
     if not items:
-        raise UsageError("no scene gave an item: they lack things to go to, or floor to walk on")
+        raise UsageError(
+            "no scene gave an item: they lack things to go to, or floor to walk on; name furnished "
+            "ones, or have some made: --rooms 3"
+        )
     _write(Path(out), how, works, items, splits, {scene_of[path]: path for path in wanted})
     return Built(items, works, leaks_of(items), [path for path in kinds if path not in wanted])
 

@@ -21,7 +21,6 @@ from world2minecraft.rooms.worlds import house_of, write_house
 from world2minecraft.vln.data.touring import Tourist
 from world2minecraft.vln.scene import open_scene
 
-SCENES_FOLDER = "scenes"  # Of a set.
 MOST_MADE, MOST_CHANCES = 1_000, 1_000_000
 TRIES = 5  # Of a room in which a scan leaves no way between things.
 _FINISHED = {"room": "report.json", "house": "house.json"}  # What is written last.

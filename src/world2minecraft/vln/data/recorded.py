@@ -40,9 +40,8 @@ def scene_ids_of(path: str | Path) -> set[str]:
 
     Raises: as ``recorded_tours``.
     """
-    place = _trace_in(path)
-    if place is not None:
-        return {str(_trace(place)[0].get("scene", ""))}
+    if traces := _traces_in(path):
+        return {str(_trace(place)[0].get("scene", "")) for place in traces}
     return {one.scene_id for one in read_tour(path)}
 
 
@@ -53,7 +52,7 @@ def recorded_tours(
 
     Args:
         scene: where they were recorded; lines of other scenes are left out.
-        paths: tour files, JSONL or CSV, and folders of ``w2m vln run``.
+        paths: tour files, JSONL or CSV, and folders of ``w2m vln run``, of one walk or of many.
         at: what x, y, z is in lines that do not say it.
 
     Raises:
@@ -61,8 +60,8 @@ def recorded_tours(
             too large.
     """
     tours = []
-    for path in paths:
-        own = [one for one in _frames(path, scene, at) if one.scene_id in ("", scene.scene_id)]
+    for frames in (some for path in paths for some in _streams(path, scene, at)):
+        own = [one for one in frames if one.scene_id in ("", scene.scene_id)]
         for name in dict.fromkeys(one.tour_id for one in own):
             tours.append(_in_time([one for one in own if one.tour_id == name]))
     named = [
@@ -110,12 +109,12 @@ def streams_of(paths: Sequence[str], scene_ids: Sequence[str]) -> dict[str, tupl
     return {name: tuple(dict.fromkeys(own)) for name, own in found.items()}
 
 
-def _frames(path: str | Path, scene: VlnScene, at: At) -> list[StreamFrame]:
-    place = _trace_in(path)
-    if place is not None:
-        return _frames_of_trace(_trace(place), place)
+def _streams(path: str | Path, scene: VlnScene, at: At) -> list[list[StreamFrame]]:
+    """Return the frames of a tour file, or of each walk of a run."""
+    if traces := _traces_in(path):
+        return [_frames_of_trace(_trace(place), place) for place in traces]
     eye = eye_height_blocks(scene.blocks_per_metre)
-    return [frame_of(one, eye) for one in read_tour(path, at)]
+    return [[frame_of(one, eye) for one in read_tour(path, at)]]
 
 
 def _in_time(frames: list[StreamFrame]) -> list[StreamFrame]:
@@ -125,11 +124,13 @@ def _in_time(frames: list[StreamFrame]) -> list[StreamFrame]:
     return sorted(frames, key=lambda one: one.t_s)
 
 
-def _trace_in(path: str | Path) -> Path | None:
+def _traces_in(path: str | Path) -> list[Path]:
+    """Return the traces of a run, one a walk; none where the path is a tour file."""
     place = Path(path)
     if place.is_dir():
-        return place / TRACE
-    return place if place.name == TRACE else None
+        several = sorted(place.glob(f"episodes/*/{TRACE}"))
+        return several if several and not (place / TRACE).is_file() else [place / TRACE]
+    return [place] if place.name == TRACE else []
 
 
 def _trace(path: Path) -> list[dict[str, Any]]:

@@ -51,7 +51,10 @@ class Discrete:
     def act(self, action: Any) -> tuple[bool, list[Stance], bool]:
         """Make a move; of a run ``(move, count - 1)``, moves until one meets something."""
         if not self.space.contains(action):
-            raise UsageError(f"an action is one of {self.space}, not {action!r}")
+            moves = ", ".join(f"{int(move)} {move.name.lower()}" for move in Move)
+            runs = f", then 0 to {MOST_RUN - 1} for moves beyond the first"
+            more = runs if self.move_set.is_macro else ""
+            raise UsageError(f"an action is one of {self.space}, not {action!r}: {moves}{more}")
         values = np.atleast_1d(np.asarray(action, np.int64)).tolist()
         move, count = Move(values[0]), values[1] + 1 if len(values) > 1 else 1
         if move == Move.STOP:

@@ -1,5 +1,6 @@
 """Which episode comes next: of a file in its order, to a thing that was asked for, or any."""
 
+import operator
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -46,8 +47,10 @@ class Drawing:
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """The instructions of the given episodes."""
-        return tuple(episode.instruction.text for episode in self.given or ())
+        """The instructions of the given episodes, and all names that new ones may have."""
+        given = [episode.instruction.text for episode in self.given or ()]
+        things = [one.name for one in (*self.scene.landmarks, *self.scene.rooms)]
+        return (*given, *things)
 
     def rewind(self, seed: int) -> None:
         """Go on from the given episode of a number, counted round."""
@@ -94,16 +97,23 @@ class Drawing:
 
     def _asked(self, wanted: Any) -> Episode:
         if self.given is None:
-            raise UsageError("the option 'episode' needs episodes; make the environment with them")
+            raise UsageError(
+                "the option 'episode' needs episodes; make the environment with episodes=FILE"
+            )
         if isinstance(wanted, str):
             names = {episode.episode_id: episode for episode in self.given}
             if wanted not in names:
                 raise UnknownNameError("episode", wanted, names)
             return names[wanted]
-        if not 0 <= int(wanted) < len(self.given):
-            raise UsageError(f"there are episodes 0 to {len(self.given) - 1}, not {wanted}")
-        self._next = int(wanted) + 1
-        return self.given[int(wanted)]
+        try:
+            number = operator.index(wanted)
+        except TypeError:
+            number = -1
+        if not 0 <= number < len(self.given):
+            most = len(self.given) - 1
+            raise UsageError(f"an episode is 0 to {most}, or an episode_id, not {wanted!r}")
+        self._next = number + 1
+        return self.given[number]
 
 
 def _of_scene(

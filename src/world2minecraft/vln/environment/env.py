@@ -15,7 +15,7 @@ from world2minecraft.vln.environment.senses import USUAL, Eyes, Senses
 from world2minecraft.vln.episodes import score
 from world2minecraft.vln.moves import named_set
 from world2minecraft.vln.scene import VlnScene, open_scene
-from world2minecraft.vln.values import Episode, MoveSet, Stance
+from world2minecraft.vln.values import Episode, MoveSet, Stance, check_reachable
 from world2minecraft.vln.window import Window
 
 ACTIONS = ("discrete", "continuous")
@@ -77,9 +77,12 @@ class VlnEnv(gymnasium.Env):
             raise UnknownNameError("render mode", str(render_mode), self.metadata["render_modes"])
         if max_steps is not None and max_steps < 1:
             raise UsageError(f"max_steps is 1 or more, not {max_steps}")
+        if not success_m > 0:
+            raise UsageError(f"success_m is a length above 0, in metres, not {success_m:g}")
         self.scene = _opened(scene, body, box, blocks_per_metre)
         self.drawing = Drawing(self.scene, episodes, split, named_set(move_set).name, span_m)
-        self.senses = Senses(self.scene, observations, eyes or Eyes(), self.drawing.texts)
+        texts = self.drawing.texts if "instruction" in observations else ()
+        self.senses = Senses(self.scene, observations, eyes or Eyes(), texts)
         self.acting: Acting = self._acting(actions == "continuous", named_set(move_set), sliding)
         self.observation_space, self.action_space = self.senses.space, self.acting.space
         self.max_steps, self.success_m = max_steps or MOST_STEPS[actions], success_m
@@ -101,11 +104,14 @@ class VlnEnv(gymnasium.Env):
 
         Raises:
             UsageError: an option is not known, or no such episode can be drawn.
+            InputError: no way leads from the start of a given episode to its goal.
         """
         super().reset(seed=seed)
         if seed is not None:
             self.drawing.rewind(seed)
-        self.episode = self.drawing.draw(self.np_random, options or {})
+        episode = self.drawing.draw(self.np_random, options or {})
+        check_reachable(episode, self.scene.distance_m(episode.start.feet, episode.goals))
+        self.episode = episode
         self.acting.begin(self.episode.start)
         self.path, self.steps, self.collisions = [self.episode.start], 0, 0
         self._distance_m = self.scene.distance_m(self.episode.start.feet, self.episode.goals)

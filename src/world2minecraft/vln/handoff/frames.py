@@ -14,6 +14,7 @@ import numpy as np
 from world2minecraft.coordinates import ROOM_AXES_TO_BLOCK, apply
 from world2minecraft.errors import DamagedFileError
 from world2minecraft.files import read_json
+from world2minecraft.vln.records import scene_place
 from world2minecraft.vln.values import Stance
 
 SCENE_FILE = "scene.json"
@@ -23,20 +24,19 @@ def block_to_habitat(scene: str, set_folder: Path, metres_per_block: float) -> n
     """Return the 4x4 from world blocks to a scene's stage in Habitat.
 
     Args:
-        scene: the path that an episode says, as it is or from the set's folder.
+        scene: the path that an episode says, see ``scene_place``.
         set_folder: of the set.
         metres_per_block: of a scene without a ``scene.json``.
 
     Raises:
         DamagedFileError: there is a ``scene.json``, and it says no transform.
     """
-    place = Path(scene)
-    for base in (place, set_folder / place):
-        for folder in (base, base / "build", base.parent):
-            if (folder / SCENE_FILE).is_file():
-                room_to_habitat = np.eye(4)
-                room_to_habitat[:3, :3] = ROOM_AXES_TO_BLOCK
-                return room_to_habitat @ _block_to_room(folder / SCENE_FILE)
+    place = scene_place(scene, set_folder)
+    for folder in (place, place / "build", place.parent):
+        if (folder / SCENE_FILE).is_file():
+            room_to_habitat = np.eye(4)
+            room_to_habitat[:3, :3] = ROOM_AXES_TO_BLOCK
+            return room_to_habitat @ _block_to_room(folder / SCENE_FILE)
     return np.diag([metres_per_block] * 3 + [1.0])
 
 

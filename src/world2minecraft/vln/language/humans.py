@@ -58,7 +58,10 @@ def with_annotations(
     of = {one.trajectory_id: one for one in trajectories}
     for trajectory_id, instruction in annotations:
         if trajectory_id not in of:
-            raise InputError(source, f"speaks of trajectory {trajectory_id!r}, which is not there")
+            some = f"; one that is: {min(of)}" if of else ""
+            raise InputError(
+                source, f"speaks of trajectory {trajectory_id!r}, which is not there{some}"
+            )
         one = of[trajectory_id]
         if instruction not in one.instructions:
             of[trajectory_id] = replace(one, instructions=(*one.instructions, instruction))

@@ -37,14 +37,23 @@ def episode_of(scene: VlnScene, wish: Wish) -> Episode:
         InputError: nobody can stand before the goal, or no way leads there.
     """
     if len(wish.instruction) > MAX_INSTRUCTION:
-        raise UsageError(f"an instruction has at most {MAX_INSTRUCTION:,} characters")
+        count = len(wish.instruction)
+        raise UsageError(
+            f"an instruction has at most {MAX_INSTRUCTION:,} characters, not {count:,}; shorten it"
+        )
     target = named_in(scene, wish.goal or wish.instruction)
     goals = scene.goals_at(target)
     if not goals:
-        raise InputError(scene.path, f"nobody can stand before the {target.name}")
+        raise InputError(
+            scene.path,
+            f"nobody can stand before the {target.name}; name another thing, or make room there",
+        )
     start = _looking_in(scene) if wish.start is None else _standing(scene, wish.start)
     if scene.distance_m(start.feet, goals) == float("inf"):
-        raise InputError(scene.path, f"no way leads from the start to the {target.name}")
+        raise InputError(
+            scene.path,
+            f"no way leads from the start to the {target.name}; begin elsewhere: --start X,Y,Z",
+        )
     return Episode(
         episode_id="wish",
         scene=scene.path,

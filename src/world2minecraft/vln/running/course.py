@@ -15,7 +15,7 @@ from world2minecraft.vln.running.ground import Ground
 from world2minecraft.vln.running.trace import score_told
 from world2minecraft.vln.running.walking import Observer, Walk, walk_episode
 from world2minecraft.vln.scores import summarise
-from world2minecraft.vln.values import Episode
+from world2minecraft.vln.values import Episode, check_reachable
 
 Observers = Callable[[Episode, Ground], Sequence[Observer]]
 
@@ -30,11 +30,16 @@ def run_course(
 ) -> tuple[list[Walk], dict[str, list[Walk]]]:
     """Walk episodes, and return the agent's walks and those beside them by name.
 
-    Raises what ``walk_episode`` raises.
+    Raises:
+        InputError: one of them cannot be walked; this is found before the first is.
+        What ``walk_episode`` raises.
     """
     walks: list[Walk] = []
     beside: dict[str, list[Walk]] = {name: [] for name in BESIDE}
-    for episode in episodes:
+    asked = list(episodes)
+    for episode in asked:
+        check_reachable(episode, ground_of(episode).distance_m(episode.start, episode.goals))
+    for episode in asked:
         ground = ground_of(episode)
         watching = observers(episode, ground)
         walks.append(walk_episode(ground, episode, agent, observers=watching, seed=seed))

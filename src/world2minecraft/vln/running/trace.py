@@ -32,9 +32,11 @@ class TraceWriter:
         self._number = 0
 
     def began(self, episode: Episode, agent: str) -> None:
-        """Begin the file anew."""
+        """Begin the file anew, without the views of a walk before."""
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
+            for old in (self.folder / VIEWS_FOLDER).glob("[0-9]*.jpg"):
+                old.unlink()  # Of a longer walk that was kept here before.
             self._stream = (self.folder / TRACE_FILE).open("w", encoding="utf-8")
         except OSError as error:
             raise OutputError(

@@ -14,7 +14,7 @@ import numpy as np
 from world2minecraft.vln.agents.values import Agent, Decision, Sight, Task
 from world2minecraft.vln.running.ground import Ground, GroundGuide
 from world2minecraft.vln.scores import EpisodeScore, Walked, score_episode
-from world2minecraft.vln.values import Episode, Move, Stance
+from world2minecraft.vln.values import Episode, Move, Stance, check_reachable
 
 MOST_SILENT = 3  # Decisions without moves in a row that end a walk.
 ENDS = ("stopped", "out of steps", "gave up")
@@ -70,8 +70,9 @@ def walk_episode(
     """Walk an episode and return what became of it.
 
     Raises:
-        ValueError: no way leads to the goal. BudgetError, ServerError: a model cannot be asked.
+        InputError: no way leads to the goal. BudgetError, ServerError: a model cannot be asked.
     """
+    check_reachable(episode, ground.distance_m(episode.start, episode.goals))
     state = _State(ground, episode, agent, observers)
     guide = GroundGuide(ground, episode) if agent.is_privileged else None
     agent.begin(
