@@ -41,4 +41,7 @@ def test_what_is_no_format_and_no_set_is_told(folder, tmp_path, capsys):
         capsys.readouterr().err
     )
     assert call("vln", "export", tmp_path, "--to", "trl", "--out", tmp_path / "y") == 3
-    assert "items.jsonl: cannot be read" in capsys.readouterr().err
+    assert (
+        "items.jsonl: is not there; w2m vln build SCENE --out SET writes it"
+        in capsys.readouterr().err
+    )

@@ -118,7 +118,9 @@ def test_scenes_not_seen_validate_before_ways_not_seen():
 def test_a_set_without_what_is_wanted_is_told():
     with pytest.raises(UsageError) as caught:
         parts_of([next_view(step=2)], HandoffRule(tasks=("next_action",), compositions=("base",)))
-    assert str(caught.value) == "the set has no item of next_action that is base"
+    assert str(caught.value) == (
+        "the set has no item of next_action that is base; it has base next_view"
+    )
 
 
 @pytest.mark.parametrize(

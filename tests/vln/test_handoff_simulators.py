@@ -161,5 +161,5 @@ def test_turns_on_the_spot_and_ways_that_cross_share_viewpoints(tmp_path):
 def test_a_set_without_episodes_is_told(tmp_path):
     folder = small_set(tmp_path / "set")
     (folder / "episodes.jsonl").unlink()
-    with pytest.raises(InputError, match="episodes.jsonl: cannot be read"):
+    with pytest.raises(InputError, match="episodes.jsonl: is not there"):
         export_set(folder, "vlnce", tmp_path / "out")

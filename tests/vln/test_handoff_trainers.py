@@ -302,10 +302,24 @@ def test_a_folder_of_something_else_is_left_alone(folder, tmp_path):
     with pytest.raises(ConflictError, match="is not empty and no export; name another folder"):
         export_set(folder, "trl", tmp_path / "mine")
     export_set(folder, "trl", tmp_path / "trl")
-    with pytest.raises(ConflictError, match="holds an export by other choices"):
+    with pytest.raises(ConflictError, match=r"by other choices \(seed 0, not 1\); name another"):
         export_set(folder, "trl", tmp_path / "trl", HandoffRule(seed=1))
     with pytest.raises(UnknownNameError, match="did you mean 'easyr1'"):
         export_set(folder, "easyr2", tmp_path / "x")
+
+
+@pytest.mark.parametrize("format", ["llamafactory", "easyr1", "trl", "vlnce", "r2r"])
+def test_an_export_that_fails_leaves_nothing_so_that_it_can_be_tried_again(format, tmp_path):
+    """A folder that a slip of the path had marked was refused to every other choice."""
+    with pytest.raises(InputError):
+        export_set(tmp_path / "no_set", format, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+    large = small_set(tmp_path / "large", width=1280, height=960)
+    if format in ("llamafactory", "easyr1", "trl"):
+        with pytest.raises(UsageError, match="export with --max-pixels set lower"):
+            export_set(large, format, tmp_path / "out", HandoffRule(max_pixels=1 << 24))
+        assert not (tmp_path / "out").exists()
+    assert export_set(large, format, tmp_path / "out").written
 
 
 def broken(root, name, change):

@@ -103,12 +103,18 @@ def check_trl(root: Path) -> None:
             _check_pictures(path, number, marks, row["images"], root)
 
 
-def _parquet_rows(path: Path) -> Iterable[dict[str, Any]]:
+def parquet_modules(what: str) -> tuple[Any, Any]:
+    """Return pyarrow and its parquet. Raises MissingExtraError, for ``what`` one wants it."""
     try:
         import pyarrow as pa  # noqa: PLC0415
         import pyarrow.parquet as pq  # noqa: PLC0415
     except ImportError as error:
-        raise MissingExtraError("reading parquet", "vln") from error
+        raise MissingExtraError(what, "vln") from error
+    return pa, pq
+
+
+def _parquet_rows(path: Path) -> Iterable[dict[str, Any]]:
+    pa, pq = parquet_modules("reading parquet")
     try:
         with pq.ParquetFile(path) as table:
             for batch in table.iter_batches(batch_size=64):

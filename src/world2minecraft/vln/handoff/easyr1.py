@@ -17,9 +17,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import MissingExtraError, UsageError
+from world2minecraft.errors import UsageError
 from world2minecraft.files import write_bytes, write_text
-from world2minecraft.vln.handoff.contracts import check_easyr1
+from world2minecraft.vln.handoff.contracts import check_easyr1, parquet_modules
 from world2minecraft.vln.handoff.parts import TRAIN, Part, held_out
 from world2minecraft.vln.handoff.pictures import Pictures
 from world2minecraft.vln.handoff.recipes import rendered, verbatim
@@ -40,20 +40,35 @@ GPUS = 8  # The paper's node.
 ROWS_A_GROUP = 256  # Of parquet: embedded pictures of so many rows are in memory at once.
 
 
-def write_easyr1(
-    root: Path, parts: Sequence[Part], pictures: Pictures, rule: HandoffRule
-) -> list[Written]:
-    """Write the parts for EasyR1 and return what was written.
+def most_tokens(part: Part, pictures: Pictures, rule: HandoffRule) -> int:
+    """Return the most tokens that a prompt of a part can take.
 
     Raises:
         MissingExtraError: pyarrow is not installed. UsageError: a row does not fit the recipe.
-        InputError: a picture is not as it was. OutputError: the folder cannot be written.
+        InputError: a picture is not as it was.
     """
+    parquet_modules("writing parquet")
     form = verbatim("mc.jinja")
+    lengths = (
+        (item, row_tokens(item, question_of(item), pictures, rule.max_pixels, form))
+        for item in part.items
+    )
+    return longest(lengths, PROMPT_TOKENS, "a prompt")
+
+
+def write_easyr1(
+    root: Path,
+    parts: Sequence[Part],
+    pictures: Pictures,
+    rule: HandoffRule,
+    tokens: Sequence[int],
+) -> list[Written]:
+    """Write the parts for EasyR1 and return what was written.
+
+    ``tokens`` are those of ``most_tokens``, by part. Raises OutputError.
+    """
     written = []
-    for part in parts:
-        lengths = ((item, _tokens(item, pictures, rule, form)) for item in part.items)
-        tokens = longest(lengths, PROMPT_TOKENS, "a prompt")
+    for part, most in zip(parts, tokens, strict=True):
         write_bytes(root / f"{part.name}.parquet", _parquet(part, pictures, rule))
         if rule.image_style == "paths":
             for name in (name for item in part.items for name in item.images):
@@ -62,24 +77,16 @@ def write_easyr1(
         if part.split == TRAIN:
             recipe = _write_recipe(root, part, held_out(parts, part), rule)
         written.append(
-            Written(part.name, recipe.rows, recipe.command, recipe.steps, tokens, recipe.notes)
+            Written(part.name, recipe.rows, recipe.command, recipe.steps, most, recipe.notes)
         )
-    write_text(root / "mc.jinja", form)
+    write_text(root / "mc.jinja", verbatim("mc.jinja"))
     write_text(root / "reward.py", _reward())
     check_easyr1(root, "." if rule.image_style == "paths" else None)
     return written
 
 
-def _tokens(item: Item, pictures: Pictures, rule: HandoffRule, form: str) -> int:
-    return row_tokens(item, question_of(item), pictures, rule.max_pixels, form)
-
-
 def _parquet(part: Part, pictures: Pictures, rule: HandoffRule) -> bytes:
-    try:
-        import pyarrow as pa  # noqa: PLC0415
-        import pyarrow.parquet as pq  # noqa: PLC0415
-    except ImportError as error:
-        raise MissingExtraError("writing parquet", "vln") from error
+    pa, pq = parquet_modules("writing parquet")
     embedded = rule.image_style == "embedded"
     kind = pa.struct({"bytes": pa.binary(), "path": pa.string()}) if embedded else pa.string()
     schema = pa.schema(

@@ -1,14 +1,15 @@
 """From a set's folder to a folder that a trainer or simulator takes as it is."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from world2minecraft import __version__
 from world2minecraft.errors import ConflictError, UnknownNameError, UsageError
 from world2minecraft.files import read_json, write_json, write_text
 from world2minecraft.progress import Progress, silent
-from world2minecraft.vln.handoff.easyr1 import write_easyr1
-from world2minecraft.vln.handoff.llamafactory import write_llamafactory
+from world2minecraft.vln.handoff import easyr1, llamafactory
 from world2minecraft.vln.handoff.parts import parts_of
 from world2minecraft.vln.handoff.pictures import Pictures
 from world2minecraft.vln.handoff.r2r import write_r2r
@@ -18,7 +19,12 @@ from world2minecraft.vln.handoff.trl import write_trl
 from world2minecraft.vln.handoff.vlnce import write_vlnce
 from world2minecraft.vln.records import read_episodes, read_items, read_trajectories
 
-TRAINERS = {"llamafactory": write_llamafactory, "easyr1": write_easyr1, "trl": write_trl}
+# How long rows are, and what writes them.
+TRAINERS = {
+    "llamafactory": (llamafactory.most_tokens, llamafactory.write_llamafactory),
+    "easyr1": (easyr1.most_tokens, easyr1.write_easyr1),
+    "trl": (llamafactory.most_tokens, write_trl),
+}
 FORMATS = (*TRAINERS, "vlnce", "r2r")
 RECORD = "handoff.json"  # What was chosen, in the folder's root.
 TITLES = {
@@ -54,6 +60,8 @@ def export_set(
 ) -> Handoff:
     """Write a set in one of ``FORMATS``. The same set and choices give the same bytes.
 
+    All is read and checked before the first file is written.
+
     Args:
         folder: of the set: ``items.jsonl`` and ``images/``; ``episodes.jsonl`` for vlnce,
             ``trajectories.jsonl`` for r2r.
@@ -70,38 +78,53 @@ def export_set(
     source, root, chosen = Path(folder), Path(out), rule or HandoffRule()
     if format not in FORMATS:
         raise UnknownNameError("format", format, FORMATS)
-    _claim(root, {"format": format, **chosen.as_data()})
+    choices = {"format": format, **chosen.as_data()}
+    _check_free(root, choices)
     progress("export", 0, 2, "reading")
-    if format in TRAINERS:
-        parts = parts_of(read_items(source), chosen)
-        progress("export", 1, 2, "writing")
-        written = TRAINERS[format](root, parts, Pictures(source), chosen)
-    elif format == "vlnce":
-        written = _vlnce(source, root)
-    else:
-        written = write_r2r(root, read_trajectories(source))
-    if not written:
-        raise UsageError(f"{source} has nothing that {format} tells of")
+    write = _planned(source, format, chosen)
+    progress("export", 1, 2, "writing")
+    write_json(root / RECORD, {"choices": choices, "version": __version__})
+    written = write(root)
     write_text(root / "README.md", _readme(format, written))
     progress("export", 2, 2)
     return Handoff(root, format, written)
 
 
-def _vlnce(source: Path, root: Path) -> list[Written]:
-    episodes = read_episodes(source)
-    scales = {item.scene_id: item.metres_per_block for item in read_items(source)}
-    return write_vlnce(root, episodes, source, scales)
+def _planned(source: Path, format: str, rule: HandoffRule) -> Callable[[Path], list[Written]]:
+    """Read and check a set, and return what writes it to a folder."""
+    if format in TRAINERS:
+        most_tokens, write = TRAINERS[format]
+        parts, pictures = parts_of(read_items(source), rule), Pictures(source)
+        tokens = [most_tokens(part, pictures, rule) for part in parts]
+        return lambda root: write(root, parts, pictures, rule, tokens)
+    if format == "vlnce":
+        episodes = read_episodes(source)
+        scales = {item.scene_id: item.metres_per_block for item in read_items(source)}
+        if episodes:
+            return lambda root: write_vlnce(root, episodes, source, scales)
+    walks = read_trajectories(source) if format == "r2r" else []
+    if any(one.instructions for one in walks):
+        return lambda root: write_r2r(root, walks)
+    told = "episodes" if format == "vlnce" else "walks with instructions"
+    raise UsageError(f"{source} holds no {told}, which {format} tells of; w2m vln build makes them")
 
 
-def _claim(root: Path, choices: dict) -> None:
+def _check_free(root: Path, choices: dict[str, Any]) -> None:
     """Refuse a folder that holds something other than this very export."""
     record = root / RECORD
     if record.is_file():
-        if read_json(record).get("choices") != choices:
-            raise ConflictError(root, "holds an export by other choices; name another folder")
+        told = read_json(record)
+        held = told.get("choices") if isinstance(told, dict) else None
+        if held != choices:
+            held = held if isinstance(held, dict) else {}
+            other = [
+                f"{k} {held.get(k)!r}, not {v!r}" for k, v in choices.items() if held.get(k) != v
+            ]
+            raise ConflictError(
+                root, f"holds an export by other choices ({', '.join(other)}); name another folder"
+            )
     elif root.is_dir() and any(root.iterdir()):
         raise ConflictError(root, "is not empty and no export; name another folder")
-    write_json(record, {"choices": choices, "version": __version__})
 
 
 def _readme(format: str, written: list[Written]) -> str:

@@ -44,24 +44,36 @@ TAGS = {
 }
 
 
-def write_llamafactory(
-    root: Path, parts: Sequence[Part], pictures: Pictures, rule: HandoffRule
-) -> list[Written]:
-    """Write the parts for LLaMA-Factory and return what was written.
+def most_tokens(part: Part, pictures: Pictures, rule: HandoffRule) -> int:
+    """Return the most tokens that a row of a part can take.
 
     Raises:
         UsageError: a row does not fit the recipe. InputError: a picture is not as it was.
-        OutputError: the folder cannot be written.
+    """
+    lengths = (
+        (item, row_tokens(item, question_of(item), pictures, rule.max_pixels, LETTER_ALONE))
+        for item in part.items
+    )
+    return longest(lengths, CUTOFF, "cutoff_len")
+
+
+def write_llamafactory(
+    root: Path,
+    parts: Sequence[Part],
+    pictures: Pictures,
+    rule: HandoffRule,
+    tokens: Sequence[int],
+) -> list[Written]:
+    """Write the parts for LLaMA-Factory and return what was written.
+
+    ``tokens`` are those of ``most_tokens``, by part. Raises OutputError.
     """
     written = []
-    for part in parts:
-        tokens = longest(
-            ((item, _tokens(item, pictures, rule)) for item in part.items), CUTOFF, "cutoff_len"
-        )
+    for part, most in zip(parts, tokens, strict=True):
         _write_rows(root, part, pictures)
         recipe = _write_recipe(root, part, rule) if part.split == TRAIN else Written("", 0)
         written.append(
-            Written(part.name, len(part.items), recipe.command, recipe.steps, tokens, recipe.notes)
+            Written(part.name, len(part.items), recipe.command, recipe.steps, most, recipe.notes)
         )
     write_json(root / "dataset_info.json", {part.name: _entry(part) for part in parts})
     write_text(root / "ds_z3.json", verbatim("ds_z3.json"))
@@ -91,10 +103,6 @@ def rows_left_out(part: Part, rule: HandoffRule) -> tuple[str, ...]:
         f"{part.name}: max_samples {rule.max_samples} leaves {left_out} rows out, the same in "
         "every epoch, as in the paper; --max-samples 0 takes all",
     )
-
-
-def _tokens(item: Item, pictures: Pictures, rule: HandoffRule) -> int:
-    return row_tokens(item, question_of(item), pictures, rule.max_pixels, LETTER_ALONE)
 
 
 def _write_rows(root: Path, part: Part, pictures: Pictures) -> None:

@@ -59,9 +59,10 @@ def parts_of(items: Iterable[Item], rule: HandoffRule) -> list[Part]:
                 if chosen:
                     parts.append(Part(task, composition, split, shuffled(chosen, rule.seed)))
     if not parts:
+        held = sorted({f"{item.composition} {item.task}" for item in every})
         raise UsageError(
             f"the set has no item of {' or '.join(rule.tasks)} that is "
-            f"{' or '.join(rule.compositions)}"
+            f"{' or '.join(rule.compositions)}; it has {', '.join(held) or 'none at all'}"
         )
     return parts
 

@@ -18,7 +18,7 @@ from typing import Any
 from world2minecraft.files import write_text
 from world2minecraft.vln.handoff.contracts import check_trl
 from world2minecraft.vln.handoff.easyr1 import GPUS, RESPONSE_TOKENS
-from world2minecraft.vln.handoff.llamafactory import CUTOFF, rows_left_out
+from world2minecraft.vln.handoff.llamafactory import rows_left_out
 from world2minecraft.vln.handoff.parts import TRAIN, Part
 from world2minecraft.vln.handoff.pictures import Pictures
 from world2minecraft.vln.handoff.recipes import rendered, verbatim
@@ -32,27 +32,24 @@ from world2minecraft.vln.handoff.steps import (
     SFT_EPOCHS,
     sft_steps,
 )
-from world2minecraft.vln.handoff.tokens import longest, row_tokens
 from world2minecraft.vln.prompts import LETTER_ALONE, question_of
 from world2minecraft.vln.values import Item
 
 
 def write_trl(
-    root: Path, parts: Sequence[Part], pictures: Pictures, rule: HandoffRule
+    root: Path,
+    parts: Sequence[Part],
+    pictures: Pictures,
+    rule: HandoffRule,
+    tokens: Sequence[int],
 ) -> list[Written]:
     """Write the parts for TRL and return what was written.
 
-    Raises:
-        UsageError: a row does not fit the recipe. InputError: a picture is not as it was.
-        OutputError: the folder cannot be written.
+    ``tokens`` are those of ``llamafactory.most_tokens``, by part: the rows say the same. Raises
+    OutputError.
     """
     written = []
-    for part in parts:
-        lengths = (
-            (item, row_tokens(item, question_of(item), pictures, rule.max_pixels, LETTER_ALONE))
-            for item in part.items
-        )
-        tokens = longest(lengths, CUTOFF, "the recipe")
+    for part, most in zip(parts, tokens, strict=True):
         lines = [json.dumps(row_of(item), ensure_ascii=False) + "\n" for item in part.items]
         write_text(root / f"{part.name}.jsonl", "".join(lines))
         for name in (name for item in part.items for name in item.images):
@@ -61,7 +58,7 @@ def write_trl(
         steps = sft_steps(len(part.items), rule.max_samples, 1) if is_train else 0
         command = f"python sft.py {part.name}.jsonl" if is_train else ""
         notes = rows_left_out(part, rule) if is_train else ()
-        written.append(Written(part.name, len(part.items), command, steps, tokens, notes))
+        written.append(Written(part.name, len(part.items), command, steps, most, notes))
     _write_scripts(root, next((p for p in parts if p.split == TRAIN), parts[0]), rule)
     check_trl(root)
     return written
