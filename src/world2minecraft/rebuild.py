@@ -28,7 +28,7 @@ def rebuild(source: Path, out: Path, parameters: Parameters, progress: Progress 
 
     Raises:
         InputError: ``source`` cannot be read. OutputError: ``out`` cannot be written.
-        UsageError: ``out`` is ``source``.
+        UsageError: ``out`` is ``source``, or ``source`` holds blocks and no room.
     """
     if out.exists() and source.exists() and out.samefile(source):
         raise UsageError(f"{out} is the source; give another folder to --out")
