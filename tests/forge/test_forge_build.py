@@ -1,7 +1,10 @@
 """What the page gets of the blocks of an edited scene, and of what stops a person in them."""
 
+import asyncio
 import json
 import struct
+import threading
+import zlib
 from itertools import pairwise
 
 import numpy as np
@@ -16,9 +19,10 @@ from world2minecraft.coordinates import apply
 from world2minecraft.edit.cleanup import mended
 from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.exchange.occupancy import inner_corner_m
-from world2minecraft.forge import blocks
+from world2minecraft.forge import blocks, build_routes
 from world2minecraft.forge.arrays import packed_arrays
 from world2minecraft.forge.blocks import Build, BuildOptions, HeldScene
+from world2minecraft.forge.session import Session
 from world2minecraft.render.mesh import mesh_of
 from world2minecraft.walk import BlockWorld, Body, Keys, body_box, step
 from world2minecraft.walk.sweep import overlapping
@@ -170,3 +174,26 @@ def test_voxels_stop_a_person_where_they_are(server, script):
 def test_an_unknown_kind_of_boxes_is_refused(script):
     answer = script.get("/api/collision?what=air")
     assert answer.json()["error"] == "what must be build or voxels, not 'air'"
+
+
+def test_a_room_that_is_opened_while_another_is_built_never_gets_its_blocks(monkeypatch, tmp_path):
+    begun, go_on = threading.Event(), threading.Event()
+
+    def slowly(scene: HeldScene) -> bytes:
+        begun.set()
+        go_on.wait(20)
+        return str(scene.grid.shape).encode()
+
+    monkeypatch.setattr(build_routes, "voxel_collision", slowly)
+
+    async def scenario():
+        session = Session(small_editor((4, 4, 4), tmp_path / "a"))
+        builds = build_routes.Builds(session)
+        first = asyncio.create_task(builds.collision(None))
+        await asyncio.to_thread(begun.wait, 20)
+        await session.show(small_editor((5, 5, 5), tmp_path / "b"))
+        go_on.set()
+        await first
+        return zlib.decompress((await builds.collision(None))[1], 31)
+
+    assert asyncio.run(scenario()) == b"(5, 5, 5)"

@@ -46,13 +46,17 @@ class BuildOptions:
 
 @dataclass(frozen=True, eq=False)
 class HeldScene:
-    """A scene at one moment, so that it can be built while it is edited further."""
+    """A scene at one moment, so that it can be built while it is edited further.
+
+    ``shown`` tells it from other rooms of the server at the same revision, as ``Session.shown``.
+    """
 
     rev: int
     name: str
     folder: Path
     grid: OccupancyGrid
     objects: tuple[SceneObject, ...]
+    shown: int = 0
 
     @classmethod
     def of(cls, editor: Editor) -> "HeldScene":

@@ -18,6 +18,7 @@ from starlette.routing import BaseRoute, Route
 from world2minecraft.errors import UsageError
 from world2minecraft.forge.blocks import Build, BuildOptions, HeldScene
 from world2minecraft.forge.collision import build_collision, voxel_collision
+from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.jobs import JobState, said
 from world2minecraft.forge.session import Session
 
@@ -49,9 +50,13 @@ class Builds:
             ("boxes", options), lambda scene: build_collision(self._of(scene, options))
         )
 
+    def _held(self, editor: Editor) -> HeldScene:
+        """Copy the scene in its turn: while it is built another room may be opened."""
+        return replace(HeldScene.of(editor), shown=self.session.shown)
+
     def _of(self, scene: HeldScene, options: BuildOptions) -> Build:
         """Return the build of a scene; called by one thread at a time."""
-        key = (self.session.shown, scene.rev, options)
+        key = (scene.shown, scene.rev, options)
         if key not in self._volumes:
             self._volumes[key] = Build.of(scene, options)
             while len(self._volumes) > 2:
@@ -64,9 +69,9 @@ class Builds:
             key = (*what, self.session.shown, document.rev)
             if key in self._packed:
                 return document.rev, self._packed[key]
-            scene = await self.session.asked(HeldScene.of)
+            scene = await self.session.asked(self._held)
             packed = await self._told(asyncio.to_thread(lambda: _gzip(make(scene))))
-            self._packed[(*what, self.session.shown, scene.rev)] = packed
+            self._packed[(*what, scene.shown, scene.rev)] = packed
             while len(self._packed) > KEPT:
                 self._packed.popitem(last=False)
             return scene.rev, packed
