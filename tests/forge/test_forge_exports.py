@@ -180,6 +180,15 @@ def test_files_that_are_not_there_are_no_files(script, number):
     assert script.get(f"/api/exports/files/{number}").status_code in (400, 404)
 
 
+def test_a_file_that_is_being_made_is_no_mistake_of_ours(script):
+    (script.workshop.exports / "abc").mkdir()
+    answer = script.get("/api/exports/files/abc")
+    assert (answer.status_code, answer.json()["error"]) == (
+        400,
+        "no export is named 'abc'; export it again",
+    )
+
+
 def test_a_server_that_is_not_there_says_so(script):
     told = {"address": "127.0.0.1:1", "password": "x", "at": [0, 64, 0], "blocks_per_metre": 1}
     answer = script.post("/api/build/server", json=told)

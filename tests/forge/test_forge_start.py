@@ -1,7 +1,10 @@
 """The start page's server side: a capture comes, is looked at, becomes a room, and opens."""
 
+import asyncio
 import io
+import shutil
 import socket
+import time
 import zipfile
 
 import numpy as np
@@ -9,10 +12,14 @@ import pytest
 from forge_serving import bearer, client, heard, raw, served, small_editor, tab
 from PIL import Image
 
+from world2minecraft.errors import ConflictError
 from world2minecraft.forge.apart import run_apart
 from world2minecraft.forge.captures import Captures, is_capture
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.identity import folder_of
+from world2minecraft.forge.session import Session
+from world2minecraft.forge.sources import DEMO_FOLDER
+from world2minecraft.forge.workshop import Workshop
 from world2minecraft.rooms import generate_room, scan_room
 
 
@@ -46,6 +53,13 @@ def sent(script, files: dict[str, bytes], title="den") -> str:
     for index, data in enumerate(files.values()):
         assert send(script, made["id"], index, data).json()["held"] == len(data)
     return made["id"]
+
+
+def busy(report):
+    """Work until it is cancelled."""
+    while True:
+        report("wait", 0, 1)
+        time.sleep(0.01)
 
 
 def ended(server, answer):
@@ -312,3 +326,67 @@ def test_a_demo_room_that_was_closed_is_offered_again_with_its_edits(tmp_path):
             assert script.get("/api/scene").json()["rev"] == 1
             answer = script.post("/api/start/open", json={"id": "recent-1"})
             assert "no recent room is named 'recent-1'" in answer.json()["error"]
+
+
+def test_bytes_that_two_connections_bring_never_mix(tmp_path):
+    captures = Captures(tmp_path)
+    one = captures.announce("den", [{"path": "a.mp4", "size": 8}])
+
+    async def scenario():
+        on_its_way = asyncio.Event()
+
+        async def slow():
+            yield b"abcd"
+            await on_its_way.wait()
+            yield b"efgh"
+
+        async def quick():
+            yield b"XXXX"
+
+        first = asyncio.create_task(one.receive(0, 0, slow()))
+        await asyncio.sleep(0)
+        with pytest.raises(ConflictError, match="is coming by another connection"):
+            await one.receive(0, 0, quick())
+        on_its_way.set()
+        assert await first == 8
+
+    asyncio.run(scenario())
+    assert one.place_of(0).read_bytes() == b"abcdefgh"
+
+
+def test_a_room_that_is_clicked_twice_can_be_edited(tmp_path):
+    run = tmp_path / "den"
+    shutil.copytree(DEMO_FOLDER, run)
+
+    async def scenario():
+        session = Session()
+        shop = Workshop(session, tmp_path / "home")
+        await asyncio.gather(shop.open(run), shop.open(run))
+        assert session.document.read_only == ""
+        assert session.shown == 1
+        await session.close()
+
+    asyncio.run(scenario())
+
+
+def test_a_home_that_cannot_be_written_keeps_nobody_from_opening(tmp_path):
+    run, home = tmp_path / "den", tmp_path / "home"
+    shutil.copytree(DEMO_FOLDER, run)
+    home.write_text("a file")
+
+    async def scenario():
+        session = Session()
+        shop = Workshop(session, home, capture=tmp_path)
+        await shop.open(run)
+        shop._capture = tmp_path  # As ``w2m forge den --capture`` has it.
+        assert shop.beside()["truth"] is False
+        await session.close()
+
+    asyncio.run(scenario())
+
+
+def test_a_demo_room_is_made_once_at_a_time(server, script):
+    server.workshop.working["demo/study-9"] = number = server.workshop.jobs.start("busy", busy)
+    answer = script.post("/api/start/demo", json={"kind": "study", "seed": 9})
+    assert answer.json() == {"job": number}
+    assert len(server.workshop.jobs.states()) == 1

@@ -40,6 +40,7 @@ SPARE_BYTES = 256 << 20  # What a run of the capture writes, with room to breath
 CAPTURE, SURVEY, PICTURE = "capture.json", "survey.json", "survey.png"
 RUN, UPLOAD = "run", "upload"
 _ID = re.compile(r"[a-z0-9-]{1,64}")
+_RECEIVING: set[Path] = set()  # The files that bytes come to now, in this process.
 
 
 def user_home() -> Path:
@@ -120,25 +121,34 @@ class CaptureFolder:
             chunks: its next bytes.
 
         Raises:
-            ConflictError: another number of bytes is there. LimitError: more comes than was said.
-            OutputError: the disk is full.
+            ConflictError: another number of bytes is there, or another connection still brings
+            some. LimitError: more comes than was said. OutputError: the disk is full.
         """
-        place, size = self.place_of(number), self.files[number].size
+        place, path = self.place_of(number), self.files[number].path
         held = _size(place)
         if start != held:
-            raise ConflictError(
-                self.files[number].path, f"{held} bytes of it are here; go on there"
-            )
+            raise ConflictError(path, f"{held} bytes of it are here; go on there")
+        if place in _RECEIVING:
+            raise ConflictError(path, "is coming by another connection; wait for its end")
+        _RECEIVING.add(place)
         try:
-            place.parent.mkdir(parents=True, exist_ok=True)
-            with place.open("ab") as stream:
-                async for chunk in chunks:
-                    if held + len(chunk) > size:
-                        raise LimitError(self.files[number].path, f"has more than its {size} bytes")
-                    stream.write(chunk)
-                    held += len(chunk)
+            return await self._append(number, chunks)
         except OSError as error:
             raise OutputError(place, f"cannot be written: {error.strerror or error}") from error
+        finally:
+            _RECEIVING.discard(place)
+
+    async def _append(self, number: int, chunks: AsyncIterator[bytes]) -> int:
+        """Append chunks to a file, and return how many bytes of it are there."""
+        place, file = self.place_of(number), self.files[number]
+        place.parent.mkdir(parents=True, exist_ok=True)
+        held = _size(place)
+        with place.open("ab") as stream:
+            async for chunk in chunks:
+                if held + len(chunk) > file.size:
+                    raise LimitError(file.path, f"has more than its {file.size} bytes")
+                stream.write(chunk)
+                held += len(chunk)
         return held
 
 

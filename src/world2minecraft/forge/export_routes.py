@@ -12,6 +12,7 @@ POST /api/build/server           ``{address, password, at, turns, air, ...}``: a
 
 import asyncio
 import secrets
+from pathlib import Path
 from typing import Any
 
 from starlette.requests import Request
@@ -20,7 +21,7 @@ from starlette.routing import BaseRoute, Route
 
 from world2minecraft.build.parameters import STYLES
 from world2minecraft.edit.into_world import check_air
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.errors import UsageError
 from world2minecraft.forge import exports
 from world2minecraft.forge.apart import run_apart
 from world2minecraft.forge.jobs import Report, Work
@@ -93,10 +94,14 @@ async def _export(request: Request) -> Response:
 async def _file(request: Request) -> Response:
     number = request.path_params["id"]
     folder = workshop_of(request).exports / number
-    if not number.isalnum() or not folder.is_dir():
-        raise UnknownNameError("export", number[:40], ())
-    path = next(one for one in folder.iterdir() if one.is_file())
-    return FileResponse(path, filename=path.name)
+    made = [one for one in folder.iterdir() if one.is_file()] if _is_export(folder, number) else []
+    if not made:
+        raise UsageError(f"no export is named {number[:40]!r}; export it again")
+    return FileResponse(made[0], filename=made[0].name)
+
+
+def _is_export(folder: Path, number: str) -> bool:
+    return number.isalnum() and folder.is_dir()
 
 
 async def _install(request: Request) -> Response:

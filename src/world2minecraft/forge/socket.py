@@ -77,7 +77,7 @@ async def _do(message: dict[str, Any], tab: Tab, session: Session) -> bool:
         await session.active(tab.actor)
         return False
     if kind == "cancel":
-        session.jobs.cancel(str(message.get("job")))
+        await asyncio.to_thread(session.jobs.cancel, str(message.get("job")))
         return False
     if kind == "do":
         await session.do(message.get("command"), tab.actor)

@@ -10,13 +10,15 @@ GET    /api/start/captures/ID/picture.png  the picture of ``w2m scan``
 GET    /api/start/captures/ID/room.png     the picture of the room that came of it
 POST   /api/start/captures/ID/reconstruct  ``{blocks_per_metre, style, known}``: a job
 DELETE /api/start/captures/ID              it and what came of it
-POST   /api/start/demo                     ``{kind, seed}``: a job that makes a room of nothing
+POST   /api/start/demo                     ``{kind, seed}``: a job that makes a room of nothing;
+                                           the same one while it runs
 POST   /api/start/open                     ``{id}``: the room opens in the editor
 POST   /api/start/close                    back to the start page
 GET    /api/jobs                           all jobs; POST /api/jobs/ID/cancel ends one
 =========================================  ====================================================
 """
 
+import asyncio
 from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
@@ -143,11 +145,16 @@ async def _forget(request: Request) -> Response:
     if opened is not None and Path(opened).resolve() == one.run.resolve():
         raise ConflictError(one.title, "its room is open; close it first")
     number = shop.job_of(one)
-    if number is not None:
-        shop.jobs.cancel(number)
-        shop.jobs.wait(number, 10)
-    shop.captures.forget(one.id)
+    await asyncio.to_thread(_forgotten, shop, one.id, number)
     return JSONResponse({})
+
+
+def _forgotten(shop: Workshop, capture: str, job: str | None) -> None:
+    """End what is at work on a capture and delete it; in a thread, for both may take seconds."""
+    if job is not None:
+        shop.jobs.cancel(job)
+        shop.jobs.wait(job, 10)
+    shop.captures.forget(capture)
 
 
 async def _look(request: Request) -> Response:
@@ -203,9 +210,12 @@ async def _demo(request: Request) -> Response:
     frames = told.get("frames", 40)
     if not isinstance(frames, int) or not 3 <= frames <= 200:
         raise UsageError(f"frames must be 3 to 200, not {str(frames)[:40]!r}")
-    out = shop.home / "demo" / f"{kind}-{seed}"
-    work = run_apart("demo", out=str(out), kind=kind, seed=seed, frames=frames)
-    return JSONResponse({"job": shop.jobs.start(f"A {kind} room", work, demo_s(), _remember(shop))})
+    name, title = f"demo/{kind}-{seed}", f"A {kind} room"
+    if (running := shop.job_at(name)) is not None:
+        return JSONResponse({"job": running})  # Whoever asks again sees how far it is.
+    work = run_apart("demo", out=str(shop.home / name), kind=kind, seed=seed, frames=frames)
+    shop.working[name] = number = shop.jobs.start(title, work, demo_s(), _remember(shop))
+    return JSONResponse({"job": number})
 
 
 def _remember(shop: Workshop) -> Any:
@@ -245,7 +255,8 @@ async def _jobs(request: Request) -> Response:
 
 
 async def _cancel(request: Request) -> Response:
-    workshop_of(request).jobs.cancel(request.path_params["id"])
+    number = request.path_params["id"]
+    await asyncio.to_thread(workshop_of(request).jobs.cancel, number)  # A process has its time.
     return JSONResponse({})
 
 

@@ -61,11 +61,12 @@ class Workshop:
         self._capture = capture
         self._photos: tuple[Editor, RunPhotos] | None = None
         self._lock = threading.Lock()
+        self._opening = asyncio.Lock()
         self._exports: tempfile.TemporaryDirectory[str] | None = None
         self.captures = Captures(home, most_bytes)
         self.jobs = session.jobs
         self.wanted: str | None = None  # The capture that the start page shows first.
-        self.working: dict[str, str] = {}  # The job of a capture, by the capture's id.
+        self.working: dict[str, str] = {}  # Jobs by the id of a capture, or a demo's folder.
 
     @property
     def editor(self) -> Editor:
@@ -80,15 +81,16 @@ class Workshop:
 
     async def open(self, source: Path) -> None:
         """Open a room in the place of what is open; every tab begins anew."""
-        if self.session.editor is not None and self.session.editor.holds(source):
-            return  # Opened anew it would find itself at work, and be read only.
-        editor = await asyncio.to_thread(Editor.open, source)
-        for one in self.captures.all():
-            if one.run == source:
-                editor.name = one.title
-        self._capture, self._photos, self.compared = None, None, None
-        await self.session.show(editor)
-        self.remember(source)
+        async with self._opening:  # A second click finds the room open, not at work.
+            if self.session.editor is not None and self.session.editor.holds(source):
+                return  # Opened anew it would find itself at work, and be read only.
+            editor = await asyncio.to_thread(Editor.open, source)
+            for one in self.captures.all():
+                if one.run == source:
+                    editor.name = one.title
+            self._capture, self._photos, self.compared = None, None, None
+            await self.session.show(editor)
+        self.remember_where_possible(source)
 
     @property
     def exports(self) -> Path:
@@ -116,7 +118,8 @@ class Workshop:
         if self._capture is not None:
             place = str(self._capture.resolve())
             if noted.get(str(run)) != place:
-                write_json(self.home / PLACES, noted | {str(run): place})
+                with suppress(OutputError):  # It is looked at all the same.
+                    write_json(self.home / PLACES, noted | {str(run): place})
             return self._capture
         for one in self.captures.all():
             if one.run.resolve() == run:
@@ -153,8 +156,12 @@ class Workshop:
         if is_capture:
             self.wanted = self.captures.adopt(source).id
         else:
-            with suppress(OutputError):  # A home that cannot be written keeps nobody from editing.
-                self.remember(source)
+            self.remember_where_possible(source)
+
+    def remember_where_possible(self, source: Path) -> None:
+        """Note that a room was opened; a home that cannot be written keeps nobody from editing."""
+        with suppress(OutputError):
+            self.remember(source)
 
     def remember(self, source: Path) -> None:
         """Note that a room was opened; the newest come first."""
@@ -188,7 +195,11 @@ class Workshop:
 
     def job_of(self, capture: CaptureFolder) -> str | None:
         """Return the id of the job that is at work on a capture, None where none is."""
-        number = self.working.get(capture.id)
+        return self.job_at(capture.id)
+
+    def job_at(self, what: str) -> str | None:
+        """Return the id of the job that is at work on what ``working`` names so, None for none."""
+        number = self.working.get(what)
         if number is None:
             return None
         try:
