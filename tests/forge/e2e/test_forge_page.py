@@ -243,3 +243,17 @@ def test_a_lost_server_is_told_and_nothing_can_be_changed(forge, server):
     forge.until("s.selectedObjects.size", 1)
     assert "connection" in forge.action("object.turn").get_attribute("aria-description")
     forge.mistakes.clear()  # The browser itself reports that it cannot connect.
+
+
+def test_a_narrow_window_has_the_scene_above_its_panels(open_tab):
+    forge = open_tab(width=390, height=844)
+    page = forge.page
+    sides = "[document.querySelector('.stage').clientWidth, document.documentElement.scrollWidth]"
+    assert page.evaluate(sides) == [390, 390]
+    for mode in ("build", "objects"):
+        forge.mode(mode)  # A click on each tab: none lies under another control.
+    page.get_by_role("treeitem").last.click()
+    assert forge.state("s.selectedObjects.size") in (0, 1)
+    forge.key("?")
+    bar, sheet = (page.locator(one).bounding_box() for one in (".top", ".sheet.help"))
+    assert sheet["y"] >= bar["y"] + bar["height"]

@@ -8,6 +8,7 @@ import "./style_build.css";
 import { builderOf, registerBuild } from "./build/mode";
 import "./style_start.css";
 import "./style_parts.css";
+import "./style_phone.css";
 import { registerCompare } from "./compare/panel";
 import { registerExports } from "./export/sheet";
 import { registerSceneJobs } from "./jobs/scene_jobs";

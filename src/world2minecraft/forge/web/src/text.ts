@@ -273,7 +273,7 @@ export const TEXT = {
   },
   doubtful: {
     title: "Doubtful places, worst first",
-    note: "Places to look at first. The . key goes to the next.",
+    note: 'Places to look at first; the key "." goes to the next.',
     none: "No doubtful places left.",
     at: (at: number, count: number): string => (at ? `${at} of ${count}` : `${count} to look at`),
     next: "Next",

@@ -47,7 +47,7 @@ function section(group: (typeof GROUPS)[number], lines: readonly Binding[]): HTM
 
 const SAID = new Set(["voxels", "objects", "selection", "classes"]); // groups that say their modes
 
-const SHOWN: Record<string, string> = { Escape: "Esc", ArrowRight: "→", ArrowLeft: "←", PageUp: "Page up", PageDown: "Page down" };
+const SHOWN: Record<string, string> = { Escape: "Esc", ArrowRight: "→", ArrowLeft: "←", ArrowUp: "↑", ArrowDown: "↓", PageUp: "Page up", PageDown: "Page down" };
 
 export function shownKey(key: string): string {
   return key
