@@ -5,7 +5,6 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from starlette.applications import Starlette
-from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
@@ -13,10 +12,9 @@ from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 
 from world2minecraft.edit.scene import COMMANDS
-from world2minecraft.errors import World2MinecraftError
 from world2minecraft.forge import compare_routes, export_routes, photo_routes, start
 from world2minecraft.forge.build_routes import build_routes
-from world2minecraft.forge.failures import explained
+from world2minecraft.forge.failures import ANSWERS
 from world2minecraft.forge.guard import Guard
 from world2minecraft.forge.limits import BodyLimit
 from world2minecraft.forge.queries import QUERIES
@@ -49,11 +47,7 @@ def build_app(
             Mount("/", StaticFiles(directory=STATIC, html=True)),
         ],
         middleware=[guard, Middleware(BodyLimit)],
-        exception_handlers={
-            World2MinecraftError: _refused,
-            HTTPException: _http,
-            Exception: _broke,
-        },
+        exception_handlers=ANSWERS,
     )
     app.state.session, app.state.workshop = session, workshop
     return app
@@ -132,16 +126,3 @@ async def _commands(request: Request) -> Response:
         for what, known in kinds.items()
     }
     return JSONResponse(told)
-
-
-async def _refused(request: Request, error: Exception) -> Response:
-    return JSONResponse({"error": explained(error)}, 400)
-
-
-async def _http(request: Request, error: Exception) -> Response:
-    status, detail = getattr(error, "status_code", 500), getattr(error, "detail", "")
-    return JSONResponse({"error": detail}, status, getattr(error, "headers", None))
-
-
-async def _broke(request: Request, error: Exception) -> Response:
-    return JSONResponse({"error": explained(error)}, 500)

@@ -2,6 +2,10 @@
 
 import errno
 
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+
 from world2minecraft.errors import World2MinecraftError, one_line
 
 
@@ -14,3 +18,20 @@ def explained(error: BaseException) -> str:
     if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
         return "the disk is full; free some space and try again"
     return f"unexpected {type(error).__name__}; the terminal of w2m forge has the details"
+
+
+async def _refused(request: Request, error: Exception) -> Response:
+    return JSONResponse({"error": explained(error)}, 400)
+
+
+async def _http(request: Request, error: Exception) -> Response:
+    status, detail = getattr(error, "status_code", 500), getattr(error, "detail", "")
+    return JSONResponse({"error": detail}, status, getattr(error, "headers", None))
+
+
+async def _broke(request: Request, error: Exception) -> Response:
+    return JSONResponse({"error": explained(error)}, 500)
+
+
+# How an application answers, whatever goes wrong: JSON with one line.
+ANSWERS = {World2MinecraftError: _refused, HTTPException: _http, Exception: _broke}

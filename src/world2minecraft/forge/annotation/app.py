@@ -3,16 +3,15 @@
 from pathlib import Path
 
 from starlette.applications import Starlette
-from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from world2minecraft.errors import UsageError, World2MinecraftError
+from world2minecraft.errors import UsageError
 from world2minecraft.forge.annotation.desk import AnnotationDesk
-from world2minecraft.forge.failures import explained
+from world2minecraft.forge.failures import ANSWERS
 from world2minecraft.forge.guard import Guard
 from world2minecraft.forge.limits import BodyLimit
 from world2minecraft.forge.requests import object_of
@@ -42,7 +41,7 @@ def build_app(desk: AnnotationDesk, token: str, port: int) -> Starlette:
             Middleware(Guard, token=token, port=port),
             Middleware(BodyLimit, json_bytes=MAX_BODY, upload_bytes=0),
         ],
-        exception_handlers={World2MinecraftError: _refused, HTTPException: _http},
+        exception_handlers=ANSWERS,
     )
     app.state.desk = desk
     return app
@@ -83,12 +82,3 @@ async def _fields(request: Request, *names: str) -> tuple:
     if not isinstance(number, int) or not all(isinstance(text, str) for text in texts):
         raise UsageError(f"the body has number, and {', '.join(names)} as texts")
     return (number, *texts)
-
-
-async def _refused(request: Request, error: Exception) -> Response:
-    return JSONResponse({"error": explained(error)}, 400)
-
-
-async def _http(request: Request, error: Exception) -> Response:
-    status, detail = getattr(error, "status_code", 500), getattr(error, "detail", "")
-    return JSONResponse({"error": detail}, status)
