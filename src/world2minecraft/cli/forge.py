@@ -1,10 +1,11 @@
 """``w2m forge``: see every stage of a room in the browser, and put it right."""
 
-import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from world2minecraft.cli.browser import open_link
 
 if TYPE_CHECKING:
     from world2minecraft.forge.editor import Editor
@@ -106,7 +107,7 @@ def run(
     if place is not None:
         print(f"note: your demo room is kept in {place.parent}")
     _tell(server, editor)
-    server.run(lambda: None if no_browser else _open(server.link))
+    server.run(lambda: None if no_browser else open_link(server.link))
 
 
 def _walk(source: Path | None, no_browser: bool) -> None:
@@ -125,7 +126,7 @@ def _walk(source: Path | None, no_browser: bool) -> None:
     window = Window(VIEW_WIDTH_PX)
     print(f"walk here: {window.link}\nCtrl+C ends it.", flush=True)
     if not no_browser:
-        _open(window.link)
+        open_link(window.link)
     try:
         stroll(scene, window)
     finally:
@@ -145,8 +146,3 @@ def _tell(server: "ForgeServer", editor: "Editor | None") -> None:
         print(f"note: open to be read only: {editor.read_only}")
     print(f"SceneForge: {server.link}", flush=True)
     print("Ctrl+C stops it; everything done is kept.", flush=True)
-
-
-def _open(link: str) -> None:
-    """Open the browser; where there is none the link stands in the terminal."""
-    webbrowser.open(link)

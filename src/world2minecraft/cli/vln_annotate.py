@@ -1,10 +1,11 @@
 """``w2m vln annotate``: a person sees walks of a set and writes what to tell the next one."""
 
-import webbrowser
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from world2minecraft.cli.browser import open_link
 
 EXAMPLES = """\
 w2m vln annotate SET                          a page; what is written is in SET/annotations.jsonl
@@ -39,8 +40,4 @@ def run(folder: Folder, out: Out = None, port: Port = None, no_browser: NoBrowse
     print(f"SceneForge: {server.link}", flush=True)
     print(f"next: w2m vln reword {folder} --annotations {desk.out}")
     print("Ctrl+C stops it; everything written is kept.", flush=True)
-    server.run(lambda: None if no_browser else _open(server.link))
-
-
-def _open(link: str) -> None:
-    webbrowser.open(link)
+    server.run(lambda: None if no_browser else open_link(server.link))

@@ -239,13 +239,13 @@ def _walk(
 @contextmanager
 def _invited(walker: Any, no_browser: bool) -> Iterator[None]:
     """Tell a person where to walk and open the page, which is there while the block runs."""
-    import webbrowser
+    from world2minecraft.cli.browser import open_link
 
     try:
         for person in _people(walker):
             print(f"walk here: {person.window.link}", flush=True)
             if not no_browser:
-                webbrowser.open(person.window.link)
+                open_link(person.window.link)
         yield
     finally:
         for person in _people(walker):
