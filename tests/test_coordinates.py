@@ -397,3 +397,11 @@ def test_a_player_grows_with_the_scale(scale, eye):
 def test_a_focal_length_spans_its_field_of_view(side, fov):
     seen = 2 * np.degrees(np.arctan(side / 2 / co.focal_px_of_fov(side, fov)))
     assert seen == pytest.approx(fov)
+
+
+def test_the_sides_of_a_room_have_the_compass_names_of_their_blocks():
+    block_of = {"east": (1, 0, 0), "west": (-1, 0, 0), "south": (0, 0, 1), "north": (0, 0, -1)}
+    for side, name in co.COMPASS_OF_SIDE.items():
+        outward = np.zeros(3)
+        outward["xy".index(side[0])] = 1 if side[1] == "+" else -1
+        assert tuple(co.ROOM_AXES_TO_BLOCK @ outward) == block_of[name]

@@ -19,6 +19,7 @@ ROOM_CORNER_BLOCK = (0, 64, 0)
 PLAYER_EYE_BLOCKS = 1.62
 ROOM_AXES_TO_BLOCK = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], np.float64)
 FACING_OF_QUARTER_TURNS = ("east", "north", "west", "south")  # Counter-clockwise from room +x.
+COMPASS_OF_SIDE = {"x-": "west", "x+": "east", "y-": "south", "y+": "north"}  # Of the room.
 
 # OpenGL cameras (x right, y up, z backward: nerfstudio, Blender) to OpenCV ones.
 OPENGL_TO_OPENCV = np.diag([1.0, -1.0, -1.0, 1.0])

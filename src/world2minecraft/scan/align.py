@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.coordinates import COMPASS_OF_SIDE, rotation_about_z
 from world2minecraft.geometry.surface import Surface, collect_surface
 from world2minecraft.scan.gravity import Ground, find_ground, frame_of_up
 from world2minecraft.scan.places import face_place_m
@@ -149,9 +149,10 @@ def _notes(ground: Ground, box: Box, size: np.ndarray) -> tuple[str, ...]:
     notes = []
     if ground.floor_area_m2 == 0:
         notes.append("no floor was seen; the lowest points stand for it")
-    sides = [side for side in ("x-", "x+", "y-", "y+") if side not in box.seen]
+    sides = [name for side, name in COMPASS_OF_SIDE.items() if side not in box.seen]
     if sides:
-        notes.append(f"no wall was seen at {', '.join(sides)}; the room ends where its points end")
+        told = f"the {' and '.join(sides)} side{'s' * (len(sides) > 1)}"
+        notes.append(f"no wall was seen at {told}; the room ends where its points end")
     if "z+" not in box.seen:
         notes.append(f"no ceiling was seen; the room is taken to be {size[2]:.2f} m high")
     return tuple(notes)

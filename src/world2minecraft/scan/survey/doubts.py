@@ -113,16 +113,9 @@ def _room(survey: Survey, route: Route) -> Iterator[Doubt]:
     }
     for note in plan.notes:
         words = " ".join(note.split()[:2])
-        yield Doubt("warn", words, _with_compass(note), advice.get(words, ""))
+        yield Doubt("warn", words, note, advice.get(words, ""))
     if survey.judged.has_depth and not plan.problem and not plan.notes:
         yield Doubt("ok", "room", "floor, ceiling and all four walls were met")
-
-
-def _with_compass(note: str) -> str:
-    """Return a note of the alignment with the plan's sides by their compass names."""
-    for side, name in (("x-", "west"), ("x+", "east"), ("y-", "south"), ("y+", "north")):
-        note = note.replace(f" {side}", f" {name}")
-    return note
 
 
 def _movement(survey: Survey, route: Route) -> Iterator[Doubt]:
