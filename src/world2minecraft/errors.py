@@ -46,13 +46,18 @@ class UsageError(World2MinecraftError):
     exit_code = 2
 
 
+MOST_KNOWN, FIRST_KNOWN = 60, 20  # Of more names than a terminal's screen, the first are told.
+
+
 class UnknownNameError(UsageError):
     """A name that no registry holds; the message suggests the nearest."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]):
         choices = sorted(known)
         near = difflib.get_close_matches(name, choices, n=1)
-        hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(choices)}"
+        told = choices if len(choices) <= MOST_KNOWN else choices[:FIRST_KNOWN]
+        more = f" and {len(choices) - len(told)} more" if len(told) < len(choices) else ""
+        hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(told)}{more}"
         super().__init__(f"no {kind} is named {name!r}; {hint}")
 
 

@@ -106,6 +106,7 @@ def run(
         UsageError: nothing says where to build, or an option needs another.
     """
     check_targets(out, into, rcon, at, turns)
+    check_how(into, rcon, air, new_chunks)
     from world2minecraft.parameters import Parameters, with_settings
 
     chosen = Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version)
@@ -174,6 +175,21 @@ def check_targets(
         raise UsageError(
             "--at and --turns go with --into WORLD or --rcon; add it or leave them out"
         )
+
+
+def check_how(into: Path | None, rcon: str | None, air: str, new_chunks: bool) -> None:
+    """Check, before any work, the options that say how a world or a server is built into.
+
+    Raises:
+        UsageError: one is wrong, or says nothing of what is asked for.
+    """
+    from world2minecraft.edit.into_world import check_air
+
+    check_air(air)
+    if new_chunks and into is None:
+        raise UsageError("--new-chunks goes with --into WORLD; add it or leave it out")
+    if air != "room" and into is None and rcon is None:
+        raise UsageError("--air goes with --into WORLD or --rcon; add one or leave it out")
 
 
 def into_folder(source: Path, out: Path, chosen: "Parameters") -> None:

@@ -40,10 +40,14 @@ def with_build_options(
     """Return the parameters with what the options name; what is None stays as it is.
 
     Raises:
-        UsageError: there is no such style, palette or form.
+        UsageError: there is no such style, palette or form. InputError: the palette's file is none.
     """
     from world2minecraft.parameters import with_settings
 
+    if palette is not None:
+        from world2minecraft.build.palettes import load_palette
+
+        load_palette(palette)  # What is wrong with it is said before minutes of work.
     chosen = {"style": style, "palette": _whole(palette)}
     settings = [f"build.{key}={value}" for key, value in chosen.items() if value is not None]
     return with_settings(parameters, settings + ([f"formats={formats}"] if formats else []))

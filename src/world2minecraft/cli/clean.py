@@ -27,12 +27,14 @@ def run(
     ],
     list_: Annotated[bool, typer.Option("--list", help="List the mends; change nothing.")] = False,
     undo: Annotated[
-        int, typer.Option("--undo", metavar="N", help="Take back the mend of this number.")
-    ] = 0,
+        int | None,
+        typer.Option("--undo", metavar="N", min=1, help="Take back the mend of this number."),
+    ] = None,
     undo_all: Annotated[bool, typer.Option("--undo-all", help="Take back all mends.")] = False,
     redo: Annotated[
-        int, typer.Option("--redo", metavar="N", help="Do a mend that was taken back again.")
-    ] = 0,
+        int | None,
+        typer.Option("--redo", metavar="N", min=1, help="Do a mend that was taken back again."),
+    ] = None,
     only: Annotated[
         list[str] | None,
         typer.Option("--only", metavar="RULE", help="trim, see_through, holes, floating, steady."),
@@ -57,7 +59,7 @@ def run(
     Raises:
         UsageError: there is no such mend or rule. InputError: there is no build.
     """
-    if sum((list_, undo > 0, undo_all, redo > 0)) > 1:
+    if sum((list_, undo is not None, undo_all, redo is not None)) > 1:
         raise UsageError("--list, --undo, --undo-all and --redo go one at a time")
     from world2minecraft.edit.cleanup import RULES, mended
 
@@ -142,7 +144,7 @@ def listed(edits: "Sequence[BlockEdit]", is_done: list[bool], first: int = 0) ->
     return "\n".join(lines)
 
 
-def taken_back(history: "History", undo: int, undo_all: bool, redo: int) -> str:
+def taken_back(history: "History", undo: int | None, undo_all: bool, redo: int | None) -> str:
     """Take mends back, or do one again; return a line that tells.
 
     Raises:
@@ -151,7 +153,7 @@ def taken_back(history: "History", undo: int, undo_all: bool, redo: int) -> str:
     if redo:
         history.redo(redo - 1)
         return f"Mend {redo} is done again."
-    if not undo_all:
+    if undo is not None:
         return f"Mend {history.undo(undo - 1) + 1} is taken back."
     count = sum(history.journal.is_done)
     for _ in range(count):

@@ -140,7 +140,8 @@ def scenes_named(
         return [replace(one, blocks_per_metre=blocks_per_metre, given=given) for one in found]
     if given is not None:
         raise UsageError("--tour and --screenshots are of one --world; name it")
-    count = preset_named(preset).houses if preset and houses is None else houses
+    named = preset_named(preset) if preset else None
+    count = named.houses if named is not None and houses is None else houses
     if count is not None and count < 1:
         raise UsageError(f"--houses is 1 or more, not {count}")
     return house_scenes(count or 0)
@@ -201,6 +202,18 @@ def worlds_in(folder: Path) -> list[Path]:
     if not found:
         raise InputError(folder, "holds no world; w2m rooms generate --houses 4 --worlds DIR")
     return found
+
+
+def check_seed(seed: int) -> None:
+    """Raise UsageError where a seed is none."""
+    if seed < 0:
+        raise UsageError(f"--seed must be 0 or more, not {seed}")
+
+
+def check_hour(hour: float | None) -> None:
+    """Raise UsageError where an hour is none of a day; None is each scene's own."""
+    if hour is not None and not 0 <= hour <= 24:
+        raise UsageError(f"--hour is 0 to 24, not {hour:g}")
 
 
 def cells_of(voxel: str) -> float | None:

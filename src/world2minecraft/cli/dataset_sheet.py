@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from world2minecraft.cli.dataset_options import check_hour
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -55,12 +57,15 @@ def run(
         UsageError: a tour without its world, a number out of range. InputError: it cannot be read.
     """
     from world2minecraft.dataset.sheet import picture_sheet
-    from world2minecraft.errors import UsageError
+    from world2minecraft.errors import InputError, UsageError
     from world2minecraft.files import write_bytes
     from world2minecraft.render.output.images import colour_bytes
 
     if min(most, columns) < 1 or not 16 <= width <= 2000:
         raise UsageError("--most and --columns are 1 or more, --width is 16 to 2000")
+    check_hour(hour)
+    if not place.exists():
+        raise InputError(place, "is not there; give a data set's folder or a tour file")
     if place.is_dir():
         pictures = _of_data(place, most, first, split, labels)
     elif world is None:

@@ -16,6 +16,7 @@ from world2minecraft.cli.dataset_options import (
     Seed,
     Size,
     camera_named,
+    check_seed,
     said_at,
 )
 
@@ -89,6 +90,7 @@ def run(
 
     if screenshots is None and (at or poses is not None or pattern is not None):
         raise UsageError("--at, --poses and --pattern tell of --screenshots DIR; name them")
+    check_seed(seed)
     source = open_scene_source(world, block_map=block_map, blocks_per_metre=blocks_per_metre)
     if screenshots is not None:
         _write_recorded(source, screenshots, at, poses, pattern, fov, out)

@@ -21,6 +21,7 @@ w2m demo --seed 7 --out other   another one again
 """
 DEMO_SEED = 5
 DEMO_FRAMES = 40
+LEAST_FRAMES = 3  # Of fewer nobody can say how well their poses fit.
 
 
 def run(
@@ -58,10 +59,11 @@ def run(
     from world2minecraft.rooms import generate_room, scan_room
     from world2minecraft.run_folder import check_writable
 
-    check_writable(out)
+    check_figures(seed, frames)
     plaque = BuildParameters(plaque=f"A {kind} room")
     chosen = Parameters(blocks_per_metre=blocks_per_metre, build=plaque)
     chosen = with_build_options(chosen, style, palette, formats)
+    check_writable(out)
     style_note(chosen)
     compiling_note()
     with shown() as progress:
@@ -71,3 +73,13 @@ def run(
         scan_room(room, out / "capture", frames=frames, seed=seed, progress=progress)
         facts = make_run(out / "capture", out, chosen, progress=progress)
     say_where(out, facts)
+
+
+def check_figures(seed: int, frames: int) -> None:
+    """Raise UsageError, before any work, where there is no such room or scan."""
+    from world2minecraft.errors import UsageError
+
+    if seed < 0:
+        raise UsageError(f"--seed must be 0 or more, not {seed}")
+    if frames < LEAST_FRAMES:
+        raise UsageError(f"--frames must be {LEAST_FRAMES} or more, not {frames}; 40 are usual")

@@ -13,7 +13,7 @@ from typing import Literal
 
 EXAMPLES = """\
 w2m doctor                  check this machine
-w2m doctor && w2m demo      check it, then build the embedded room
+w2m doctor && w2m demo      check it, then build the demo room
 """
 
 PYTHON_RANGE = ((3, 11), (3, 13))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 REPLIES_FILE = "replies.jsonl"
 
 Model = Annotated[
-    str, typer.Option("--model", help="The model on the server, where --agent does not say it.")
+    str, typer.Option("--model", help="The model on the server, where it is not named already.")
 ]
 KeyEnv = Annotated[
     str,

@@ -146,6 +146,7 @@ def run(
     chosen = with_settings(chosen, as_settings(semantics, fov) + (settings or []))
     if follow and start is not None:
         raise UsageError("--follow reads a whole capture; leave out --from")
+    check_stage(start)
     style_note(chosen)
     compiling_note()
     if (drawn := plan_in(capture)) is not None:
@@ -155,6 +156,16 @@ def run(
             watch(capture, out, chosen, labels, follow_idle_s, progress)
         facts = make_run(capture, out, chosen, start, labels, progress)
     say_where(out, facts)
+
+
+def check_stage(start: str | None) -> None:
+    """Raise UnknownNameError, before any work, where ``--from`` names no stage."""
+    from world2minecraft.errors import UnknownNameError
+    from world2minecraft.pipeline import STAGES
+
+    stages = (*STAGES, "report")
+    if start is not None and start not in stages:
+        raise UnknownNameError("stage", start, stages)
 
 
 def as_settings(semantics: str, fov: float | None) -> list[str]:

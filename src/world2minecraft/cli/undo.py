@@ -49,6 +49,9 @@ def run(
         if not (world / "level.dat").is_file():
             raise no_world(world)
         steps = steps_of(world)
+        if not steps:
+            print(f"{world}: nothing of World2Minecraft is there to undo.")
+            return
         for step in steps:
             print(f"{step.folder.name}  {step.what}, {counted(len(step.files), 'file')}")
         print(f"{counted(len(steps), 'step')} to undo, the last one first.")

@@ -101,6 +101,15 @@ class VerbCommand(TyperCommand):
 
     examples = ""
 
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the words; what is wrong with them is said with this verb's help to look at."""
+        try:
+            return super().parse_args(ctx, args)
+        except Exception as error:
+            if hasattr(error, "ctx") and error.ctx is None:
+                error.ctx = ctx
+            raise
+
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
         """Return what follows the verb: names in capitals, in brackets what may be left out."""
         words = (

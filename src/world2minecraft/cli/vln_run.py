@@ -54,8 +54,12 @@ Moves = Annotated[
     str, typer.Option("--moves", help="vlnce (0.25 m, 15 degrees), rxr (30 degrees) or block.")
 ]
 MaxSteps = Annotated[int, typer.Option("--max-steps", help="Moves that an agent has.", min=1)]
-Chunk = Annotated[int, typer.Option("--chunk", help="Moves that a model gives at once, 1 to 4.")]
-History = Annotated[int, typer.Option("--history", help="Views of before that a model sees.")]
+Chunk = Annotated[
+    int, typer.Option("--chunk", help="Moves that a model gives at once.", min=1, max=4)
+]
+History = Annotated[
+    int, typer.Option("--history", help="Views of before that a model sees.", min=0)
+]
 Map = Annotated[
     str,
     typer.Option(

@@ -98,7 +98,7 @@ def rooms_of(source: Path, grid: OccupancyGrid) -> tuple[Layout, ...]:
 
 def _read_run(folder: Path) -> Opened:
     if not (folder / "room.npz").is_file():
-        raise InputError(folder, "is no run of w2m: room.npz is missing")
+        raise InputError(folder, "is no run of w2m: room.npz is missing; w2m reconstruct makes one")
     grid, scan_to_room = read_room(folder / "room.npz")
     rooms = rooms_of(folder, grid)
     inputs = tuple(folder / name for name in RUN_FILES if (folder / name).is_file())
