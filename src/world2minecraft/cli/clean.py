@@ -20,21 +20,24 @@ w2m clean OUT --undo-all       the room as it was built
 w2m clean OUT --dry-run        what would be mended
 """
 
+Undo = Annotated[
+    int | None,
+    typer.Option("--undo", metavar="N", min=1, help="Take back the mend of this number."),
+]
+Redo = Annotated[
+    int | None,
+    typer.Option("--redo", metavar="N", min=1, help="Do a mend that was taken back again."),
+]
+
 
 def run(
     source: Annotated[
         Path, typer.Argument(metavar="OUT", help="A run's folder, or the build folder in it.")
     ],
     list_: Annotated[bool, typer.Option("--list", help="List the mends; change nothing.")] = False,
-    undo: Annotated[
-        int | None,
-        typer.Option("--undo", metavar="N", min=1, help="Take back the mend of this number."),
-    ] = None,
+    undo: Undo = None,
     undo_all: Annotated[bool, typer.Option("--undo-all", help="Take back all mends.")] = False,
-    redo: Annotated[
-        int | None,
-        typer.Option("--redo", metavar="N", min=1, help="Do a mend that was taken back again."),
-    ] = None,
+    redo: Redo = None,
     only: Annotated[
         list[str] | None,
         typer.Option("--only", metavar="RULE", help="trim, see_through, holes, floating, steady."),

@@ -62,8 +62,7 @@ def run(
     from world2minecraft.dataset.region import RegionRule
     from world2minecraft.dataset.store.sample_files import SampleFiles
 
-    option.check_seed(seed)
-    option.check_hour(hour)
+    option.check_seed(seed, hour)
     given, recorded = option.given_named(tour, screenshots, at, fov)
     scenes = option.scenes_named(houses, worlds, world, preset, blocks_per_metre, given)
     if images is None and not preset:

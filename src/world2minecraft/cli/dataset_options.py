@@ -204,10 +204,11 @@ def worlds_in(folder: Path) -> list[Path]:
     return found
 
 
-def check_seed(seed: int) -> None:
-    """Raise UsageError where a seed is none."""
+def check_seed(seed: int, hour: float | None = None) -> None:
+    """Raise UsageError where a seed is none, or an hour, as ``check_hour``."""
     if seed < 0:
         raise UsageError(f"--seed must be 0 or more, not {seed}")
+    check_hour(hour)
 
 
 def check_hour(hour: float | None) -> None:

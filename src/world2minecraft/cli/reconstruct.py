@@ -127,7 +127,6 @@ def run(
     """
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
-    from world2minecraft.errors import UsageError
     from world2minecraft.making import make_run, plan_in
     from world2minecraft.parameters import Parameters, with_method, with_settings
 
@@ -144,9 +143,7 @@ def run(
     )
     chosen = with_build_options(with_method(chosen, method), style, palette, formats)
     chosen = with_settings(chosen, as_settings(semantics, fov) + (settings or []))
-    if follow and start is not None:
-        raise UsageError("--follow reads a whole capture; leave out --from")
-    check_stage(start)
+    check_stage(start, follow)
     style_note(chosen)
     compiling_note()
     if (drawn := plan_in(capture)) is not None:
@@ -158,11 +155,13 @@ def run(
     say_where(out, facts)
 
 
-def check_stage(start: str | None) -> None:
-    """Raise UnknownNameError, before any work, where ``--from`` names no stage."""
-    from world2minecraft.errors import UnknownNameError
+def check_stage(start: str | None, follow: bool) -> None:
+    """Raise UsageError, before any work, where ``--from`` names no stage, or goes not with it."""
+    from world2minecraft.errors import UnknownNameError, UsageError
     from world2minecraft.pipeline import STAGES
 
+    if follow and start is not None:
+        raise UsageError("--follow reads a whole capture; leave out --from")
     stages = (*STAGES, "report")
     if start is not None and start not in stages:
         raise UnknownNameError("stage", start, stages)
