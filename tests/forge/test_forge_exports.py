@@ -38,7 +38,7 @@ def apart(editor, tmp_path, monkeypatch):
     monkeypatch.setenv("HOME", str(tmp_path / "user"))
     (tmp_path / "user" / ".minecraft" / "saves").mkdir(parents=True)
     with served(editor, home=tmp_path / "home") as server, client(server) as script:
-        script.jobs = server.session.jobs
+        script.jobs, script.workshop = server.session.jobs, server.workshop
         yield script
 
 
