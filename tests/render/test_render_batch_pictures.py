@@ -10,6 +10,7 @@ from world2minecraft.coordinates import apply
 from world2minecraft.errors import UsageError
 from world2minecraft.render import LookLight, prepare_scene, render_volume
 from world2minecraft.render.batch import BATCH_OUTPUTS, batch_arrays, render_batch
+from world2minecraft.render.batch import draw as draw_module
 from world2minecraft.render.lamps import DAY, exposure_of
 from world2minecraft.render.live_scene import LiveScene
 from world2minecraft.render.picture import OUTPUTS
@@ -59,6 +60,19 @@ def test_cameras_may_differ_but_for_their_size(scene, poses):
     batch = render_batch(scene, cameras, poses, outputs=("depth",), light=FIXED)
     for number, (camera, pose) in enumerate(zip(cameras, poses, strict=True)):
         same(batch, number, render_volume(scene, camera, pose, light=FIXED))
+
+
+def test_the_kernel_has_memory_for_the_way_to_the_sun(scene, poses, monkeypatch):
+    """Else it writes beyond its end, and no picture shows it."""
+    given = []
+    monkeypatch.setattr(draw_module, "draw_poses", lambda *words: given.append(words))
+    sunny = LookLight(exposure=1.2, sun_shadow=True)
+    render_batch(scene, SMALL, poses, outputs=("colour",), light=sunny, threads=2)
+    assert len(given) == 2
+    for *_, cells, scratch, _ in given:
+        assert (cells.shape, cells.dtype) == ((8, 3), np.int64)
+        assert (scratch.shape, scratch.dtype) == ((96,), np.float64)
+    assert len({cells.ctypes.data for *_, cells, _, _ in given}) == 2
 
 
 def test_only_what_is_asked_for_is_there(scene, poses):

@@ -10,9 +10,9 @@ from world2minecraft.render.pixels import (
     INSTANCE,
     NORMAL,
     OPAQUE,
-    SCRATCH,
     SEMANTIC,
     TILE,
+    band_memory,
     draw_rows,
 )
 from world2minecraft.render.scene import BlockScene
@@ -99,7 +99,7 @@ def draw_into(
     def band(rows: tuple[int, int]) -> None:
         draw_rows(
             scene.tables, scene.side_px, pose, rays, spread, rows[0], rows[1], lamp,
-            np.empty((8, 3), np.int64), np.empty(SCRATCH), arrays,
+            *band_memory(), arrays,
         )  # fmt: skip
 
     if arrays.wanted & NORMAL:

@@ -26,7 +26,14 @@ from world2minecraft.render.tables import NO_FACE, OWNER, TURN
 TILE = 8
 # Bits of what is wanted.
 COLOUR, OPAQUE, NORMAL, SEMANTIC, INSTANCE = 1, 2, 4, 8, 16
-SCRATCH = 96  # Numbers that a band of rows needs for itself; see ``draw_rows``.
+# What a band of rows needs for itself, see ``draw_rows``: numbers, and rows of whole ones. Four of
+# those are of the tile's bundle, the others of that towards the sun.
+SCRATCH, CELLS = 96, 8
+
+
+def band_memory() -> tuple[np.ndarray, np.ndarray]:
+    """Return ``cells`` and ``scratch`` of ``draw_rows``, for one band."""
+    return np.empty((CELLS, 3), np.int64), np.empty(SCRATCH)
 
 
 @lean
@@ -42,7 +49,7 @@ def draw_rows(tables, side_px, pose, rays, spread, first, last, lamp, cells, scr
         first: the first row, a whole number of tiles.
         last: past the last row.
         lamp: the light, see ``render.shade``.
-        cells: int64 [8, 3], this band's own.
+        cells: int64 [CELLS, 3], this band's own.
         scratch: float64 [SCRATCH], this band's own.
         out: ``PixelArrays``; depth and distance are 0 where there is nothing, index and thing -1,
             face ``NO_FACE``.

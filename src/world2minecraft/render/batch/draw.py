@@ -21,7 +21,7 @@ from world2minecraft.render.free import crossed_air
 from world2minecraft.render.lamps import DAY, Paper, lamp_of
 from world2minecraft.render.light import LookLight
 from world2minecraft.render.picture import DEFAULT_OUTPUTS
-from world2minecraft.render.pixels import SCRATCH, TILE, draw_rows
+from world2minecraft.render.pixels import TILE, band_memory, draw_rows
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.shade import Lamp
 from world2minecraft.render.tables import SceneTables
@@ -176,7 +176,7 @@ def _drawer(stage: Stage, views: Views, lamp: Lamp, samples: int, out: ManyPixel
     fine = pixel_arrays((height * samples, width * samples), ("colour",)) if apart else None
 
     def draw(start: int, stride: int, rows: tuple[int, int], slot: int) -> None:
-        cells, scratch = np.empty((4, 3), np.int64), np.empty(SCRATCH)
+        cells, scratch = band_memory()
         draw_poses(
             stage.tables, stage.side_px, views.poses, views.rays, 1.0, start, stride, *rows, slot,
             lamp, cells, scratch, out,

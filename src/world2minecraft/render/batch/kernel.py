@@ -49,7 +49,7 @@ def draw_poses(
         last: past the last row.
         slot: where arrays without N pictures are written to.
         lamp: the light.
-        cells: int64 [4, 3], the caller's own.
+        cells: int64 [CELLS, 3], the caller's own.
         scratch: float64 [SCRATCH], the caller's own.
         out: ``ManyPixels``.
     """
