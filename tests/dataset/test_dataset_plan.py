@@ -8,9 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from world2minecraft.dataset.building.recorded import LONGEST_NAME as LONGEST_TOUR
 from world2minecraft.dataset.building.shards import units_of
 from world2minecraft.dataset.building.shares import shared_views
 from world2minecraft.dataset.plan import (
+    MOST_SCENES,
     PRESETS,
     Recipe,
     SceneSpec,
@@ -18,6 +20,7 @@ from world2minecraft.dataset.plan import (
     plan_dataset,
     source_scenes,
 )
+from world2minecraft.dataset.store.tar import LONGEST_KEY
 from world2minecraft.errors import UnknownNameError, UsageError
 
 
@@ -40,13 +43,14 @@ def test_the_paper_has_as_many_scenes():
     assert sum((79_799, 20_366)) == 100_165
 
 
-@given(st.integers(1, 60), st.integers(0, 500), st.floats(0, 0.9), st.integers(0, 99))
+@given(st.integers(1, 60), st.integers(0, 500), st.floats(0, 0.999), st.integers(0, 99))
 def test_all_images_are_shared_out_and_no_scene_is_in_two_splits(scenes, more, share, seed):
     recipe = Recipe(seed=seed)
     plan = plan_dataset(house_scenes(scenes), scenes + more, recipe=recipe, test_share=share)
     assert sum(plan.images.values()) == scenes + more
     assert len({scene.scene_id for scene in plan.scenes}) == scenes
     assert any(scene.split == "train" for scene in plan.scenes)
+    assert min(scene.images for scene in plan.scenes) >= 1
     for split in plan.images:
         counts = [scene.images for scene in plan.scenes if scene.split == split]
         assert max(counts) - min(counts) <= 1
@@ -98,6 +102,20 @@ def test_an_unknown_preset_is_told():
 def test_scenes_of_one_name_get_names_of_their_own():
     places = [Path("a/house/world"), Path("b/house.schem"), Path("c/house")]
     assert [one.scene_id for one in source_scenes(places)] == ["house", "house_2", "house_3"]
+
+
+def test_a_world_that_is_given_twice_is_refused():
+    """Under two names it would be trained on and tested on."""
+    with pytest.raises(UsageError, match="a/../a/house is given twice; give each world once"):
+        source_scenes([Path("a/house"), Path("b"), Path("a/../a/house")])
+
+
+def test_the_keys_of_any_scene_can_be_stored():
+    """The longest name, its number, the longest tour of one's own and a frame."""
+    (spec,) = source_scenes([Path("x" * 200)])
+    key = f"{spec.scene_id}_{MOST_SCENES - 1}-{'t' * LONGEST_TOUR}-999999"
+    assert len(key) <= LONGEST_KEY
+    assert len(f"{key}.depth.png") <= 100  # As long as a name in a ustar may be.
 
 
 # Scenes that have fewer views than they are asked for.

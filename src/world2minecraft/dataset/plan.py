@@ -18,6 +18,7 @@ from world2minecraft.types import Camera
 
 TEST_SHARE = 0.2  # Of images and of scenes, where no preset says it.
 MOST_IMAGES, MOST_SCENES = 10_000_000, 100_000
+LONGEST_NAME = 46  # Of a scene: with a number, a tour and a frame its keys have 90 letters at most.
 
 
 @dataclass(frozen=True)
@@ -156,8 +157,9 @@ def plan_dataset(
     else:
         total = images or 0
         tests = _test_scenes(len(scenes), test_share)
-        test = round(total * test_share) if tests else 0
-        test = min(max(test, tests), total)
+        test = round(total * test_share)
+        # As many as scenes of either kind: at least one image is for training.
+        test = min(max(test, tests), total - 1) if tests else 0
         train = total - test
     count = _test_scenes(len(scenes), test / (train + test))
     order = sorted(scenes, key=lambda scene: _chance(how.seed, scene.scene_id))
@@ -174,10 +176,18 @@ def plan_dataset(
 
 
 def source_scenes(paths: Sequence[Path]) -> list[SceneSpec]:
-    """Return the specs of worlds and schematics, each with a name of its own."""
+    """Return the specs of worlds and schematics, each with a name of its own.
+
+    Raises:
+        UsageError: a place is given twice; it would be trained on and tested on.
+    """
     found: dict[str, SceneSpec] = {}
+    known: set[Path] = set()
     for path in paths:
-        name = base = scene_id_of(path)[:60]
+        if path.resolve() in known:
+            raise UsageError(f"{path} is given twice; give each world once")
+        known.add(path.resolve())
+        name = base = scene_id_of(path)[:LONGEST_NAME]
         number = 2
         while name in found:
             name, number = f"{base}_{number}", number + 1

@@ -119,7 +119,7 @@ class OccSample:
     fine_classes: tuple[FineClass, ...]
     colour: np.ndarray | None = None  # uint8 [H, W, 3]
     depth_m: np.ndarray | None = None  # float32 [H, W], z-depth, 0 where there is none
-    split: str = ""  # train, test or ""
+    split: str = ""  # train, val, test or ""
     facts: dict = field(default_factory=dict)  # block_to_room, the game's pose, light ...
 
     def __post_init__(self):

@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -90,6 +91,46 @@ def test_the_same_samples_give_the_same_files(made, tmp_path, monkeypatch):
 def test_a_folder_with_a_data_set_is_left_alone(made):
     with pytest.raises(ConflictError, match="holds a data set already"):
         write_store(made, samples())
+
+
+def test_half_a_data_set_is_told_from_a_whole_one(tmp_path):
+    def stopped():
+        yield from samples(2)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_store(tmp_path, stopped(), files=PNG)
+    with pytest.raises(ConflictError, match="holds shards/ of a data set that was not finished"):
+        write_store(tmp_path, samples(2), files=PNG)
+    shutil.rmtree(tmp_path / "shards")
+    write_store(tmp_path, samples(2), files=PNG)
+    assert len(open_store(tmp_path)) == 4
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        ({"key": "my.frame"}, "a sample's key is 1 to 90 letters of A-Z, a-z, 0-9, - and _, not "
+         "'my.frame'; rename it"),
+        ({"key": "k" * 91}, "a sample's key is 1 to 90 letters"),
+        ({"scene_id": "room 1"}, "a scene's name is 1 to 80 letters .* not 'room 1'; rename it"),
+        ({"split": "tset"}, "a split is train, val, test or left empty, not 'tset'"),
+    ],
+)  # fmt: skip
+def test_names_that_no_reader_would_find_are_refused(tmp_path, words, text):
+    with pytest.raises(UsageError, match=text):
+        write_store(tmp_path, [replace(sample(), **words)])
+
+
+def test_two_samples_of_one_key_are_refused(tmp_path):
+    with pytest.raises(UsageError, match="two samples have the key 'house_0001-a-000000'"):
+        write_store(tmp_path, [sample(), sample()])
+
+
+@pytest.mark.parametrize("split", ["train", "val", "test", ""])
+def test_any_split_is_found_again(tmp_path, split):
+    write_store(tmp_path, [replace(sample(split=split), key="k" * 90, scene_id="s" * 80)])
+    assert [one.split for one in open_store(tmp_path).samples(split)] == [split]
 
 
 # Others read it.

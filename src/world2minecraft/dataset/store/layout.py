@@ -36,7 +36,7 @@ SPLITS = ("train", "test")
 LEFTOVER = re.compile(
     r"\.(?:[\w.-]+\.(?:json|jsonl|md)\.\w{8}|index\.parquet\.part|house_\d+\.part)"
 )
-SHARD_NAME = re.compile(r"shards/(?:train|test|all)/[A-Za-z0-9_-]{1,90}\.tar")
+SHARD_NAME = re.compile(r"shards/(?:train|val|test|all)/[A-Za-z0-9_-]{1,90}\.tar")
 KIND = "minecraftocc"
 MAX_META_BYTES, MAX_FINE = 64 << 20, 65_535
 

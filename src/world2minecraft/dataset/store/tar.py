@@ -10,7 +10,8 @@ from typing import BinaryIO
 
 BLOCK = 512
 RECORD = 20 * BLOCK  # A tar is so many bytes, or a multiple.
-MEMBER_NAME = re.compile(r"([A-Za-z0-9_-]{1,80})\.([a-z]{2,6}(?:\.[a-z]{2,6})?)")
+LONGEST_KEY = 90  # With ".depth.png" it is as long as the name of a ustar member may be.
+MEMBER_NAME = re.compile(r"([A-Za-z0-9_-]{1,90})\.([a-z]{2,6}(?:\.[a-z]{2,6})?)")
 
 
 @dataclass(frozen=True)

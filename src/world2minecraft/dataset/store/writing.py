@@ -1,7 +1,8 @@
 """How a data set begins and ends, and one written from samples that are there already."""
 
 import platform
-from collections.abc import Iterable
+import re
+from collections.abc import Container, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -22,12 +23,14 @@ from world2minecraft.dataset.store.layout import (
 )
 from world2minecraft.dataset.store.sample_files import FORMAT, FineTable, SampleFiles, pack_sample
 from world2minecraft.dataset.store.shard import ShardWriter
+from world2minecraft.dataset.store.tar import LONGEST_KEY
 from world2minecraft.dataset.values import FineClass, OccSample
-from world2minecraft.errors import ConflictError
+from world2minecraft.errors import ConflictError, UsageError
 from world2minecraft.files import write_json
 from world2minecraft.lock import Lock
 from world2minecraft.progress import Progress, silent
 
+LONGEST_SCENE = 80  # A shard's name, with its number, has 90.
 SHARD_SAMPLES = 100  # About 100 MB at 1920x1129; a download of a shard, a unit of work.
 CONVENTIONS = {
     "cells": "labels[x, y, z]: x right, y forward, z up of the region; 255 is unknown",
@@ -98,22 +101,30 @@ def write_store(
 
     Args:
         folder: a new one.
-        samples: with keys that are unique.
+        samples: with keys that are unique, of letters, digits, - and _; the names of their scenes
+            too; ``split`` is train, val, test or left empty.
         meta: further facts for ``dataset.json``.
         files: how pictures are packed.
         progress: told the samples that are done.
 
     Raises:
-        ConflictError: there is a data set already. OutputError: a file cannot be written.
+        ConflictError: there is a data set already, or half of one. UsageError: a name or a split
+        cannot be stored. OutputError: a file cannot be written.
     """
     target, how = Path(folder), files or SampleFiles()
     arrow_modules()  # Before the work, not after it.
-    if (target / META).exists() or (target / SHARDS).exists():
+    if (target / META).exists():
         raise ConflictError(target, "holds a data set already; choose another folder")
     target.mkdir(parents=True, exist_ok=True)
     lock = Lock(target / LOCK, "written")
     lock.take()
     try:
+        if (target / SHARDS).exists():
+            raise ConflictError(
+                target,
+                f"holds {SHARDS}/ of a data set that was not finished; remove that folder, or "
+                "choose another",
+            )
         return _written(target, samples, dict(meta or {}), how, progress)
     finally:
         lock.remove()
@@ -132,6 +143,7 @@ def _written(
     scenes: dict[str, None] = {}
     batch: list[tuple[str, dict[str, bytes]]] = []
     place: tuple[str, str] | None = None
+    keys: set[str] = set()
 
     def flush() -> None:
         if batch and place is not None:
@@ -139,6 +151,8 @@ def _written(
             batch.clear()
 
     for done, sample in enumerate(samples, 1):
+        _check_names(sample, keys)
+        keys.add(sample.key)
         if (sample.split, sample.scene_id) != place or len(batch) == SHARD_SAMPLES:
             flush()
             place = (sample.split, sample.scene_id)
@@ -151,6 +165,22 @@ def _written(
     write_classes(folder, FineTable(tuple(kinds)))
     facts = {**meta, "images": images, "scenes": [{"scene_id": one} for one in scenes]}
     return finish_store(folder, names, facts, (shard_rows(folder / name, name) for name in names))
+
+
+def _check_names(sample: OccSample, known: Container[str]) -> None:
+    """Refuse what no reader would find again. Raises UsageError."""
+    for what, name, most in (
+        ("a sample's key", sample.key, LONGEST_KEY),
+        ("a scene's name", sample.scene_id, LONGEST_SCENE),
+    ):
+        if not re.fullmatch(rf"[A-Za-z0-9_-]{{1,{most}}}", name):
+            raise UsageError(
+                f"{what} is 1 to {most} letters of A-Z, a-z, 0-9, - and _, not {name!r}; rename it"
+            )
+    if sample.key in known:
+        raise UsageError(f"two samples have the key {sample.key!r}; give each one of its own")
+    if sample.split not in ("", "train", "val", "test"):
+        raise UsageError(f"a split is train, val, test or left empty, not {sample.split!r}")
 
 
 def _shard(
