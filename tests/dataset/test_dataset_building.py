@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -128,6 +129,16 @@ def test_a_sample_is_what_the_renderer_and_the_labeller_say(made, worlds):
     names = [voxels.fine_classes[n] for n in occ.fine.flat]
     assert names == [sample.fine_classes[n] for n in sample.occ.fine.flat]
     assert len(np.unique(occ.labels)) > 3
+
+
+def test_one_world_in_both_splits_is_refused(plan):
+    """However it is called: a copy of a world is the same world."""
+    facts = {scene.scene_id: SimpleNamespace(digest="same") for scene in plan.scenes}
+    with pytest.raises(
+        UsageError, match=r"first.schem \(for test\) and .*second.schem \(for train"
+    ):
+        build_module._refuse_twins(plan.scenes, facts)
+    build_module._refuse_twins(plan.scenes[:1] * 2, facts)
 
 
 def test_progress_goes_through_every_stage_to_its_end(made):

@@ -3,7 +3,7 @@
 import json
 import shutil
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -154,6 +154,7 @@ class _Build:
             first = SceneTask(str(self.folder), self.plan.scenes[0], self.plan.recipe)
             list(self.engine.run(warm, [first], self._ticker("compile", 1)))
         scenes = self._settled(shared_views(self.plan.scenes, partial(self._look, facts)))
+        _refuse_twins(scenes, facts)
         plan = replace(self.plan, scenes=scenes)
         classes = {one for fact in facts.values() for one in fact.fine} - {EMPTY}
         write_classes(self.folder, FineTable((EMPTY, *sorted(classes))))
@@ -236,6 +237,18 @@ class _Build:
         rows, seconds = result
         self.cpu["write"] += seconds
         return rows
+
+
+def _refuse_twins(scenes: Sequence[SceneSpec], facts: Mapping[str, SceneFacts]) -> None:
+    """Raise UsageError where a world, under two names, is both trained and tested on."""
+    first: dict[str, SceneSpec] = {}
+    for scene in scenes:
+        twin = first.setdefault(facts[scene.scene_id].digest, scene)
+        if twin.split != scene.split:
+            raise UsageError(
+                f"{twin.path} (for {twin.split}) and {scene.path} (for {scene.split}) are the same "
+                "world, block by block: give one of them alone"
+            )
 
 
 def _differences(before: dict[str, Any], now: dict[str, Any]) -> list[str]:
