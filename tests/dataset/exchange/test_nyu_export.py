@@ -1,6 +1,7 @@
 """NYUv2: the loaders' arithmetic on our export meets the pixels that saw the cells."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from tests.dataset.exchange import page_loader, synthetic
 
 from world2minecraft.dataset.exporters import ExportRule, export_samples
 from world2minecraft.dataset.formats.sscnet import downsampled, read_bin
+from world2minecraft.dataset.importers import ImportedSet
 from world2minecraft.errors import ConflictError, InputError, UnknownNameError, UsageError
 from world2minecraft.types import Camera
 
@@ -225,6 +227,28 @@ def test_wrong_asks_are_refused(made, tmp_path):
         export_samples([made], "nyu", tmp_path, split="test")
     with pytest.raises(UnknownNameError, match="choice of unknown cells"):
         ExportRule(unknown="none")
+
+
+def test_a_data_set_that_was_made_anew_is_not_taken_for_exported(made, tmp_path):
+    """Its samples have the same keys, and other pictures."""
+
+    sample = replace(made, facts={})
+
+    def a_set(sha256):
+        return ImportedSet(tmp_path, "store", {made.key: "train"}, lambda _: sample, sha256=sha256)
+
+    for _ in range(2):
+        report = export_samples(a_set("one"), "npz", tmp_path / "out")
+    assert report.passed_over == 1
+    with pytest.raises(ConflictError, match="holds an export of another data set, or of this one"):
+        export_samples(a_set("other"), "npz", tmp_path / "out")
+
+
+def test_a_list_names_what_earlier_runs_have_exported(made, tmp_path):
+    for split in ("train", "test"):
+        export_samples([replace(made, key=split, split=split, facts={})], "npz", tmp_path)
+    told = json.loads((tmp_path / "index.json").read_text())
+    assert told["keys"] == {"train": "train", "test": "test"}
 
 
 def test_the_choices_are_written_down(exported):

@@ -7,6 +7,7 @@ import pytest
 from tests.dataset.exchange import page_loader, synthetic
 
 from world2minecraft.dataset.exporters import ExportRule, export_samples
+from world2minecraft.dataset.importers.embodied import open_scenes
 from world2minecraft.errors import InputError, UsageError
 from world2minecraft.types import Camera
 
@@ -233,6 +234,25 @@ def test_a_scene_that_the_official_operation_cannot_hold_is_named(made, tmp_path
         "1 scenes are larger than 60x60x36 cells, which EmbodiedOcc's own operation holds: "
         "scene0000_00"
     ]
+
+
+def test_a_split_after_another_leaves_its_lists_alone(made, exported, tmp_path):
+    for split in ("train", "test"):
+        export_samples(made, "embodied", tmp_path, split=split)
+    both = {path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file()}
+    assert both == {one.relative_to(exported) for one in exported.rglob("*") if one.is_file()}
+    for path in both:
+        assert (tmp_path / path).read_bytes() == (exported / path).read_bytes(), path
+
+
+def test_masks_of_frames_that_are_no_longer_taken_go(made, tmp_path):
+    """They are of the scene's grid before it grew, and no reader could lay them on it."""
+    rule = ExportRule(frames_per_scene=2)
+    for limit in (2, 3, 4):
+        export_samples(made, "embodied", tmp_path, rule, limit=limit)
+        scenes = open_scenes(tmp_path)
+        assert len(scenes.frames["scene0000_00"]) == 2
+        assert scenes.read("scene0000_00").seen.any()
 
 
 def test_a_scene_of_two_splits_is_refused(tmp_path):

@@ -44,18 +44,23 @@ class EmbodiedExporter:
         self.frames.pause()
 
     def finish(self, keys: Sequence[str]) -> None:
-        """Write a package for each scene, the masks of its frames, and the lists of scenes."""
+        """Write a package for each scene, the masks of its frames, and the lists of scenes.
+
+        Scenes of which this run exported no frame stay as they are, and in their lists.
+        """
         self.frames.finish(keys)
+        named = self.frames.names.samples
+        exported = {named[key].scene for key in keys if key in named}
         scenes: dict[str, list[NamedSample]] = {}
-        for key in keys:
-            row = self.frames.names.samples.get(key)
-            if row is not None and row.occupied:
+        for key, row in named.items():
+            if row.occupied and self.frames.is_done(key):
                 scenes.setdefault(row.scene, []).append(row)
         splits: dict[str, list[str]] = {"train": [], "test": []}
         for scene in sorted(scenes):
             rows = sorted(scenes[scene], key=lambda row: row.frame)
             splits[_split_of(rows)].append(scene)
-            self._write_scene(scene, _evenly(rows, self.rule.frames_per_scene))
+            if scene in exported or not self._package_path(scene).is_file():
+                self._write_scene(scene, _evenly(rows, self.rule.frames_per_scene))
         for split, names in splits.items():
             lines = "".join(f"{name}\n" for name in names)
             write_text(self.root / "scene_occ" / f"{split}_online.txt", lines)
@@ -73,8 +78,6 @@ class EmbodiedExporter:
 
     def _write_scene(self, scene: str, rows: list[NamedSample]) -> None:
         """Write the masks of a scene's frames, then its package: that says it is finished."""
-        folder = self.root / "scene_occ"
-        package = folder / "global_occ_package" / f"{scene}.pkl"
         frames = [self._stored(row) for row in rows]
         grid = SceneGrid.around([frame.origin_m for frame in frames], USUAL_VOXEL_M)
         if any(side > most for side, most in zip(grid.shape, OFFICIAL_CELLS, strict=True)):
@@ -89,11 +92,25 @@ class EmbodiedExporter:
             mask[place] = frame.in_image
             seen |= mask
             self._write_mask(row, frame, mask)
-        write_bytes(package, self._package(grid, labels, seen, rows))
+        self._sweep_masks(scene, rows)
+        write_bytes(self._package_path(scene), self._package(grid, labels, seen, rows))
+
+    def _sweep_masks(self, scene: str, rows: list[NamedSample]) -> None:
+        """Take away the masks of frames that are no longer taken: they are of another grid."""
+        taken = {self._mask_path(row) for row in rows}
+        for path in self._mask_path(rows[0]).parent.glob(f"{scene}_*_new.pkl"):
+            if path not in taken:
+                path.unlink()
+
+    def _package_path(self, scene: str) -> Path:
+        return self.root / "scene_occ" / "global_occ_package" / f"{scene}.pkl"
+
+    def _mask_path(self, row: NamedSample) -> Path:
+        folder = self.root / "scene_occ" / "streme_occ_new_package" / row.split
+        return folder / f"{row.scene}_{row.frame}_new.pkl"
 
     def _write_mask(self, row: NamedSample, frame: StoredFrame, mask: np.ndarray) -> None:
-        name = f"{row.scene}_{row.frame}_new.pkl"
-        path = self.root / "scene_occ" / "streme_occ_new_package" / row.split / name
+        path = self._mask_path(row)
         stored = np.ascontiguousarray(frame.labels.transpose(1, 0, 2))
         write_bytes(path, pickle_bytes({"local_label": stored, "mask_in_global": mask}))
 

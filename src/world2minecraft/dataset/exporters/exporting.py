@@ -11,7 +11,8 @@ from world2minecraft.errors import ConflictError, UnknownNameError, UsageError
 from world2minecraft.files import read_json, write_json
 from world2minecraft.progress import Progress, silent
 
-RECORD = "export.json"  # What was chosen, in the folder's root.
+RECORD = "export.json"  # What was chosen, in the folder's root,
+SOURCE = "sha256"  # and the sum of the data set that is exported.
 
 
 @runtime_checkable
@@ -61,12 +62,12 @@ def export_samples(
 
     Raises:
         UnknownNameError: there is no such format. UsageError: there is nothing to export.
-        ConflictError: the folder holds an export by other choices.
+        ConflictError: the folder holds an export by other choices, or of another data set.
         InputError: the format cannot hold a sample.
     """
     root, chosen = Path(out), rule or ExportRule()
     exporter = _exporter(format, root, chosen)
-    _claim(root, {"format": format, **chosen.as_data()})
+    _claim(root, {"format": format, **chosen.as_data()}, str(getattr(samples, "sha256", "")))
     entries, total = _entries(samples, split)
     total = total if limit is None or not total else min(total, limit)
     report = ExportReport(root)
@@ -131,16 +132,28 @@ def _exporter(format: str, root: Path, rule: ExportRule) -> Exporter:
     raise UnknownNameError("format", format, FORMATS)
 
 
-def _claim(root: Path, choices: dict[str, Any]) -> None:
-    """Write down what was chosen, or check that it is what was chosen before."""
+def _claim(root: Path, choices: dict[str, Any], sha256: str) -> None:
+    """Write down what was chosen, or check that it is what was chosen before.
+
+    Args:
+        root: the folder.
+        choices: the format and its rule.
+        sha256: the sum of the data set, "" where it has none: samples of another set may have the
+            same keys, and would be passed over as finished.
+    """
     record = root / RECORD
+    whole = {**choices, SOURCE: sha256} if sha256 else choices
     if not record.is_file():
-        write_json(record, choices)
+        write_json(record, whole)
         return
     before = read_json(record)
-    if before == choices:
-        return
     known = before if isinstance(before, dict) else {}
-    names = [name for name in choices if known.get(name) != choices[name]]
-    told = ", ".join(f"{name} {known.get(name)!r}" for name in names)
-    raise ConflictError(root, f"holds an export with {told}; choose the same, or another --out")
+    names = [name for name in choices if name not in known or known[name] != choices[name]]
+    if names:
+        told = ", ".join(f"{name} {known.get(name)!r}" for name in names)
+        raise ConflictError(root, f"holds an export with {told}; choose the same, or another --out")
+    if sha256 and known.get(SOURCE, sha256) != sha256:
+        raise ConflictError(
+            root, "holds an export of another data set, or of this one before it was made anew; "
+            "choose another --out"
+        )  # fmt: skip

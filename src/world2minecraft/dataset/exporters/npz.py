@@ -33,9 +33,8 @@ class NpzExporter:
         """Do nothing: the files themselves say which samples are finished."""
 
     def finish(self, keys: Sequence[str]) -> None:
-        """Write the list of samples."""
-        rows = {key: split for key in keys for split in SPLITS
-                if (self.root / split / f"{key}.npz").is_file()}  # fmt: skip
+        """Write the list of all samples that lie there, those of earlier runs too."""
+        rows = {path.stem: split for split in SPLITS for path in (self.root / split).glob("*.npz")}
         write_json(self.root / "index.json", {"format": "world2minecraft-occ-npz", "keys": rows})
 
     def notes(self) -> list[str]:

@@ -78,9 +78,12 @@ class OccScanNetExporter:
         self.names.save()
 
     def finish(self, keys: Sequence[str]) -> None:
-        """Write the table of names and the lists of ISO and of EmbodiedOcc."""
+        """Write the table of names and the lists of ISO and of EmbodiedOcc.
+
+        They name all that lies there, so that a split exported after another leaves its list alone.
+        """
         self.names.save()
-        rows = [self.names.samples[key] for key in keys if key in self.names.samples]
+        rows = [row for key, row in self.names.samples.items() if self.is_done(key)]
         rows.sort(key=lambda row: row.path)
         for split, (all_frames, with_content) in LISTS.items():
             of_split = [row for row in rows if row.split == split]

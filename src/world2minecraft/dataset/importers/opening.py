@@ -30,7 +30,7 @@ def _open_store(path: Path) -> ImportedSet:
     store = open_store(path)
     columns = store.index()
     splits = dict(zip(columns["key"].tolist(), columns["split"].tolist(), strict=True))
-    return ImportedSet(path, "store", splits, store.sample)
+    return ImportedSet(path, "store", splits, store.sample, sha256=store.sha256)
 
 
 # In the order in which they are tried: embodied holds occscannet.

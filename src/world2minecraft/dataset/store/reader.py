@@ -47,6 +47,11 @@ class OccStore:
         """Whether there is a sample of that key."""
         return key in self._places
 
+    @property
+    def sha256(self) -> str:
+        """The sum of all samples; data sets with the same sum hold the same samples."""
+        return str(self.meta.get("sha256", ""))
+
     def keys(self, split: str | None = None) -> list[str]:
         """Return the keys of all samples, or of a split, in their order."""
         return [self._names[number] for number in self._numbers(split)]
