@@ -6,6 +6,7 @@ import pytest
 from tests.dataset.samples import FINE, occ_labels, random_labels, sample
 
 from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.coordinates import rotation_about_z
 from world2minecraft.dataset.importers.labelled import CLASS_KINDS
 from world2minecraft.dataset.statistics import (
     StatisticsCounter,
@@ -13,7 +14,7 @@ from world2minecraft.dataset.statistics import (
     picture_counts,
 )
 from world2minecraft.dataset.statistics.cells import WorldCells
-from world2minecraft.dataset.values import FineClass
+from world2minecraft.dataset.values import FineClass, LabelRegion
 
 
 def slow_statistics(samples):
@@ -94,6 +95,29 @@ def test_a_cell_that_two_pictures_hold_counts_twice_and_once():
     assert both.result("x").distinct_cells == 1
     apart = count_samples([sample(0, occ=one), sample(1, "house_0002", occ=one)])
     assert apart.result("x").distinct_cells == 2
+
+
+def test_cells_of_turned_regions_add_up_part_by_part():
+    """Each part lays its grid by its first region, which may be turned and lie anywhere."""
+    parts = [WorldCells(), WorldCells()]
+    for turn_deg, part in zip((10.0, 33.0), parts, strict=True):
+        to_room = rotation_about_z(turn_deg)
+        to_room[:3, 3] = 0.004 * turn_deg, -0.29, 0.11
+        region = LabelRegion((6, 6, 6), 0.08, to_room, "free")
+        part.add(region, np.ones(region.shape, bool))
+    counts = [part.count() for part in parts]
+    parts[0].merge(parts[1])
+    assert max(counts) < parts[0].count() < sum(counts)
+
+
+def test_grids_that_rounding_parts_by_a_cell_are_one():
+    parts = [WorldCells(), WorldCells()]
+    for off_m, part in zip((-1e-9, 1e-9), parts, strict=True):
+        to_room = np.eye(4)
+        to_room[:3, 3] = 0.04 + off_m  # The centres lie on whole multiples of the cell.
+        part.add(LabelRegion((6, 6, 6), 0.08, to_room), np.ones((6, 6, 6), bool))
+    parts[0].merge(parts[1])
+    assert parts[0].count() == 6**3
 
 
 def test_what_is_out_of_the_frustum_or_unknown_is_no_voxel():

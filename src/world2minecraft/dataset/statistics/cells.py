@@ -41,10 +41,11 @@ class WorldCells:
         if phase is None:
             phase, self._voxel_m = centers[0] - np.floor(centers[0]), region.voxel_m
             self._phase = phase
-        if abs(region.voxel_m - self._voxel_m) > 1e-9:
-            sizes = f"{self._voxel_m} m and {region.voxel_m} m"
-            raise ValueError(f"cells of one world must have one size, not {sizes}")
-        cells = np.rint(centers - phase).astype(np.int64)
+        _check_size(region.voxel_m, self._voxel_m)
+        self._add_cells(np.rint(centers - phase).astype(np.int64))
+
+    def _add_cells(self, cells: np.ndarray) -> None:
+        """Add cells, int64 [N, 3], of this set's grid."""
         low, high = cells.min(axis=0) // SIDE, cells.max(axis=0) // SIDE + 1
         flags = np.zeros((high - low) * SIDE, np.bool_)
         flags[tuple((cells - low * SIDE).T)] = True
@@ -54,23 +55,39 @@ class WorldCells:
                 self._put((int(low[0]) + at[0], int(low[1]) + at[1], int(low[2]) + at[2]), part)
 
     def merge(self, other: "WorldCells") -> None:
-        """Add the cells of another set of the same world, whose grid must be the same."""
+        """Add the cells of another set of the same world.
+
+        Where its grid lies otherwise, as that of regions which turn with the view or of another
+        data set's frames does, its cells count as the nearest of this one's.
+
+        Raises:
+            ValueError: its cells have another size.
+        """
         if other._phase is None:
             return
         if self._phase is None:
             self._phase, self._voxel_m = other._phase, other._voxel_m
-        apart = (other._phase - self._phase + 0.5) % 1 - 0.5
-        if np.abs(apart).max() > 1e-3 or abs(other._voxel_m - self._voxel_m) > 1e-9:
-            raise ValueError("cells of one world must lie on one grid")
+        _check_size(other._voxel_m, self._voxel_m)
+        steps = np.rint(other._phase - self._phase).astype(np.int64)
         for key, bits in other._blocks.items():
-            held = self._blocks.get(key)
-            self._blocks[key] = bits.copy() if held is None else held | bits
+            if not steps.any():
+                self._join(key, bits)
+                continue
+            places = np.argwhere(np.unpackbits(bits).reshape(SIDE, SIDE, SIDE))
+            self._add_cells(places + np.array(key) * SIDE + steps)
 
     def count(self) -> int:
         """Return how many cells there are."""
         return sum(int(np.bitwise_count(bits).sum()) for bits in self._blocks.values())
 
     def _put(self, key: tuple[int, int, int], flags: np.ndarray) -> None:
-        bits = np.packbits(flags)
+        self._join(key, np.packbits(flags))
+
+    def _join(self, key: tuple[int, int, int], bits: np.ndarray) -> None:
         held = self._blocks.get(key)
-        self._blocks[key] = bits if held is None else held | bits
+        self._blocks[key] = bits.copy() if held is None else held | bits
+
+
+def _check_size(voxel_m: float, own_m: float) -> None:
+    if abs(voxel_m - own_m) > 1e-9:
+        raise ValueError(f"cells of one world must have one size, not {own_m} m and {voxel_m} m")

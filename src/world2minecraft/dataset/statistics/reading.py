@@ -5,8 +5,9 @@ A stored one is counted by several processes, and its pictures are not read.
 
 import json
 import re
+from collections import deque
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -146,17 +147,17 @@ def _is_imported(place: Path) -> bool:
 def _parts(
     store: OccStore, keys: Sequence[str], jobs: int
 ) -> Iterator[tuple[StatisticsCounter, int]]:
-    """Give the counters of parts of the data set, in any order: sums do not heed it."""
+    """Give the counters of parts of the data set, in their order."""
     parts = [keys[start : start + PART] for start in range(0, len(keys), PART)]
     if jobs <= 1 or len(parts) <= 1:
         for part in parts:
             yield count_samples(store.sample(key, pictures=False) for key in part), len(part)
         return
     with ProcessPoolExecutor(min(jobs, len(parts)), get_context("spawn")) as pool:
-        tasks = {pool.submit(_count, str(store.folder), part): len(part) for part in parts}
+        tasks = deque((pool.submit(_count, str(store.folder), part), len(part)) for part in parts)
         try:
-            for task in as_completed(tasks):
-                pictures = tasks.pop(task)  # Else every part would be held to the end.
+            while tasks:  # In their order, so that the first part's grid of cells is the scene's.
+                task, pictures = tasks.popleft()  # Else every part would be held to the end.
                 yield task.result(), pictures
         except RuntimeError as error:  # A broken pool is one.
             raise WorkerError(f"a process that counts has ended ({error}); try --jobs 1") from error
