@@ -205,18 +205,27 @@ def test_a_tour_comes_back_from_its_file(tmp_path):
     np.testing.assert_allclose(back.pose.camera_to_room(to_room), shot.camera_to_room, atol=1e-7)
 
 
-def test_the_same_columns_come_as_csv(tmp_path):
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_the_same_columns_come_as_csv(tmp_path, end):
     path = tmp_path / "tour.csv"
-    path.write_text(
-        "frame, t, x, y, z, yaw, pitch, vertical_fov_deg, width, height, at\n"
-        "0, 0.5, 1.5, 64, -2, 90, 10, 70, 48, 36, feet\n"
-        "1, 1, 1, 2, 3, 4, 5, , , ,\n"
+    lines = (
+        "frame, t, x, y, z, yaw, pitch, vertical_fov_deg, width, height, at",
+        "0, 0.5, 1.5, 64, -2, 90, 10, 70, 48, 36, feet",
+        "1, 1, 1, 2, 3, 4, 5, , , ,",
     )
+    path.write_bytes("".join(line + end for line in lines).encode())
     first, second = read_tour(path)
     assert first.pose == GamePose(1.5, 64, -2, 90, 10, "feet")
     assert first.camera == CAMERA
     assert second.pose == GamePose(1, 2, 3, 4, 5, "eye")
     assert second.camera is None
+
+
+def test_what_is_no_csv_is_told(tmp_path):
+    path = tmp_path / "tour.csv"
+    path.write_text("x,y,z,yaw,pitch\n" + "1" * 140_000)
+    with pytest.raises(DamagedFileError, match=r"tour.csv: is no CSV \(field larger than"):
+        read_tour(path)
 
 
 @pytest.mark.parametrize(

@@ -98,6 +98,12 @@ def test_a_phone_has_no_labels_and_no_depth(words, text):
         Shooting("photos", **words)
 
 
+def test_a_video_has_even_sides():
+    with pytest.raises(ValueError, match="a video's sides must be even, not 161x120"):
+        Shooting("video", width=161, height=120)
+    Shooting("photos", width=161, height=120)
+
+
 def test_phones_take_more_pictures_unless_told():
     assert [Shooting(s).planned for s in ("rgbd", "photo", "photos", "video")] == [
         40,

@@ -63,6 +63,8 @@ class Shooting:
             raise ValueError(f"coverage must be above 0 and at most 1, not {self.coverage}")
         if self.phone and (self.with_labels or self.label_error):
             raise ValueError(f"labels come with sensor rgbd or clean, not with {self.sensor}")
+        if self.sensor == "video" and (self.width % 2 or self.height % 2):
+            raise ValueError(f"a video's sides must be even, not {self.width}x{self.height}")
         if self.phone and self.depth_scale_sigma:
             raise ValueError(f"depth_scale_sigma must be left out: {self.sensor} has no depth")
 

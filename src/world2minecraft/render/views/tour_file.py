@@ -56,7 +56,7 @@ def read_tour(path: str | Path, at: Literal["feet", "eye"] = "eye") -> list[Tour
         text = read_bytes(source, MAX_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise DamagedFileError(source, "is no text in UTF-8") from error
-    rows = _csv_rows(text) if source.suffix.lower() == ".csv" else json_rows(text, source)
+    rows = _csv_rows(text, source) if source.suffix.lower() == ".csv" else json_rows(text, source)
     poses = [_pose({"at": at, **row}, number, source) for number, row in rows]
     if not poses:
         raise DamagedFileError(source, "holds no pose; each line needs x, y, z, yaw, pitch")
@@ -92,9 +92,13 @@ def write_lines(path: str | Path, lines: Sequence[Mapping[str, Any]]) -> None:
     write_text(path, "".join(json.dumps(line, allow_nan=False) + "\n" for line in lines))
 
 
-def _csv_rows(text: str) -> list[tuple[int, Mapping[str, Any]]]:
-    reader = csv.DictReader(io.StringIO(text), skipinitialspace=True)
-    rows = [{key: value for key, value in row.items() if key and value} for row in reader]
+def _csv_rows(text: str, source: Path) -> list[tuple[int, Mapping[str, Any]]]:
+    lines = io.StringIO(text, newline=None)  # They may end as those of any system.
+    try:
+        reader = csv.DictReader(lines, skipinitialspace=True)
+        rows = [{key: value for key, value in row.items() if key and value} for row in reader]
+    except csv.Error as error:
+        raise DamagedFileError(source, f"is no CSV ({error})") from error
     return [(number, row) for number, row in enumerate(rows, 2) if row]
 
 
