@@ -1,5 +1,6 @@
 """What ``w2m scan`` finds out: each doubt appears where it must, and not where it must not."""
 
+import shlex
 from dataclasses import replace
 
 import numpy as np
@@ -65,6 +66,7 @@ def rendered(room, pose):
 def posed(tmp_path, room, poses, depth=True, change=lambda frame, index: frame, **fields):
     """A capture of the box room from some places, in the room's own frame."""
     frames = []
+    source = fields.pop("source", "test")
     (tmp_path / "d").mkdir(exist_ok=True)
     for index, pose in enumerate(poses):
         metres, colour = rendered(room, pose)
@@ -76,7 +78,7 @@ def posed(tmp_path, room, poses, depth=True, change=lambda frame, index: frame, 
             frame = replace(frame, depth_path=place, depth_camera=CAMERA)
         frames.append(change(frame, index))
     fields = {"depth_unit": "mm", **fields}
-    return describe(judge(Capture(tmp_path, "test", tuple(frames), **fields), ScanOptions()))
+    return describe(judge(Capture(tmp_path, source, tuple(frames), **fields), ScanOptions()))
 
 
 def level_of(summary, about):
@@ -144,8 +146,10 @@ def test_the_text_of_posed_pictures(tmp_path, box_room):
 
 def test_the_routes(tmp_path, box_room):
     poses = box_room.poses(24)
-    solid = posed(tmp_path / "a", box_room, poses, depth_kind="exact")
+    exact = {"depth_kind": "exact"}
+    solid = posed(tmp_path / "a", box_room, poses, source="solid (PLY)", **exact)
     assert solid.route.kind == "solid"
+    assert posed(tmp_path / "a", box_room, poses, source="replica", **exact).route.kind == "rgbd"
     unposed = posed(
         tmp_path / "b", box_room, poses, change=lambda f, i: replace(f, camera_to_world=None)
     )
@@ -155,6 +159,18 @@ def test_the_routes(tmp_path, box_room):
     frames = tuple(FrameFiles(p.stem, None, p, time_s=i / 2) for i, p in enumerate(paths))
     video = describe(judge(Capture(tmp_path, "video", frames), ScanOptions()))
     assert video.route.kind == "video"
+    dated = describe(judge(Capture(tmp_path, "photos", frames), ScanOptions()))
+    assert dated.route.kind == "photos", "photos whose EXIF says when they were taken are no video"
+
+
+def test_the_next_command_can_be_typed_as_it_is(tmp_path):
+    place = tmp_path / "my room"
+    place.mkdir()
+    frames = tuple(FrameFiles(p.stem, None, p) for p in save(place, panned()))
+    options = {"frames": "60", "unit": "cm"}
+    command = describe(judge(Capture(place, "photos", frames), ScanOptions()), options).next_command
+    settings = ["--set", "capture.frames=60", "--set", "capture.unit=cm"]
+    assert shlex.split(command) == ["w2m", "reconstruct", str(place), "--out", "OUT", *settings]
 
 
 @pytest.fixture(autouse=True)

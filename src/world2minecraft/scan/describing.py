@@ -13,6 +13,7 @@ from world2minecraft.scan.options import parse_options
 from world2minecraft.scan.survey import Survey, survey_capture
 from world2minecraft.scan.survey.doubts import Doubt, doubts_of
 from world2minecraft.scan.survey.route import Route, route_of
+from world2minecraft.scan.telling import reconstructing
 from world2minecraft.types import Camera
 
 
@@ -63,11 +64,11 @@ def describe_capture(
 
     Raises what ``judge_capture`` raises for captures that cannot be read.
     """
-    return describe(judge_capture(path, parse_options(options or {})))
+    return describe(judge_capture(path, parse_options(options or {})), options)
 
 
-def describe(judged: JudgedCapture) -> CaptureSummary:
-    """Describe a capture that is judged."""
+def describe(judged: JudgedCapture, options: Mapping[str, str] | None = None) -> CaptureSummary:
+    """Describe a capture that is judged; ``options`` are named again in the next command."""
     frames = judged.frames
     survey = survey_capture(judged)
     route = route_of(judged)
@@ -96,7 +97,7 @@ def describe(judged: JudgedCapture) -> CaptureSummary:
         skipped=judged.skipped,
         notes=judged.notes,
         doubts=doubts_of(survey, route),
-        next_command=f"w2m reconstruct {judged.capture.folder} --out OUT",
+        next_command=reconstructing(judged.capture.folder, options or {}),
         survey=survey,
     )
 

@@ -1,14 +1,38 @@
 """What a capture holds, in words for people and as values for programs."""
 
 import dataclasses
+import shlex
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from world2minecraft.archive import AnyPath
 
 if TYPE_CHECKING:
     from world2minecraft.exchange.roomplan import CapturedPlan
     from world2minecraft.scan.describing import CaptureSummary
 
 SHOWN_SKIPPED = 8
+
+
+def reconstructing(capture: AnyPath, options: Mapping[str, str]) -> str:
+    """Return the command that reconstructs a capture read with some options, to be typed as it is.
+
+    Example:
+        >>> reconstructing(Path("my room"), {"unit": "cm"})
+        "w2m reconstruct 'my room' --out OUT --set capture.unit=cm"
+    """
+    words = ["w2m", "reconstruct", str(capture), "--out", "OUT"]
+    for name, value in options.items():
+        words += ["--set", f"capture.{name}={value}"]
+    return typed(words)
+
+
+def typed(words: Sequence[str]) -> str:
+    """Return words as one line for this system's shell, in quotes where they need them."""
+    return subprocess.list2cmdline(words) if sys.platform == "win32" else shlex.join(words)
 
 
 def as_data(summary: "CaptureSummary") -> dict[str, Any]:
@@ -93,6 +117,6 @@ def plan_lines(capture: Path, plan: "CapturedPlan") -> list[str]:
         "  route     walls and furniture are built as they were measured: about 10 s",
         *(f"  note      {note}" for note in plan.notes),
         "  hint      with a scan of the same room: w2m reconstruct SCAN --plan "
-        f"{capture} --out OUT",
-        f"next: w2m reconstruct {capture} --out OUT",
+        f"{typed([str(capture)])} --out OUT",
+        f"next: {reconstructing(capture, {})}",
     ]

@@ -63,11 +63,11 @@ def route_of(judged: JudgedCapture) -> Route:
 
 
 def _kind(judged: JudgedCapture) -> Kind:
-    if judged.capture.depth_kind == "exact":
+    source = judged.capture.source
+    if source.startswith("solid"):  # Rendered sequences have exact depth too, and are frames.
         return "solid"
     if judged.has_depth:
         return "rgbd" if judged.posed else "unposed rgbd"
     if judged.posed:
         return "posed photos"
-    timed = any(frame.time_s is not None for frame in judged.frames)
-    return "video" if timed else "photos"
+    return "video" if source == "video" else "photos"
