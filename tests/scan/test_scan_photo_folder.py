@@ -209,3 +209,26 @@ def test_five_ways_of_damage_are_refused_in_one_line(tmp_path, damage):
 def test_too_few_photos_are_refused(tmp_path):
     _photos(tmp_path, 2)
     _refused(tmp_path, "holds 2 photos that can be used", "take 30 or more", kind=CaptureError)
+
+
+def test_heic_photos_that_are_called_jpg(tmp_path):
+    pytest.importorskip("pillow_heif").register_heif_opener(thumbnails=False)
+    for number in range(3):
+        Image.fromarray(_picture(number)).save(tmp_path / f"{number}.heic")
+        (tmp_path / f"{number}.heic").rename(tmp_path / f"{number}.jpg")
+    assert len(judge_capture(tmp_path, ScanOptions()).frames) == 3
+    cut = tmp_path / "1.jpg"
+    cut.write_bytes(cut.read_bytes()[:-50])
+    with pytest.raises(InputError, match="is cut short"):
+        check_whole(cut)
+
+
+def test_what_phones_append_to_a_jpeg_is_no_damage(tmp_path):
+    path = tmp_path / "motion.jpg"
+    Image.fromarray(_picture()).save(path)
+    whole = path.read_bytes()
+    path.write_bytes(whole + b"\0" * 9000)
+    check_whole(path)
+    path.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(InputError, match="is cut short .* copy it again"):
+        check_whole(path)

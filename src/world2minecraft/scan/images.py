@@ -28,6 +28,8 @@ from world2minecraft.errors import (
 MAX_PIXELS = 64_000_000  # A 48-megapixel phone photo passes; decoding it takes 144 MB.
 FORMATS = ("PNG", "JPEG", "TIFF", "PPM", "WEBP", "BMP")
 HEIF_SUFFIXES = (".heic", ".heif", ".hif")  # What phones write; read by an extra.
+HEIF_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx", b"mif1", b"msf1")
+HEAD_BYTES = 12  # A HEIF file's first box: its length, "ftyp" and the brand.
 SUFFIXES = (".png", ".jpg", ".jpeg", ".tiff", ".tif", ".ppm", ".pgm", ".webp", ".bmp")
 
 
@@ -102,7 +104,7 @@ def read_header(path: ImagePlace) -> ImageHeader:
 
 
 def check_whole(path: ImagePlace) -> None:
-    """Check that an image file is not cut short, without decoding it.
+    """Check that an image file is not cut short, without decoding it where its end tells.
 
     Raises:
         DamagedFileError: it ends early or fails its own check sums.
@@ -116,10 +118,20 @@ def check_whole(path: ImagePlace) -> None:
         kind = image.format
         if kind == "PNG":
             image.verify()
-    if path.suffix.lower() in HEIF_SUFFIXES:
+    if kind == "HEIF":
         _check_boxes(path)
     if kind in ("JPEG", "MPO") and b"\xff\xd9" not in _tail(path, 4096):
-        raise DamagedFileError(path, "is cut short (a JPEG without its end); copy it again")
+        _check_by_decoding(path)
+
+
+def _check_by_decoding(path: AnyPath) -> None:
+    """Decode a JPEG whose end is not at the file's: phones append a video or facts of their own."""
+    try:
+        with _opened(path) as image:
+            image.load()
+    except DamagedFileError as error:
+        reason = "is cut short (a JPEG without its end); copy it again"
+        raise DamagedFileError(path, reason) from error
 
 
 def read_colour(path: ImagePlace) -> np.ndarray:
@@ -189,13 +201,17 @@ def _opened(path: AnyPath | Openable) -> Iterator[Image.Image]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Ours is the stricter limit, checked below.
-            formats = _formats(path)
-            with path.open("rb") as stream, Image.open(stream, formats=formats) as image:
-                _check_pixels(path, *image.size)
-                yield image
+            with path.open("rb") as stream:
+                formats = _formats(stream.read(HEAD_BYTES))
+                stream.seek(0)
+                with Image.open(stream, formats=formats) as image:
+                    _check_pixels(path, *image.size)
+                    yield image
     except Image.DecompressionBombError as error:
         raise LimitError(
-            path, f"has over {MAX_PIXELS * 2 // 1_000_000} megapixels; at most 64 are read"
+            path,
+            f"has over {MAX_PIXELS * 2 // 1_000_000} megapixels; at most 64 are read: export it "
+            "smaller",
         ) from error
     except UnidentifiedImageError as error:
         kind = "is empty" if path.stat().st_size == 0 else f"is none of {', '.join(FORMATS)}"
@@ -209,16 +225,19 @@ def _opened(path: AnyPath | Openable) -> Iterator[Image.Image]:
         ) from error
 
 
-def _formats(path: object) -> tuple[str, ...]:
-    """Return the formats to try; the reader of HEIF is looked for only where one is met."""
-    if str(getattr(path, "suffix", "")).lower() not in HEIF_SUFFIXES:
+def _formats(head: bytes) -> tuple[str, ...]:
+    """Return the formats to try; the reader of HEIF is looked for only where one is met.
+
+    Its first bytes tell, not its name: apps send HEIC photos that are called ``.jpg``.
+    """
+    if head[4:8] != b"ftyp" or head[8:12] not in HEIF_BRANDS:
         return FORMATS
     try:
         import pillow_heif  # noqa: PLC0415
     except ImportError as error:
         raise MissingExtraError("reading HEIC photos", "capture") from error
     pillow_heif.register_heif_opener(thumbnails=False)
-    return (*FORMATS, "HEIF")  # A JPEG that was given the wrong name is read all the same.
+    return (*FORMATS, "HEIF")
 
 
 def _check_boxes(path: AnyPath) -> None:
@@ -228,8 +247,6 @@ def _check_boxes(path: AnyPath) -> None:
         while at < size:
             stream.seek(at)
             head = stream.read(16)
-            if at == 0 and head[4:8] != b"ftyp":
-                return  # It is named so, and is something else.
             length = int.from_bytes(head[:4], "big")
             if length == 1:
                 length = int.from_bytes(head[8:16], "big")
@@ -243,7 +260,7 @@ def _check_pixels(path: object, width_px: int, height_px: int) -> None:
         raise LimitError(
             path,
             f"is {width_px}x{height_px}, {width_px * height_px / 1e6:.0f} megapixels; "
-            f"at most {MAX_PIXELS // 1_000_000} are read",
+            f"at most {MAX_PIXELS // 1_000_000} are read: export it smaller",
         )
 
 
@@ -260,7 +277,11 @@ def _map_npy(path: AnyPath) -> Any:
         reason = f"is no whole .npy ({reason_of(error, 120)}); copy it again"
         raise DamagedFileError(path, reason) from error
     if array.ndim != 2 or array.dtype.kind not in "fu" or not array.size:
-        raise DamagedFileError(path, f"holds {array.dtype} {array.shape}, not numbers [H, W]")
+        raise DamagedFileError(
+            path,
+            f"must hold unsigned or float numbers [H, W], not {array.dtype} {array.shape}; "
+            "save it as uint16 or float32",
+        )
     _check_pixels(path, array.shape[1], array.shape[0])
     return array
 

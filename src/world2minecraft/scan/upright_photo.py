@@ -15,7 +15,7 @@ from PIL import Image, ImageOps
 from world2minecraft.archive import AnyPath
 from world2minecraft.errors import DamagedFileError
 from world2minecraft.scan.image_names import NamedByFile
-from world2minecraft.scan.images import ImageHeader, check_whole, opened_image, read_raw
+from world2minecraft.scan.images import ImageHeader, check_whole, opened_image
 from world2minecraft.types import Camera
 
 DIAGONAL_MM = math.hypot(36.0, 24.0)  # Of the film that 35 mm equivalents speak of.
@@ -57,14 +57,8 @@ class UprightPhoto(NamedByFile):
             return ImageHeader(*_upright_size(image), image.mode)
 
     def check_whole(self) -> None:
-        """Check that the file is not cut short.
-
-        Some phones append a short video to a JPEG: then only decoding tells.
-        """
-        try:
-            check_whole(self.path)
-        except DamagedFileError:
-            read_raw(self.path)
+        """Check that the file is not cut short."""
+        check_whole(self.path)
 
     def colour(self) -> np.ndarray:
         """Return uint8 [H, W, 3] sRGB."""
