@@ -6,6 +6,7 @@ import struct
 import numpy as np
 import pytest
 import solid_writers as writers
+import trimesh
 from solid_rooms import SIZE_M, room_quads
 
 from world2minecraft.errors import InputError
@@ -215,6 +216,30 @@ def test_a_material_outside_the_folder_is_never_opened(tmp_path):
         assert "outside its folder" in str(error)
     else:
         assert capture.frames[0].colour_path is None
+
+
+@pytest.mark.parametrize(
+    "named", ["-s 1 1 1 paint.png", "C:\\scans\\paint.png", "/home/me/paint.png", "../paint.png"]
+)
+def test_a_texture_beside_its_mesh_is_found_however_it_is_named(tmp_path, named):
+    path = writers.write_obj(tmp_path / "export", room_quads())
+    materials = tmp_path / "export" / "room.mtl"
+    materials.write_text(materials.read_text().replace("map_Kd paint.png", f"map_Kd {named}"))
+    assert load_solid(path).solid.coloured
+
+
+def test_files_of_a_gltf_are_named_as_addresses(tmp_path):
+    files = trimesh.Scene(writers.as_trimesh(room_quads())).export(file_type="gltf")
+    tree = files["model.gltf"]
+    held = [name for name in files if name.endswith(".bin")]
+    for number, name in enumerate(held):
+        (tmp_path / f"my room {number}.bin").write_bytes(files[name])
+        tree = tree.replace(name.encode(), f"my%20room%20{number}.bin".encode())
+    (tmp_path / "room.gltf").write_bytes(tree)
+    assert len(load_solid(tmp_path / "room.gltf").solid.faces)
+    (tmp_path / "my room 0.bin").unlink()
+    with pytest.raises(InputError, match=r"names 'my%20room%200.bin', which is not there: put it"):
+        load_solid(tmp_path / "room.gltf")
 
 
 def test_objects_shells_and_landscapes_are_refused_with_advice(tmp_path):

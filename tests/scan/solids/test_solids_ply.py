@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import solid_writers as writers
 
+from world2minecraft.errors import DamagedFileError
 from world2minecraft.scan.solids.lists import fans
 from world2minecraft.scan.solids.ply import read_ply
 from world2minecraft.scan.solids.ply_solid import load_ply
@@ -82,3 +83,41 @@ def test_many_points_are_thinned_to_the_means_of_cells():
     assert len(cloud.points) < 10_000 and (cloud.colour == 7).all()
     spread = np.histogram2d(*cloud.points[:, :2].T, bins=10)[0]
     assert spread.min() > 0.7 * spread.max()
+
+
+@pytest.mark.parametrize(
+    ("unit_m", "longest", "cell"),
+    [(1.0, 90.0, 0.015), (None, 90.0, 0.015), (None, 600.0, 1.5), (None, 9000.0, 15.0)],
+)
+def test_how_fine_a_cloud_stays(unit_m, longest, cell):
+    thinner = Thinner(unit_m)
+    points = np.random.default_rng(0).uniform(0, 1, (600_000, 3)) * [1.02 * longest, 1, 1]
+    thinner.add(points)
+    thinner.cloud()
+    assert thinner.cell == pytest.approx(cell)
+
+
+def test_two_properties_of_one_name_are_told_apart(tmp_path):
+    names = (*"xyz", "scalar", "second")
+    vertex = [(name, "f4", CORNERS[:, n % 3]) for n, name in enumerate(names)]
+    data = writers.ply_bytes("<", vertex).replace(b"second", b"scalar")
+    (tmp_path / "a.ply").write_bytes(data)
+    assert {"scalar", "scalar.2"} < set(read_ply(tmp_path / "a.ply").vertex)
+
+
+@pytest.mark.parametrize("order", ["<", "a"])
+def test_a_table_that_promises_more_than_the_file_holds(tmp_path, order):
+    vertex = [(axis, "f4", CORNERS[:, a]) for a, axis in enumerate("xyz")]
+    data = writers.ply_bytes(order, vertex)
+    more = b"element other 99999999999\nproperty list uchar int parts\nelement vertex"
+    (tmp_path / "a.ply").write_bytes(data.replace(b"element vertex", more, 1))
+    with pytest.raises(DamagedFileError, match="99,999,999,999 other rows are due"):
+        read_ply(tmp_path / "a.ply")
+
+
+def test_a_table_without_properties_is_passed_over(tmp_path):
+    vertex = [(axis, "f4", CORNERS[:, a]) for a, axis in enumerate("xyz")]
+    data = writers.ply_bytes("<", vertex)
+    more = data.replace(b"element vertex", b"element other 5\nelement vertex", 1)
+    (tmp_path / "a.ply").write_bytes(more)
+    assert len(read_ply(tmp_path / "a.ply").vertex["x"]) == len(CORNERS)

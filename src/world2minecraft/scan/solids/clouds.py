@@ -26,7 +26,7 @@ def load_las(place: AnyPath) -> Loaded:
         DamagedFileError: it cannot be read. LimitError: it is too large. MissingExtraError.
     """
     laspy = library("laspy", "reading LAS clouds")
-    thinner = Thinner()
+    thinner = Thinner(unit_m=1.0)
     try:
         with laspy.open(place.open("rb")) as reader:
             _check_count(place, reader.header.point_count)
@@ -39,14 +39,16 @@ def load_las(place: AnyPath) -> Loaded:
                 raise DamagedFileError(
                     place,
                     f"is cut short: {reader.header.point_count:,} points are due, "
-                    f"{thinner.read:,} there",
+                    f"{thinner.read:,} there; copy it again",
                 )
     except (DamagedFileError, LimitError):
         raise
     except (KeyboardInterrupt, SystemExit):
         raise
     except BaseException as error:  # laspy and lazrs share no root; lazrs even panics.
-        raise DamagedFileError(place, f"cannot be read as LAS ({reason_of(error)})") from error
+        raise DamagedFileError(
+            place, f"cannot be read as LAS ({reason_of(error)}); export it again"
+        ) from error
     return _loaded(thinner, "LAS")
 
 
@@ -63,11 +65,15 @@ def _check_chunks(place: AnyPath, header: Any) -> None:
             stream.seek(size - 8)
             at = int.from_bytes(stream.read(8), "little", signed=True)
         if not start + 8 <= at <= size - 8:
-            raise DamagedFileError(place, "is cut short: its table of chunks is not there")
+            raise DamagedFileError(
+                place, "is cut short: its table of chunks is not there; copy it again"
+            )
         stream.seek(at + 4)
         chunks = int.from_bytes(stream.read(4), "little")
     if chunks > min(header.point_count, 8 * (size - at)):
-        raise DamagedFileError(place, f"says that it has {chunks:,} chunks, more than it can hold")
+        raise DamagedFileError(
+            place, f"says that it has {chunks:,} chunks, more than it holds; copy it again"
+        )
 
 
 def _las_colour(chunk: Any) -> np.ndarray | None:
@@ -82,7 +88,7 @@ def _las_colour(chunk: Any) -> np.ndarray | None:
 def load_e57(place: AnyPath) -> Loaded:
     """Read an E57 file scan by scan, each placed by its own pose. Raises as ``load_las``."""
     pye57 = library("pye57", "reading E57 clouds")
-    thinner = Thinner()
+    thinner = Thinner(unit_m=1.0)
     try:
         with on_disk(place) as path, pye57.E57(str(path)) as file:
             counts = [file.get_header(scan).point_count for scan in range(file.scan_count)]
@@ -94,7 +100,9 @@ def load_e57(place: AnyPath) -> Loaded:
     except (DamagedFileError, LimitError):
         raise
     except Exception as error:  # What the library's C++ raises has no root.
-        raise DamagedFileError(place, f"cannot be read as E57 ({reason_of(error)})") from error
+        raise DamagedFileError(
+            place, f"cannot be read as E57 ({reason_of(error)}); export it again"
+        ) from error
     return _loaded(thinner, "E57")
 
 

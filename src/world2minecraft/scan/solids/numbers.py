@@ -21,4 +21,6 @@ def parse_numbers(place: AnyPath, text: bytes) -> np.ndarray:
             warnings.simplefilter("error")  # How numpy says that it stopped early.
             return np.fromstring(text.decode("ascii"), np.float64, sep=" ")
     except (DeprecationWarning, UnicodeDecodeError, ValueError) as error:
-        raise DamagedFileError(place, "holds what is no number where numbers are due") from error
+        raise DamagedFileError(
+            place, "holds what is no number where numbers are due; export it again"
+        ) from error

@@ -40,7 +40,9 @@ def check_sizes(place: AnyPath, vertices: int, faces: int) -> None:
         ("triangles", faces, MAX_FACES),
     ):
         if count > most:
-            raise LimitError(place, f"has {count:,} {name}; at most {most:,} are read")
+            raise LimitError(
+                place, f"has {count:,} {name}; at most {most:,} are read: export it coarser"
+            )
 
 
 def joined(place: AnyPath, parts: Sequence[Part]) -> tuple[Mesh, np.ndarray]:
@@ -61,7 +63,9 @@ def joined(place: AnyPath, parts: Sequence[Part]) -> tuple[Mesh, np.ndarray]:
     )
     good: np.ndarray = np.all(np.isfinite(vertices), axis=1)
     if len(good) and good.mean() < 0.5:
-        raise DamagedFileError(place, "has places that are no numbers (NaN, infinity)")
+        raise DamagedFileError(
+            place, "has places that are no numbers (NaN, infinity): export it again"
+        )
     whole = good[faces].all(axis=1) if len(faces) else np.zeros(0, bool)
     offset = np.floor(np.median(vertices[good], axis=0)) if good.any() else np.zeros(3)
     vertices = np.where(good[:, None], vertices, offset)
@@ -108,7 +112,7 @@ def _pictures(place: AnyPath, parts: Sequence[Part]) -> tuple[np.ndarray, np.nda
             numbers.append(-1)
             continue
         if part.picture.width * part.picture.height > MAX_PIXELS:
-            raise LimitError(place, "has a picture of over 64 megapixels")
+            raise LimitError(place, "has a picture of over 64 megapixels: make it smaller")
         key = (id(part.picture), part.tint)
         if key not in known:
             known[key] = len(chosen)

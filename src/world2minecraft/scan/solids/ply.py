@@ -5,7 +5,7 @@ by name, so that labels can be told from them.
 """
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NoReturn
 
 import numpy as np
@@ -68,6 +68,11 @@ class Element:
         """Whether any property is a list."""
         return any(p.count_kind for p in self.properties)
 
+    @property
+    def least_bytes(self) -> int:
+        """The bytes of a binary row whose lists are all empty."""
+        return sum(np.dtype(p.count_kind or p.kind).itemsize for p in self.properties)
+
 
 @dataclass(frozen=True, eq=False)
 class PlyFile:
@@ -96,7 +101,9 @@ def read_ply(place: AnyPath) -> PlyFile:
     most_vertices = MAX_VERTICES if counts.get("face") else MAX_POINTS
     for name, most in (("vertex", most_vertices), ("face", MAX_FACES)):
         if counts.get(name, 0) > most:
-            raise LimitError(place, f"has {counts[name]:,} {name} rows; at most {most:,} are read")
+            raise LimitError(
+                place, f"has {counts[name]:,} {name} rows; at most {most:,} are read: thin it"
+            )
     reader = _Ascii(place, data[start:]) if order == "" else _Binary(place, data[start:], order)
     vertex: dict[str, np.ndarray] = {}
     face: dict[str, np.ndarray] = {}
@@ -110,11 +117,13 @@ def read_ply(place: AnyPath) -> PlyFile:
         else:
             reader.read(element)
     if not {"x", "y", "z"} <= set(vertex):
-        raise DamagedFileError(place, "has no vertices with x, y and z")
+        raise DamagedFileError(place, "has no vertices with x, y and z: export it uncompressed")
     triangles, owner = fans(*lists)
     held = len(vertex["x"])
     if len(triangles) and not (triangles.min() >= 0 and triangles.max() < held):
-        raise DamagedFileError(place, f"has faces of vertices that it lacks; it holds {held:,}")
+        raise DamagedFileError(
+            place, f"has faces of vertices that it lacks; it holds {held:,}: export it again"
+        )
     return PlyFile(vertex, triangles, owner, face, comments)
 
 
@@ -122,7 +131,9 @@ def _header(place: AnyPath, data: bytes) -> tuple[str, list[Element], tuple[str,
     """Return byte order, elements, comments and where the data begin."""
     end = re.search(rb"\nend_header[ \t]*\r?\n", data)
     if not data.startswith(b"ply") or end is None:
-        raise DamagedFileError(place, "is no PLY file (no ply ... end_header at its start)")
+        raise DamagedFileError(
+            place, "is no PLY file (no ply ... end_header at its start): copy it again"
+        )
     lines = data[: end.start()].decode("latin-1").splitlines()
     order, comments = None, []
     tables: list[tuple[str, int, list[Property]]] = []
@@ -137,9 +148,11 @@ def _header(place: AnyPath, data: bytes) -> tuple[str, list[Element], tuple[str,
         elif words[0] == "element" and len(words) == 3 and re.fullmatch(r"\d{1,12}", words[2]):
             tables.append((words[1], int(words[2]), []))
         elif words[0] == "property" and tables:
-            tables[-1][2].append(_property(place, words))
+            tables[-1][2].append(_named_apart(_property(place, words), tables[-1][2]))
         elif words[0] != "obj_info":
-            raise DamagedFileError(place, f"has a header line that is not read: {line[:60]!r}")
+            raise DamagedFileError(
+                place, f"has a header line that is not read: {line[:60]!r}; copy it again"
+            )
     if order is None:
         raise DamagedFileError(place, f"has no format line; known are {', '.join(FORMATS)}")
     elements = [Element(name, count, tuple(own)) for name, count, own in tables]
@@ -152,7 +165,19 @@ def _property(place: AnyPath, words: list[str]) -> Property:
         return Property(words[2], kinds[0])
     if len(words) == 5 and words[1] == "list" and kinds[1] and kinds[2] and kinds[1][0] != "f":
         return Property(words[4], kinds[2], kinds[1])
-    raise DamagedFileError(place, f"has a property that is not read: {' '.join(words)[:60]!r}")
+    raise DamagedFileError(
+        place, f"has a property that is not read: {' '.join(words)[:60]!r}; export it again"
+    )
+
+
+def _named_apart(new: Property, others: list[Property]) -> Property:
+    """Return a property under a name of its own: some tools write two scalar fields of one name."""
+    names = {other.name for other in others}
+    name, count = new.name, 1
+    while name in names:
+        count += 1
+        name = f"{new.name}.{count}"
+    return replace(new, name=name)
 
 
 Table = tuple[dict[str, np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -170,8 +195,10 @@ class _Binary:
 
     def read(self, element: Element) -> Table:
         """Return the columns of single values, and the counts and the values of the index list."""
-        if not element.count:
+        if not element.count or not element.properties:
             return {}, NO_LISTS
+        if element.least_bytes * element.count > len(self.data):
+            self._refuse(element)
         lengths = self._first_lengths(element)
         kind = self._row_kind(element, lengths)
         if kind.itemsize * element.count <= len(self.data):
@@ -248,7 +275,7 @@ class _Binary:
         raise DamagedFileError(
             self.place,
             f"is cut short or wrong: {element.count:,} {element.name} rows are due and "
-            f"{len(self.data):,} bytes are there",
+            f"{len(self.data):,} bytes are there: copy it again",
         )
 
 
@@ -262,9 +289,9 @@ class _Ascii:
     def read(self, element: Element) -> Table:
         """Return the columns of single values, and the counts and the values of the index list."""
         width = len(element.properties)
+        if width * element.count > len(self.data):
+            self._refuse(element)
         if not element.has_lists:
-            if width * element.count > len(self.data):
-                self._refuse(element)
             rows = self.data[: width * element.count].reshape(element.count, width)
             self.data = self.data[width * element.count :]
             return {p.name: rows[:, i] for i, p in enumerate(element.properties)}, NO_LISTS
@@ -288,5 +315,5 @@ class _Ascii:
         raise DamagedFileError(
             self.place,
             f"is cut short or wrong: {element.count:,} {element.name} rows are due and "
-            f"{len(self.data):,} numbers are there",
+            f"{len(self.data):,} numbers are there: copy it again",
         )

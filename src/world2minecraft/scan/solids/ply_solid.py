@@ -139,7 +139,9 @@ def _cloud(place: AnyPath, file: PlyFile, twin: PlyFile | None) -> Loaded:
             None if labels is None else labels[rows],
         )
     if count and thinner.offset is None:
-        raise DamagedFileError(place, "has places that are no numbers (NaN, infinity)")
+        raise DamagedFileError(
+            place, "has places that are no numbers (NaN, infinity): export it again"
+        )
     offset = np.zeros(3) if thinner.offset is None else thinner.offset
     notes = (told,) if told else ()
     return Loaded(thinner.cloud(), "PLY", offset, notes=notes, read=thinner.read)

@@ -16,7 +16,7 @@ def load_s3dis(place: AnyPath) -> Loaded:
     Raises:
         CaptureError: it has no points. DamagedFileError: a file is no cloud.
     """
-    thinner = Thinner()
+    thinner = Thinner(unit_m=1.0)
     files = sorted((place / FOLDER).glob("*.txt"), key=lambda path: path.name)[:MAX_FILES]
     for path in files:
         add_text(path, thinner, label_of_file(path.stem))

@@ -4,11 +4,12 @@ import io
 import json
 import struct
 from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
 
 from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError, LimitError, reason_of
+from world2minecraft.errors import DamagedFileError, InputError, LimitError, reason_of
 from world2minecraft.files import read_bytes
 from world2minecraft.geometry.colour import srgb_of_linear
 from world2minecraft.scan.solids.naming import class_of_name
@@ -29,7 +30,8 @@ def load_scene(place: AnyPath) -> Loaded:
     """Read a mesh file with all that its scene places.
 
     Raises:
-        DamagedFileError: it cannot be read. LimitError: it is too large. MissingExtraError.
+        DamagedFileError: it cannot be read. LimitError: it is too large. InputError: a file that it
+            needs is not there. MissingExtraError.
     """
     trimesh = library("trimesh", "reading meshes")
     data = read_bytes(place, MAX_BYTES)
@@ -47,7 +49,7 @@ def load_scene(place: AnyPath) -> Loaded:
             **options,
         )
         parts = _parts(place, scene, str(tree.get("asset", {}).get("generator", "")))
-    except (DamagedFileError, LimitError):
+    except InputError:
         raise
     except Exception as error:  # What a hostile file makes trimesh raise has no common root.
         said = reason_of(error)
@@ -73,17 +75,31 @@ class _FolderResolver:
         self.place = place
 
     def get(self, key: str) -> bytes:
-        """Return a file's bytes. Raises DamagedFileError where the name leaves the folder."""
+        """Return a file's bytes.
+
+        It is sought as it is named, and by its last part beside the mesh: exporters leave paths of
+        their own machine before the name. glTF's names are escaped as addresses are, and options
+        stand before those of an MTL file.
+
+        Raises:
+            DamagedFileError: the name leaves the folder, and no such file lies beside the mesh.
+        """
         name = key.strip().replace("\\", "/")
-        parts = [part for part in name.split("/") if part not in ("", ".")]
-        if name.startswith("/") or ".." in parts or not parts or ":" in parts[0]:
-            raise DamagedFileError(self.place, f"names a file outside its folder: {key[:80]!r}")
-        found = self.place.parent
-        for part in parts:
-            found = found / part
-        if not found.is_file():  # Exporters leave paths of their own machine before the name.
-            found = self.place.parent / parts[-1]
-        return read_bytes(found, 1 << 30)
+        names = [name, unquote(name), *(name.split()[-1:] if name.startswith("-") else [])]
+        split = [[part for part in one.split("/") if part not in ("", ".")] for one in names]
+        inside = [p for p, one in zip(split, names, strict=True) if p and _stays(one, p)]
+        last = [parts[-1:] for parts in split if parts and _stays(parts[-1], parts[-1:])]
+        for parts in (*inside, *last):
+            found = self.place.parent
+            for part in parts:
+                found = found / part
+            if found.is_file():
+                return read_bytes(found, 1 << 30)
+        if not inside:
+            raise DamagedFileError(
+                self.place, f"names a file outside its folder, {key[:80]!r}: put it beside"
+            )
+        raise InputError(self.place, f"names {key[:80]!r}, which is not there: put it beside")
 
     __getitem__ = get
 
@@ -99,6 +115,11 @@ class _FolderResolver:
         return key in self.keys()
 
 
+def _stays(name: str, parts: list[str]) -> bool:
+    """Return whether a file's name cannot leave the folder that it is sought in."""
+    return not name.startswith("/") and ".." not in parts and ":" not in parts[0]
+
+
 def _checked_gltf(place: AnyPath, data: bytes) -> dict[str, Any]:
     """Return glTF's tree, its counts and extensions checked before anything is unpacked."""
     text = data
@@ -108,16 +129,22 @@ def _checked_gltf(place: AnyPath, data: bytes) -> dict[str, Any]:
         length = struct.unpack("<I", data[12:16])[0]
         text = data[20 : 20 + length]
     elif place.suffix.lower() == ".glb":
-        raise DamagedFileError(place, "is no binary glTF (it does not begin with glTF)")
+        raise DamagedFileError(
+            place, "is no binary glTF (it does not begin with glTF): export it again"
+        )
     if len(text) > MAX_JSON_BYTES:
-        raise LimitError(place, f"has a tree of {len(text):,} bytes; at most {MAX_JSON_BYTES:,}")
+        raise LimitError(
+            place, f"has a tree of {len(text):,} bytes; at most {MAX_JSON_BYTES:,}: join it"
+        )
     try:
         tree = json.loads(text)
         asked = tree.get("extensionsRequired", []) + tree.get("extensionsUsed", [])
         counts = [int(row["count"]) for row in tree.get("accessors", [])]
         nodes = len(tree.get("nodes", []))
     except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
-        raise DamagedFileError(place, "is no glTF: its tree cannot be read") from error
+        raise DamagedFileError(
+            place, "is no glTF: its tree cannot be read; export it again"
+        ) from error
     for name in UNREAD:
         if name in asked:
             raise DamagedFileError(

@@ -90,7 +90,7 @@ def _blocks(place: AnyPath) -> Iterator[bytes]:
             piece = rest + piece
             end = piece.rfind(b"\n") + 1
             if not end and len(piece) > BLOCK:
-                raise DamagedFileError(place, "is no text of lines")
+                raise DamagedFileError(place, "is no text of lines, a point each")
             yield piece[:end]
             rest = piece[end:]
         yield rest
@@ -110,7 +110,7 @@ def _named(place: AnyPath, block: bytes) -> tuple[list[str] | None, bytes]:
             if {"x", "y", "z"} <= set(found):
                 names = found
             elif not line.lstrip().startswith((b"#", b"//")):
-                raise DamagedFileError(place, f"begins with no numbers: {line[:40]!r}")
+                raise DamagedFileError(place, f"begins with no x, y and z: {line[:40]!r}")
         block = rest
     return names, block
 
@@ -135,7 +135,8 @@ def _rows(place: AnyPath, block: bytes, width: int) -> np.ndarray:
     numbers = parse_numbers(place, block.replace(b",", b" ").replace(b";", b" "))
     if len(numbers) % width:
         raise DamagedFileError(
-            place, f"has lines of other lengths than {width} columns, or is cut short"
+            place,
+            f"has lines of other lengths than {width} columns, or is cut short: export it again",
         )
     return numbers.reshape(-1, width)
 

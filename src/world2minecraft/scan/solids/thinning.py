@@ -9,22 +9,26 @@ from world2minecraft.scan.solids.solid import Cloud
 
 CELL_M = 0.015  # Under a fifth of a cell of the room; a scanner's noise is half of it.
 MOST_HELD = 4_000_000
+LONGEST = ((120.0, 1.0), (6000.0, 0.01))  # So many units at most, of so many metres.
 
 
 class Thinner:
     """Takes chunks of points in any frame and gives one thinned cloud.
 
     The first point's neighbourhood becomes the origin, so that float32 keeps millimetres of
-    surveyed coordinates: ``offset`` float64 [3] is what was taken off.
+    surveyed coordinates: ``offset`` float64 [3] is what was taken off. ``unit_m`` is metres per
+    unit where the format states it; else it is told from how long the cloud is. ``cell`` is the
+    side of the cells that points were merged in, 0 before.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, unit_m: float | None = None) -> None:
+        self._unit_m = unit_m
         self.offset: np.ndarray | None = None
         self._points: list[np.ndarray] = []
         self._colours: list[np.ndarray] = []
         self._labels: list[np.ndarray] = []
         self._held = 0
-        self._cell = 0.0
+        self.cell = 0.0
         self.read = 0
 
     def add(
@@ -68,14 +72,17 @@ class Thinner:
     def _fitting_cell(self) -> float:
         """Return the cell's side in the file's unit, whatever that is: 1.5 cm of a room.
 
-        A room is some metres long: of a side of 1.2 to 60, the unit is the metre, and so on.
+        What is up to 120 units long is no room in centimetres, so that these are metres (or feet);
+        up to 6,000 they are centimetres, beyond millimetres.
         """
+        if self._unit_m is not None:
+            return max(self.cell, CELL_M / self._unit_m)
         spans = [np.quantile(part[::16], [0.01, 0.99], axis=0) for part in self._points]
         low = np.min([span[0] for span in spans], axis=0)
         high = np.max([span[1] for span in spans], axis=0)
         longest = float((high - low).max())
-        unit_m = next((u for u in (1.0, 0.01, 0.001) if longest * u <= 60.0), 0.001)
-        return max(self._cell, CELL_M / unit_m)
+        unit_m = next((unit for most, unit in LONGEST if longest <= most), 0.001)
+        return max(self.cell, CELL_M / unit_m)
 
     def _merge(self, cell: float) -> None:
         """Join what is held into one point a cell; coarser cells where that is still too many."""
@@ -94,7 +101,7 @@ class Thinner:
             self._colours = [np.stack(mixed, axis=1).astype(np.uint8)]
         if labels is not None and len(labels) == len(points):
             self._labels = [labels[first]]
-        self._held, self._cell = len(first), cell
+        self._held, self.cell = len(first), cell
 
 
 def _cells(points: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -1,6 +1,7 @@
 """USD and USDZ, as iPhone apps write them, read by Pixar's library (the extra ``usd``)."""
 
 import io
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,9 @@ def load_usd(place: AnyPath) -> Loaded:
     library("pxr", "reading USD files", "usd")
     tf, usd, geom = _pxr("Tf"), _pxr("Usd"), _pxr("UsdGeom")
     if place.stat().st_size > MAX_BYTES:
-        raise LimitError(place, f"has {place.stat().st_size:,} bytes; at most {MAX_BYTES:,}")
+        raise LimitError(
+            place, f"has {place.stat().st_size:,} bytes; at most {MAX_BYTES:,}: make it smaller"
+        )
     with on_disk(place) as path:
         try:
             stage = usd.Stage.Open(str(path))
@@ -41,9 +44,9 @@ def load_usd(place: AnyPath) -> Loaded:
             raise DamagedFileError(place, "cannot be read as USD; export it again")
         folder = str(path.resolve().parent)
         for layer in stage.GetUsedLayers():
-            if layer.realPath and not layer.realPath.startswith(folder):
+            if layer.realPath and not Path(layer.realPath).is_relative_to(folder):
                 raise DamagedFileError(
-                    place, f"refers to a file elsewhere: {layer.identifier[:80]}"
+                    place, f"refers to a file elsewhere: {layer.identifier[:80]}; export it as USDZ"
                 )
         try:
             parts = _parts(place, stage, folder)
@@ -94,9 +97,13 @@ def _part(
     if not len(points) or not len(counts):
         return None
     if counts.min() < 0 or counts.sum() != len(corners) or corners.max() >= len(points):
-        raise DamagedFileError(place, f"has a mesh whose faces are wrong: {prim.GetPath()}")
+        raise DamagedFileError(
+            place, f"has a mesh whose faces are wrong: {prim.GetPath()}; export it again"
+        )
     if corners.min() < 0:
-        raise DamagedFileError(place, f"has a mesh whose faces are wrong: {prim.GetPath()}")
+        raise DamagedFileError(
+            place, f"has a mesh whose faces are wrong: {prim.GetPath()}; export it again"
+        )
     moved = points @ transform[:3, :3] + transform[3, :3]  # USD's vectors are rows.
     # Every corner becomes a vertex of its own: colours and uv may differ from face to face.
     order, owner = fans(counts, np.arange(len(corners)))
@@ -179,7 +186,7 @@ def _material(
 
 def _opened(where: str, folder: str) -> Image.Image | None:
     """Return the picture of a stage's asset; None where it is absent, elsewhere or no picture."""
-    if not where.startswith(folder):
+    if not Path(where).is_relative_to(folder):
         return None
     asset = _pxr("Ar").GetResolver().OpenAsset(_pxr("Ar").ResolvedPath(where))
     if asset is None or asset.GetSize() > MAX_PICTURE_BYTES:
