@@ -13,8 +13,10 @@ from world2minecraft.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.geometry.lifting import lift_depth, project
 from world2minecraft.parameters import Parameters
 from world2minecraft.prepare import open_prepared, prepared, preparing
-from world2minecraft.prepare.scaling import depth_ratios, normalised
+from world2minecraft.prepare.scaling import clicked, depth_ratios, normalised, scaled_capture
 from world2minecraft.scan import open_scan, write_plain
+from world2minecraft.scan.judged import judge_capture
+from world2minecraft.scan.options import ScanOptions
 from world2minecraft.types import Camera, DepthMap, SparseScene, View
 
 CAMERA = Camera(320, 240, 260.0, 260.0, 160.0, 120.0)
@@ -201,7 +203,7 @@ def test_too_few_photos_and_a_known_length_of_what_has_depth(tmp_path, views, st
     with pytest.raises(CaptureError, match="holds 2 photos that can be used; take 30 or more"):
         prepared(write_photos(tmp_path / "two", views[:2]), tmp_path / "OUT", Parameters())
     write_plain(tmp_path / "in", views)
-    with pytest.raises(UsageError, match="has depth in metres; leave out --known"):
+    with pytest.raises(UsageError, match="has poses and depth, which are taken as they are; leave"):
         prepared(tmp_path / "in", tmp_path / "OUT", Parameters(known=("table height", 0.72)))
 
 
@@ -256,3 +258,27 @@ def test_what_a_plain_capture_states_is_checked(tmp_path, views, key, value, wor
     (tmp_path / "capture.json").write_text(json.dumps(stated | {key: value}))
     with pytest.raises(CaptureError, match=words):
         open_scan(tmp_path)
+
+
+def test_clicked_points_of_photos_with_dots_in_their_names(tmp_path, views, stood_in):
+    named = [replace(view, name=f"2024.05.{n:02d}") for n, view in enumerate(views)]
+    write_posed(tmp_path / "in", named)
+    judged = judge_capture(tmp_path / "in", ScanOptions())
+    pair = [f"{view.name}{suffix}:10,20" for view, suffix in zip(named, ("", ".jpg"), strict=False)]
+    found = clicked(*pair, 1.0, judged, lambda name: (640, 480))
+    assert (found.image_a, found.image_b) == ("2024.05.00", "2024.05.01")
+    assert found.point_a == (5, 10)
+
+
+def test_a_scale_reaches_what_single_frames_state(tmp_path, views):
+    aside = np.eye(4)
+    aside[0, 3] = 0.02
+    written = [replace(views[0], depth_to_colour=aside), *views[1:]]
+    write_plain(tmp_path, written, depth_unit="0.0002", stated={"scale": "unknown", "notes": []})
+    before = json.loads((tmp_path / "capture.json").read_text())
+    scaled_capture(tmp_path, Parameters(known=("room height", 5.2)), lambda name: (320, 240))
+    after = json.loads((tmp_path / "capture.json").read_text())
+    for one, two in zip((before, *before["frames"]), (after, *after["frames"]), strict=True):
+        for key in {"camera_to_world", "depth_to_colour"} & set(one):
+            moved = np.array(two[key])[:3, 3], 2 * np.array(one[key])[:3, 3]
+            np.testing.assert_allclose(*moved, rtol=0.02, atol=1e-9)

@@ -56,7 +56,10 @@ def prepared(capture: Path, out: Path, chosen: Parameters, progress: Progress = 
     found = find_capture(capture, options)
     if has_all(found):
         if chosen.known is not None or chosen.known_points is not None:
-            raise UsageError(f"{capture} has depth in metres; leave out --known")
+            raise UsageError(
+                f"{capture} has poses and depth, which are taken as they are; leave out --known "
+                "and --known-points"
+            )
         return capture
     fresh = not out.exists()
     check_writable(out)

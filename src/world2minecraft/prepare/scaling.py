@@ -106,18 +106,22 @@ def scaled_capture(
     except ImplausibleRoomError as error:
         raise CaptureError(judged.capture.folder, str(error)) from error
     stated = read_json(folder / "capture.json")
-    for frame in stated["frames"]:
-        pose = np.array(frame["camera_to_world"])
-        pose[:3, 3] *= found.scale
-        frame["camera_to_world"] = pose.tolist()
-    offset = np.array(stated["depth_to_colour"])
-    offset[:3, 3] *= found.scale
-    stated["depth_to_colour"] = offset.tolist()
+    for holder in (stated, *stated["frames"]):
+        for key in ("camera_to_world", "depth_to_colour"):
+            if key in holder:
+                holder[key] = _stretched(holder[key], found.scale)
     stated["depth_unit"] = repr(float(stated["depth_unit"]) * found.scale)
     stated["scale"] = "metric" if knowns else "estimated"
     stated["scale_sigma"] = round(found.sigma, 4)
     stated["notes"] = [*stated["notes"], *found.told]
     write_json(folder / "capture.json", stated)
+
+
+def _stretched(matrix: list[list[float]], scale: float) -> list[list[float]]:
+    """Return a stated 4x4 transform with its shift multiplied."""
+    stretched = np.array(matrix)
+    stretched[:3, 3] *= scale
+    return stretched.tolist()
 
 
 def clicked(
@@ -135,7 +139,8 @@ def clicked(
     cameras = {frame.name: frame.colour_camera for frame in judged.frames}
 
     def found(text: str) -> tuple[str, tuple[float, float]]:
-        name, (x, y) = _clicked(text)
+        image, (x, y) = _clicked(text)
+        name = image if image in cameras else Path(image).stem
         camera = cameras.get(name)
         if camera is None:
             raise UnknownNameError("photo", name, cameras)
@@ -150,7 +155,7 @@ def _clicked(text: str) -> tuple[str, tuple[float, float]]:
     image, _, pixel = text.rpartition(":")
     across, _, down = pixel.partition(",")
     try:
-        return Path(image).stem, (float(across), float(down))
+        return image, (float(across), float(down))
     except ValueError:
         raise UsageError(
             f"a clicked point is PHOTO:x,y such as IMG_0007:812,344, not {text!r}"
