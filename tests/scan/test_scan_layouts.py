@@ -10,6 +10,8 @@ from PIL import Image
 
 from world2minecraft.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.scan import describe_capture, open_scan, write_plain
+from world2minecraft.scan.judged import judge_capture
+from world2minecraft.scan.options import ScanOptions
 from world2minecraft.scan.sources import SOURCES, find_capture
 from world2minecraft.types import View
 
@@ -189,3 +191,24 @@ def test_the_summary_says_what_to_type(tmp_path, views):
 def test_every_source_says_its_layout():
     for name in SOURCES.names():
         assert SOURCES.load(name)().layout
+
+
+def test_plain_reads_frames_named_as_photos_are(tmp_path, views):
+    names = ["Photo 1 (2)", "Küche.v2", "b" * 180, "0003"]
+    named = [replace(view, name=name) for view, name in zip(views, names, strict=False)]
+    write_plain(tmp_path, named)
+    frames = judge_capture(tmp_path, ScanOptions()).frames
+    assert [frame.name for frame in frames] == names
+    assert all(frame.colour_path and frame.depth_path for frame in frames)
+
+
+def test_plain_without_poses_may_lack_its_lens(tmp_path, views):
+    write_plain(tmp_path, views)
+    path = tmp_path / "capture.json"
+    stated = json.loads(path.read_text())
+    del stated["colour_camera"], stated["depth_camera"]
+    stated["frames"] = [{"name": frame["name"]} for frame in stated["frames"]]
+    path.write_text(json.dumps(stated))
+    frames = judge_capture(tmp_path, ScanOptions()).frames
+    assert len(frames) == len(views)
+    assert all(frame.colour_camera is None and frame.depth_camera is None for frame in frames)

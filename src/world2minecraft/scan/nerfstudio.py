@@ -19,6 +19,7 @@ from world2minecraft.errors import CaptureError, InputError, LimitError
 from world2minecraft.files import read_json
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import SUFFIXES, read_header
+from world2minecraft.scan.numbers import as_floats
 from world2minecraft.types import Camera
 
 _MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "PERSPECTIVE", "SIMPLE_RADIAL", "RADIAL")
@@ -41,7 +42,9 @@ class NerfstudioSource:
         if not isinstance(entries, list) or not entries:
             raise CaptureError(path, 'must hold "frames", a list of {file_path, transform_matrix}')
         if not any(isinstance(entry, dict) and "transform_matrix" in entry for entry in entries):
-            raise CaptureError(path, 'no frame has a pose ("transform_matrix")')
+            raise CaptureError(
+                path, 'no frame has a pose ("transform_matrix"); give the pictures alone'
+            )
         scale = _number(path, stated, "applied_scale", 1.0)
         if scale <= 0:
             raise CaptureError(path, f'"applied_scale" must be above 0, not {scale}')
@@ -141,6 +144,8 @@ def _camera(path: AnyPath, stated: dict[str, Any], image: AnyPath) -> Camera:
         raise CaptureError(
             path, f"camera_model {model!r} is not read; undistort to one of {', '.join(_MODELS)}"
         )
+    if stated.get("is_fisheye") is True:  # How instant-ngp says it.
+        raise CaptureError(path, "is of a fisheye lens, which is not read; undistort first")
     if "w" in stated and "h" in stated:
         width, height = _number(path, stated, "w"), _number(path, stated, "h")
     else:
@@ -185,10 +190,7 @@ def _number(path: AnyPath, stated: dict[str, Any], key: str, default: float | No
 def _pose(path: AnyPath, entry: dict[str, Any], scale: float) -> np.ndarray | None:
     if "transform_matrix" not in entry:
         return None
-    try:
-        pose = np.array(entry["transform_matrix"], np.float64)
-    except (TypeError, ValueError, OverflowError):
-        pose = np.zeros(0)
+    pose = as_floats(entry["transform_matrix"])
     if pose.shape == (3, 4):
         pose = np.vstack([pose, [0, 0, 0, 1]])
     if pose.shape != (4, 4):

@@ -18,11 +18,12 @@ from world2minecraft.errors import CaptureError, UnknownNameError
 from world2minecraft.files import read_json, write_bytes, write_json
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import SUFFIXES
-from world2minecraft.types import Camera, View
+from world2minecraft.scan.numbers import as_floats
+from world2minecraft.types import Camera, View, checks
 
 FORMAT = "world2minecraft-capture"
 VERSION = 1
-_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}")
+_KIND = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}")
 DEPTH_KINDS = ("sensor", "stereo", "network", "exact")
 SCALES = ("metric", "estimated", "unknown")
 MOST_NOTES, MOST_NOTE = 30, 400  # Sentences, and letters of each.
@@ -54,7 +55,8 @@ class PlainSource:
         if unit is not None and not isinstance(unit, str):
             raise CaptureError(path, f'"depth_unit" must be a name, not {unit!r}')
         files = _files_by_stem(folder)
-        frames = tuple(_frame(path, stated, entry, files) for entry in entries)
+        posed = any(isinstance(entry, dict) and "camera_to_world" in entry for entry in entries)
+        frames = tuple(_frame(path, stated, entry, files, posed) for entry in entries)
         names = [frame.name for frame in frames]
         if len(set(names)) != len(names):
             raise CaptureError(path, "names a frame twice; every name must be its own")
@@ -87,18 +89,18 @@ def _files_by_stem(folder: AnyPath) -> dict[str, dict[str, AnyPath]]:
 
 
 def _frame(
-    path: AnyPath, stated: dict[str, Any], entry: Any, files: dict[str, dict[str, AnyPath]]
+    path: AnyPath,
+    stated: dict[str, Any],
+    entry: Any,
+    files: dict[str, dict[str, AnyPath]],
+    posed: bool,
 ) -> FrameFiles:
-    name = entry.get("name") if isinstance(entry, dict) else None
-    if not isinstance(name, str) or not _NAME.fullmatch(name):
-        raise CaptureError(path, f"a frame's name must be of A-Z a-z 0-9 _ . -, not {name!r}")
+    """Return a frame; where no frame is ``posed``, its lens may be left out too."""
+    name = _frame_name(path, entry.get("name") if isinstance(entry, dict) else None)
     colour_path, depth_path = files["colour"].get(name), files["depth"].get(name)
     pose = _matrix(path, entry, "camera_to_world")
     merged = {**stated, **entry}
     depth_to_colour = _matrix(path, merged, "depth_to_colour")
-    posed = any(
-        isinstance(other, dict) and "camera_to_world" in other for other in stated["frames"]
-    )
     problem = "has no camera_to_world in capture.json" if posed and pose is None else ""
     if colour_path is None and depth_path is None:
         problem = f"has neither colour/{name}.* nor depth/{name}.*"
@@ -106,14 +108,24 @@ def _frame(
         name,
         pose,
         colour_path,
-        _camera(path, merged, "colour_camera") if colour_path else None,
+        _camera(path, merged, "colour_camera", posed) if colour_path else None,
         depth_path,
-        _camera(path, merged, "depth_camera") if depth_path else None,
+        _camera(path, merged, "depth_camera", posed) if depth_path else None,
         np.eye(4) if depth_to_colour is None else depth_to_colour,
         files["labels"].get(name),
         problem,
         files["trust"].get(name) if depth_path else None,
     )
+
+
+def _frame_name(path: AnyPath, name: Any) -> str:
+    """Return the name of a frame, by which its files are found: that of its photo, say."""
+    try:
+        return checks.identifier("name", name if isinstance(name, str) else "")
+    except ValueError as error:
+        raise CaptureError(
+            path, f"a frame's name must be its files' without suffix, such as 000012, not {name!r}"
+        ) from error
 
 
 def _notes(path: AnyPath, stated: dict[str, Any]) -> tuple[str, ...]:
@@ -137,7 +149,7 @@ def _skipped(path: AnyPath, stated: dict[str, Any]) -> tuple[tuple[str, str], ..
 def _made_from(path: AnyPath, stated: dict[str, Any]) -> str:
     """Return the kind of capture that this one was computed from; of most, plain itself."""
     name = stated.get("made_from", "plain")
-    if not isinstance(name, str) or not _NAME.fullmatch(name):
+    if not isinstance(name, str) or not _KIND.fullmatch(name):
         raise CaptureError(path, f'"made_from" must be the name of a kind, not {name!r}')
     return name
 
@@ -151,11 +163,8 @@ def _room(path: AnyPath, stated: dict[str, Any]) -> tuple[np.ndarray, np.ndarray
     size = room.get("size_m") if isinstance(room, dict) else None
     if matrix is None or not isinstance(size, list) or len(size) != 3:
         raise CaptureError(path, '"room" must hold "scan_to_room" and three numbers "size_m"')
-    try:
-        size_m = np.array(size, np.float64)
-    except (TypeError, ValueError):
-        size_m = np.zeros(3)
-    if not ((size_m > 0) & (size_m < 1000)).all():
+    size_m = as_floats(size)
+    if size_m.shape != (3,) or not ((size_m > 0) & (size_m < 1000)).all():
         raise CaptureError(path, f'"size_m" must be metres above 0, not {size}')
     return matrix, size_m
 
@@ -163,12 +172,9 @@ def _room(path: AnyPath, stated: dict[str, Any]) -> tuple[np.ndarray, np.ndarray
 def _world_up(path: AnyPath, stated: dict[str, Any]) -> np.ndarray | None:
     if stated.get("world_up") is None:
         return None
-    try:
-        up = np.array(stated["world_up"], np.float64).reshape(3)
-    except (TypeError, ValueError):
-        up = np.zeros(3)
+    up = as_floats(stated["world_up"])
     length = float(np.linalg.norm(up))
-    if not 0.5 < length < 2:
+    if up.shape != (3,) or not 0.5 < length < 2:
         raise CaptureError(path, '"world_up" must be three numbers such as [0, 1, 0]')
     return up / length
 
@@ -187,12 +193,17 @@ def _sigma(path: AnyPath, stated: dict[str, Any]) -> float:
     return float(value)
 
 
-def _camera(path: AnyPath, stated: dict[str, Any], key: str) -> Camera:
+def _camera(path: AnyPath, stated: dict[str, Any], key: str, needed: bool) -> Camera | None:
     value = stated.get(key, stated.get("camera"))  # "camera" stands for both.
+    if value is None and not needed:
+        return None  # It is found with the poses.
     if not isinstance(value, dict):
         raise CaptureError(path, f'has no "{key}" with {", ".join(_CAMERA_FIELDS)}')
     try:
         sizes = [value[field] for field in _CAMERA_FIELDS]
+        for field, number in zip(_CAMERA_FIELDS, sizes, strict=True):
+            if not isinstance(number, int | float):
+                raise TypeError(f"{field} must be a number, not {number!r}")
         return Camera(*sizes, distortion=tuple(value.get("distortion", (0.0,) * 5)))
     except KeyError as error:
         raise CaptureError(path, f'"{key}" lacks {error.args[0]}') from error
@@ -204,10 +215,7 @@ def _matrix(path: AnyPath, stated: dict[str, Any], key: str) -> np.ndarray | Non
     value = stated.get(key)
     if value is None:
         return None
-    try:
-        matrix = np.array(value, np.float64)
-    except (TypeError, ValueError):
-        matrix = np.zeros(0)
+    matrix = as_floats(value)
     if matrix.shape != (4, 4):
         raise CaptureError(path, f'"{key}" must be four rows of four numbers')
     return matrix

@@ -301,3 +301,12 @@ def test_a_video_whose_pictures_lean_on_later_ones(tmp_path):
         assert np.median(off) < 12
     for index in rng.permutation(40).tolist():
         np.testing.assert_array_equal(movie.picture(index), forward[index])
+
+
+def test_record3d_frames_numbered_with_zeros(tmp_path, shots):
+    write_record3d(tmp_path, shots["record3d"][:3])
+    for path in sorted((tmp_path / "rgbd").iterdir()):
+        path.rename(path.with_name(f"{int(path.stem):05d}{path.suffix}"))
+    frames = find_capture(tmp_path).frames
+    assert [frame.name for frame in frames] == ["000000", "000001", "000002"]
+    assert all(frame.depth_path and frame.trust_path for frame in frames)

@@ -14,6 +14,7 @@ import numpy as np
 
 from world2minecraft.archive import AnyPath
 from world2minecraft.errors import CaptureError, InputError
+from world2minecraft.geometry.rotation import rotation_of_vector
 from world2minecraft.scan.apps.stated import camera, files_by_stem, read_text
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.types import Camera
@@ -42,7 +43,7 @@ class ARKitScenesSource:
         times, poses = _trajectory(inner / TRAJECTORY)
         kind = next((name for name in COLOURS if (inner / name).is_dir()), None)
         if kind is None:
-            raise CaptureError(inner, "has no lowres_wide/ with pictures")
+            raise CaptureError(inner, "has no lowres_wide/ with pictures; fetch the whole video")
         colours, lenses = (
             _timed(inner / kind, ".png"),
             _timed(inner / f"{kind}_intrinsics", ".pincam"),
@@ -57,7 +58,9 @@ class ARKitScenesSource:
             for time in _near_poses(chosen[0], times)
         )
         if not frames:
-            raise CaptureError(inner, f"no image was taken at a time of {TRAJECTORY}")
+            raise CaptureError(
+                inner, f"no image was taken at a time of {TRAJECTORY}; copy both of one video"
+            )
         left = len(chosen[0]) - len(frames)
         notes = (f"{left} images between the stated poses are left out",) if left else ()
         return Capture(
@@ -94,29 +97,21 @@ def _trajectory(path: AnyPath) -> tuple[list[float], list[np.ndarray]]:
             raise CaptureError(path, f"line {line} must hold 7 numbers: time, rotation, place")
         rows[float(values[0])] = _camera_to_world(values[1:4], values[4:7])
     if not rows:
-        raise CaptureError(path, "states no pose")
+        raise CaptureError(path, "states no pose; copy it again")
     times = sorted(rows)
     return times, [rows[time] for time in times]
 
 
 def _camera_to_world(turn: np.ndarray, place: np.ndarray) -> np.ndarray:
     pose = np.eye(4)
-    rotation = _rotation(turn)
+    rotation = rotation_of_vector(turn)
     pose[:3, :3] = rotation.T
     pose[:3, 3] = -rotation.T @ place
     return pose
 
 
-def _rotation(turn: np.ndarray) -> np.ndarray:
-    """Return the rotation [3, 3] about an axis by its length in radians (Rodrigues)."""
-    angle = float(np.linalg.norm(turn))
-    x, y, z = turn / angle if angle > 0 else turn
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
-
-
 def _turn(rotation: np.ndarray) -> np.ndarray:
-    """Undo ``_rotation`` for turns well under half a circle."""
+    """Undo ``rotation_of_vector`` for turns well under half a circle."""
     twice = np.array(
         [
             rotation[2, 1] - rotation[1, 2],
@@ -205,7 +200,7 @@ def _lens(path: AnyPath) -> Camera:
     except ValueError:
         values = []
     if len(values) != 6:
-        raise CaptureError(path, "must hold width, height, fx, fy, cx, cy")
+        raise CaptureError(path, f"must hold width, height, fx, fy, cx, cy, not {len(words)} words")
     return camera(path, (values[0], values[1]), values[2:])
 
 
@@ -222,6 +217,6 @@ def _pose_at(time: float, times: Sequence[float], poses: Sequence[np.ndarray]) -
     share = (time - times[after - 1]) / span
     pose = np.eye(4)
     turn = _turn(first[:3, :3].T @ second[:3, :3])
-    pose[:3, :3] = first[:3, :3] @ _rotation(share * turn)
+    pose[:3, :3] = first[:3, :3] @ rotation_of_vector(share * turn)
     pose[:3, 3] = (1 - share) * first[:3, 3] + share * second[:3, 3]
     return pose

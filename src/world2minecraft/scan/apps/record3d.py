@@ -24,10 +24,10 @@ from world2minecraft.scan.apps.stated import (
     files_by_stem,
     number,
     numbers,
-    pose_of_quaternion,
 )
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import ImagePlace
+from world2minecraft.scan.quaternions import pose_of
 from world2minecraft.types import Camera
 
 _PICTURES = (".jpg", ".jpeg", ".png")
@@ -57,18 +57,17 @@ class Record3DSource:
         if not isinstance(stated, dict):
             raise CaptureError(path, "must be an object with K, w, h and poses")
         pictures = files_by_stem(folder / ("rgbd" if packed else "rgb"), _PICTURES)
-        indices = sorted(int(stem) for stem in pictures if _is_index(stem))
-        if not indices:
-            raise CaptureError(folder, "has no frames (rgbd/0.jpg)")
+        stems = {int(stem): stem for stem in pictures if _is_index(stem)}
+        if not stems:
+            raise CaptureError(folder, "has no frames (rgbd/0.jpg); export it again")
         lenses, poses = _lenses(path, stated), _poses(path, stated)
         size = _depth_size(folder, path, stated) if packed else None
         notes: tuple[str, ...] = ()
         if poses is not None and len(poses) > 1 and np.ptp(poses, axis=0).max() < _STILL:
             poses, notes = None, ("the front camera was used, which Record3D does not track",)
         frames = tuple(
-            _frame(folder, index, pictures[str(index)], lenses, poses, size)
-            for index in indices
-            if str(index) in pictures
+            _frame(folder, index, pictures[stem], lenses, poses, size)
+            for index, stem in sorted(stems.items())
         )
         return Capture(
             folder,
@@ -124,7 +123,7 @@ def _world_up(poses: np.ndarray | None) -> np.ndarray | None:
     if poses is None or not np.isfinite(poses[0]).all() or abs(poses[0, 3]) > 1 - 1e-6:
         return None
     finite = poses[np.isfinite(poses).all(axis=1)]
-    cameras = np.stack([pose_of_quaternion(pose[:4], pose[4:]) for pose in finite])
+    cameras = np.stack([pose_of(pose[4:], pose[:4]) for pose in finite])
     up = np.swapaxes(cameras[:, :3, :3], 1, 2) @ ARKIT_UP
     level = up[np.hypot(up[:, 0], up[:, 1]) > LEAST_LEAN]
     roll_deg = np.degrees(np.arctan2(level[:, 0], level[:, 1]))
@@ -153,7 +152,7 @@ def _depth_size(folder: AnyPath, path: AnyPath, stated: dict[str, Any]) -> tuple
         wide = round(pixels / max(high, 1))
         if wide * high == pixels and 0 < max(wide, high) <= 8192:
             return wide, high
-        raise CaptureError(path, 'states no size of the depth ("dw", "dh")')
+        raise CaptureError(path, 'states no size of the depth: add "dw" and "dh" in pixels')
     return None
 
 
@@ -165,7 +164,7 @@ def _frame(
     poses: np.ndarray | None,
     size: tuple[int, int] | None,
 ) -> FrameFiles:
-    depth, trust = _depth(folder, index, size)
+    depth, trust = _depth(folder, picture.stem, size)
     lens = lenses[index] if index < len(lenses) else (lenses[0] if len(lenses) == 1 else None)
     pose, problem = None, ""
     if poses is not None and index < len(poses):
@@ -187,13 +186,13 @@ def _frame(
 
 
 def _depth(
-    folder: AnyPath, index: int, size: tuple[int, int] | None
+    folder: AnyPath, stem: str, size: tuple[int, int] | None
 ) -> tuple[ImagePlace | None, ImagePlace | None]:
-    """Return a frame's depth and trust images, each None where it is not there."""
+    """Return the depth and trust images named as a picture, each None where it is not there."""
     if not (folder / "rgbd").is_dir():
-        exported = folder / "depth" / f"{index}.exr"
+        exported = folder / "depth" / f"{stem}.exr"
         return (ExrImage(exported) if exported.is_file() else None), None
-    depth, trust = folder / "rgbd" / f"{index}.depth", folder / "rgbd" / f"{index}.conf"
+    depth, trust = folder / "rgbd" / f"{stem}.depth", folder / "rgbd" / f"{stem}.conf"
     if size is None or not depth.is_file():
         return None, None
     return (

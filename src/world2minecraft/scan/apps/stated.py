@@ -15,6 +15,8 @@ from world2minecraft.archive import AnyPath
 from world2minecraft.coordinates import opengl_to_opencv_pose
 from world2minecraft.errors import CaptureError
 from world2minecraft.files import read_bytes
+from world2minecraft.scan.numbers import as_floats
+from world2minecraft.scan.quaternions import pose_of
 from world2minecraft.types import Camera
 
 ARKIT_UP = np.array([0.0, 1.0, 0.0])
@@ -50,10 +52,7 @@ def numbers(path: AnyPath, key: str, values: object, count: int) -> np.ndarray:
     Raises:
         CaptureError: it is no list of so many numbers.
     """
-    try:
-        found = np.array(values, np.float64).reshape(-1)
-    except (TypeError, ValueError, OverflowError):
-        found = np.zeros(0)
+    found = as_floats(values).reshape(-1)
     if len(found) != count or not isinstance(values, list):
         raise CaptureError(path, f'"{key}" must be a list of {count} numbers')
     return found
@@ -82,24 +81,7 @@ def arkit_pose(matrix: np.ndarray) -> np.ndarray:
 
 def arkit_pose_of_quaternion(quaternion: np.ndarray, place_m: np.ndarray) -> np.ndarray:
     """Return the pose with OpenCV axes of ARKit's quaternion x, y, z, w and place in metres."""
-    return arkit_pose(pose_of_quaternion(quaternion, place_m))
-
-
-def pose_of_quaternion(quaternion: np.ndarray, place_m: np.ndarray) -> np.ndarray:
-    """Return float64 [4, 4] of a quaternion x, y, z, w, which need not be a unit, and a place.
-
-    A quaternion of length 0 gives NaN: it says nothing.
-    """
-    with np.errstate(all="ignore"):
-        x, y, z, w = np.asarray(quaternion, np.float64) / np.linalg.norm(quaternion)
-    pose = np.eye(4)
-    pose[:3, :3] = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    pose[:3, 3] = place_m
-    return pose
+    return arkit_pose(pose_of(place_m, quaternion))
 
 
 def files_by_stem(folder: AnyPath, suffixes: Iterable[str]) -> dict[str, AnyPath]:

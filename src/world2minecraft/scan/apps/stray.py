@@ -18,11 +18,11 @@ from world2minecraft.scan.apps.stated import (
     ARKIT_UP,
     camera,
     files_by_stem,
-    pose_of_quaternion,
     read_text,
 )
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import ImagePlace, read_header
+from world2minecraft.scan.quaternions import pose_of
 from world2minecraft.types import Camera
 
 ODOMETRY = "odometry.csv"
@@ -53,7 +53,7 @@ class StraySource:
         depths = _by_index(folder / "depth", (".png", ".npy"))
         trusts = _by_index(folder / "confidence", (".png",))
         if not pictures and not depths:
-            raise CaptureError(folder, f"has neither {VIDEO} nor rgb/ nor depth/")
+            raise CaptureError(folder, f"has neither {VIDEO} nor rgb/ nor depth/; copy all of it")
         size = _size(folder, pictures)
         matrix = _matrix(folder / MATRIX) if (folder / MATRIX).is_file() else None
         frames = []
@@ -101,13 +101,13 @@ def _rows(path: AnyPath) -> Rows:
         where = f"line {lines.line_num}"
         raise CaptureError(path, f"{where} is no row of numbers ({str(error)[:60]})") from error
     if not rows:
-        raise CaptureError(path, "states no pose")
+        raise CaptureError(path, "states no pose; copy it again")
     return rows
 
 
 def _pose(row: dict[str, float]) -> np.ndarray:
     place_m = np.array([row[name] for name in _POSE[:3]])
-    return pose_of_quaternion(np.array([row[name] for name in _POSE[3:]]), place_m)
+    return pose_of(place_m, np.array([row[name] for name in _POSE[3:]]))
 
 
 def _by_index(folder: AnyPath, suffixes: tuple[str, ...]) -> dict[int, AnyPath]:

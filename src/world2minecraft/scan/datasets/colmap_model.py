@@ -15,8 +15,8 @@ from world2minecraft.coordinates import invert_rigid
 from world2minecraft.errors import CaptureError, DamagedFileError
 from world2minecraft.files import read_bytes
 from world2minecraft.scan.datasets.lenses import stated_camera
-from world2minecraft.scan.datasets.pairing import pose_of
 from world2minecraft.scan.datasets.tables import read_rows, to_floats
+from world2minecraft.scan.quaternions import pose_of
 from world2minecraft.types import Camera
 
 MAX_MODEL_BYTES = 1 << 30  # Ten thousand photos with ten thousand points each have 2.4 GB: split.
@@ -69,7 +69,8 @@ def read_model(folder: AnyPath) -> tuple[ModelImage, ...]:
     for number, values, camera, name in sorted(images, key=lambda image: image[0]):
         if camera not in cameras:
             raise CaptureError(
-                images_path, f"image {number} is of camera {camera}, which is not there"
+                images_path,
+                f"image {number} is of camera {camera}, which is not there: copy both files again",
             )
         world_to_camera = pose_of(values[4:7], values[[1, 2, 3, 0]])
         lost = not np.isfinite(world_to_camera).all()

@@ -17,6 +17,7 @@ from world2minecraft.scan.datasets.lenses import PRIMESENSE, VGA, matrix_camera,
 from world2minecraft.scan.datasets.tables import by_number, read_rows, to_floats
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import SUFFIXES
+from world2minecraft.scan.numbers import as_floats
 from world2minecraft.types import Camera
 
 COLOUR_FOLDERS = ("color", "colour", "rgb", "image", "images")
@@ -41,7 +42,8 @@ class Open3dSource:
         pairs = _pairs(folder)
         if min(poses) < 0 or max(poses) >= len(pairs):
             raise CaptureError(
-                chosen, f"speaks of frame {max(poses)}; there are {len(pairs)} pairs of images"
+                chosen,
+                f"speaks of frame {max(poses)}; there are {len(pairs)} pairs of images: copy all",
             )
         camera, notes = _camera(folder)
         if others:
@@ -116,7 +118,7 @@ def _read_log(path: AnyPath) -> Trajectory:
             )
         number = int(block[0][0])
         if number in poses:
-            raise CaptureError(path, f"has two poses of frame {number}")
+            raise CaptureError(path, f"has two poses of frame {number}: keep one")
         words = [word for row in block[1:] for word in row]
         poses[number] = to_floats(path, words).reshape(4, 4)
     return poses
@@ -141,10 +143,7 @@ def _read_json(path: AnyPath) -> tuple[Trajectory, dict[int, Camera]]:
 def _columns(path: AnyPath, stated: Any, key: str, side: int) -> np.ndarray:
     """Return a matrix that JSON keeps as one list, column after column."""
     values = stated.get(key) if isinstance(stated, dict) else None
-    try:
-        matrix = np.array(values, np.float64)
-    except (TypeError, ValueError):
-        matrix = np.zeros(0)
+    matrix = as_floats(values)
     if matrix.shape != (side * side,):
         raise CaptureError(path, f'"{key}" must be {side * side} numbers')
     return matrix.reshape(side, side).T

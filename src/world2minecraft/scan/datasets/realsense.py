@@ -16,8 +16,9 @@ from world2minecraft.coordinates import invert_rigid
 from world2minecraft.errors import CaptureError
 from world2minecraft.scan.datasets.bag_reading import BagImage, Stream, opened_bag
 from world2minecraft.scan.datasets.lenses import stated_camera
-from world2minecraft.scan.datasets.pairing import pair_times, pose_of
+from world2minecraft.scan.datasets.pairing import pair_times
 from world2minecraft.scan.frames import Capture, FrameFiles
+from world2minecraft.scan.quaternions import pose_of
 from world2minecraft.types import Camera
 
 WITHIN_S = 0.025  # Streams of 30 Hz that are not locked lie up to 17 ms apart.
@@ -128,7 +129,7 @@ def _streams(path: AnyPath, streams: dict[str, Stream]) -> _Pair:
 def _camera(path: AnyPath, info: Any) -> Camera:
     """Return the camera of a ``sensor_msgs/CameraInfo``."""
     if info is None:
-        raise CaptureError(path, "states no intrinsics (camera_info) of a stream")
+        raise CaptureError(path, "states no intrinsics (camera_info) of a stream: record them too")
     matrix = np.asarray(info.K, np.float64).reshape(-1)
     model = str(info.distortion_model).lower().replace(" ", "_")
     lens = np.asarray(info.D, np.float64).reshape(-1)
@@ -155,7 +156,7 @@ def _depth_to_colour(path: AnyPath, bag: Any, pair: _Pair) -> np.ndarray:
     known = set(bag.topics())
     groups = [n for n in range(MAX_GROUPS) if all(f"{p}/tf/{n}" in known for p in prefixes)]
     if not groups:
-        raise CaptureError(path, "does not say how its lenses stand to each other (tf/0)")
+        raise CaptureError(path, "does not say how its lenses stand to each other: record tf/0")
     for prefix in prefixes:
         message = bag.first(f"{prefix}/tf/{groups[0]}")
         t, q = message.translation, message.rotation
@@ -171,6 +172,8 @@ def _unit(path: AnyPath, bag: Any) -> tuple[float, tuple[str, ...]]:
         if _UNITS.fullmatch(topic):
             unit_m = float(np.float32(bag.first(topic).data))
             if not 1e-6 < unit_m < 0.1:
-                raise CaptureError(path, f"states a depth unit of {unit_m} m")
+                raise CaptureError(
+                    path, f"states a depth unit of {unit_m} m; 1e-06 to 0.1 are read"
+                )
             return float(f"{unit_m:.6g}"), ()
     return DEFAULT_UNIT_M, ("the bag states no depth unit: millimetres are taken",)

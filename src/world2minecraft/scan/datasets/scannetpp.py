@@ -21,6 +21,7 @@ from world2minecraft.scan.datasets.lenses import first_size, matrix_camera
 from world2minecraft.scan.datasets.slices import FileSlice, opened_file
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import SUFFIXES, ImageHeader, ImagePlace
+from world2minecraft.scan.numbers import as_floats
 
 POSES = "pose_intrinsic_imu.json"
 VIDEOS = ("rgb.mkv", "rgb.mp4")
@@ -191,10 +192,7 @@ def _frame(
 
 
 def _matrix(path: AnyPath, name: str, stated: Any, side: int) -> np.ndarray:
-    try:
-        matrix = np.array(stated, np.float64)
-    except (TypeError, ValueError):
-        matrix = np.zeros(0)
+    matrix = as_floats(stated)
     if matrix.size != side * side:
         raise CaptureError(path, f"{name} must state a matrix of {side} rows of {side}")
     return matrix.reshape(side, side)
