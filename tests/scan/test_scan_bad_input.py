@@ -10,9 +10,11 @@ import pytest
 from layouts import WRITERS, write_nerfstudio, write_seven_scenes
 from PIL import Image
 
-from world2minecraft.errors import CaptureError, InputError, LimitError
+from world2minecraft.errors import CaptureError, InputError, LimitError, UsageError
 from world2minecraft.scan import describe_capture, open_scan, write_plain
+from world2minecraft.scan.align import Alignment
 from world2minecraft.scan.images import read_header
+from world2minecraft.scan.opening import check_cells
 
 
 @pytest.fixture(scope="module")
@@ -239,7 +241,7 @@ def test_poses_slightly_off_are_mended(tmp_path, box_room):
         ({"format": "other"}, 'must be an object with "format"'),
         ({"version": 9}, '"version" must be 1, not 9'),
         ({"frames": []}, '"frames" must be a list'),
-        ({"frames": [{"name": "../up"}]}, "name must be of A-Z"),
+        ({"frames": [{"name": "../up"}]}, "name must be its files' without suffix"),
         ({"frames": [{"name": "a", "camera_to_world": [[1, 2], [3]]}]}, "four rows of four"),
         ({"depth_unit": 5}, '"depth_unit" must be a name'),
         ({"depth_unit": "furlong"}, "no depth unit is named 'furlong'"),
@@ -323,3 +325,77 @@ def test_files_that_are_no_image(tmp_path, content):
     path.write_bytes(content)
     with pytest.raises(InputError, match=r"image\.png: is "):
         read_header(path)
+
+
+@pytest.mark.parametrize(
+    ("camera", "words"),
+    [
+        ({"fx_px": "130.0"}, "fx_px must be a number, not '130.0'"),
+        ({"width_px": None}, "width_px must be a number, not None"),
+    ],
+)
+def test_a_lens_in_quotes(tmp_path, views, camera, words):
+    write_plain(tmp_path, views)
+    path = tmp_path / "capture.json"
+    stated = json.loads(path.read_text())
+    stated["colour_camera"] |= camera
+    path.write_text(json.dumps(stated))
+    _refused(tmp_path, words)
+
+
+def test_whole_numbers_too_long_for_a_matrix(tmp_path, views):
+    write_plain(tmp_path, views)
+    path = tmp_path / "capture.json"
+    stated = json.loads(path.read_text())
+    stated["frames"][0]["camera_to_world"] = [[10**400] * 4] * 4
+    path.write_text(json.dumps(stated))
+    _refused(tmp_path, "four rows of four numbers")
+
+
+def test_a_layout_none_of_whose_frames_is_there(tmp_path):
+    (tmp_path / "results").mkdir()
+    Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(tmp_path / "results" / "frame_one.jpg")
+    np.savetxt(tmp_path / "traj.txt", np.eye(4).reshape(1, 16))
+    _refused(tmp_path, "looks like a capture of the kind replica", "docs/captures.md shows how")
+
+
+def test_a_7_scenes_folder_without_a_readable_image(tmp_path):
+    (tmp_path / "frame-000000.color.png").write_bytes(b"no image")
+    np.savetxt(tmp_path / "frame-000001.pose.txt", np.eye(4))
+    _refused(tmp_path, "has poses but no image that can be read")
+
+
+def test_what_is_packed_otherwise_is_to_be_unpacked(tmp_path):
+    (tmp_path / "room.tgz").write_bytes(b"")
+    _refused(tmp_path / "room.tgz", "is packed as .tgz", "unpack it, and give its folder")
+
+
+def test_a_fisheye_of_instant_ngp(tmp_path, views):
+    write_nerfstudio(tmp_path, views)
+    path = tmp_path / "transforms.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"is_fisheye": True}))
+    _refused(tmp_path, "is of a fisheye lens, which is not read; undistort first")
+
+
+def test_whole_numbers_of_npy_depth_must_be_unsigned(tmp_path, views):
+    write_plain(tmp_path, views, depth_unit="m")
+    for path in (tmp_path / "depth").glob("*.npy"):
+        np.save(path, np.full((120, 160), 2000, np.int32))
+    _refused(
+        tmp_path, "must hold unsigned or float numbers [H, W], not int32 (120, 160)",
+        "save it as uint16 or float32",
+    )  # fmt: skip
+
+
+def test_depth_that_the_device_trusts_nowhere(tmp_path, views):
+    write_plain(tmp_path, [replace(v, trust=np.zeros(v.depth_m.shape, np.uint8)) for v in views])
+    with pytest.raises(CaptureError, match="none of the 4 depth images looked at has any depth"):
+        describe_capture(tmp_path)
+
+
+@pytest.mark.parametrize("size_m", [(4.0, 3.0, 2.5), (9.7, 8.3, 3.1)])
+def test_the_least_voxel_that_is_told_is_taken(size_m):
+    alignment = Alignment(np.eye(4), np.array(size_m), ())
+    with pytest.raises(UsageError, match="take at least --voxel") as caught:
+        check_cells(alignment, 0.001)
+    check_cells(alignment, float(str(caught.value).split()[-1]))

@@ -57,7 +57,7 @@ def gather(photos: PhotoStream, parameters: PosingParameters, steps: Steps) -> l
     """
     if len(photos) > MOST_PHOTOS:
         raise LimitError(
-            PLACE, f"are {len(photos)}, over {MOST_PHOTOS}; give every tenth, or a part"
+            PLACE, f"are {len(photos)}, over {MOST_PHOTOS}; take fewer: --set capture.every=10"
         )
     gathered: list[Features] = []
     with colmap() as pycolmap:

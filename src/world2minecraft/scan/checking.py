@@ -36,9 +36,15 @@ def check_frames(
         The usable frames in order, and (name, reason) of the others.
 
     Raises:
-        CaptureError: none can be used, or all of them share a fault.
+        CaptureError: there are none, none can be used, or all of them share a fault.
         LimitError: an image is too large to decode.
     """
+    if not capture.frames:
+        raise CaptureError(
+            capture.folder,
+            f"looks like a capture of the kind {capture.source}, but none of its frames is there; "
+            "docs/captures.md shows how the files are named",
+        )
     sizes: dict[str, tuple[ImagePlace, ImageHeader]] = {}
     used: list[FrameFiles] = []
     skipped: list[tuple[str, str]] = []
@@ -128,7 +134,8 @@ def _fit(path: ImagePlace | None, camera: Camera | None) -> Camera | None:
         raise CaptureError(
             path,
             f"is {size[0]}x{size[1]} but the principal point of its intrinsics is at "
-            f"({fitted.cx_px:.0f}, {fitted.cy_px:.0f}); they speak of another image size",
+            f"({fitted.cx_px:.0f}, {fitted.cy_px:.0f}); they speak of another "
+            "image size: give those of this one",
         )
     return fitted
 

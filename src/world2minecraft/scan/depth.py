@@ -113,7 +113,8 @@ def find_encoding(paths: Sequence[ImagePlace], stated: str | None) -> DepthEncod
     values = np.concatenate([_sample(path) for path in paths])
     if not len(values):
         raise CaptureError(
-            paths[0], f"is all holes, as are all {len(paths)} depth images looked at"
+            paths[0],
+            f"is all holes, as are all {len(paths)} depth images looked at: record it again",
         )
     encoding = DepthEncoding(stated) if stated else DepthEncoding(_guess(values), guessed=True)
     _check_range(paths[0], encoding, values)

@@ -18,7 +18,9 @@ def attach_labels(frames: Sequence[FrameFiles], folder: Path) -> tuple[FrameFile
         CaptureError: the folder is missing or none of its images is named like a frame.
     """
     if not folder.is_dir():
-        raise CaptureError(folder, "is no folder of label images")
+        raise CaptureError(
+            folder, "is no folder of label images: give one with NAME.png for each frame"
+        )
     labelled = tuple(replace(frame, labels_path=_label_of(frame, folder)) for frame in frames)
     if not any(frame.labels_path for frame in labelled):
         raise CaptureError(
@@ -49,7 +51,10 @@ def check_labels(frames: Sequence[FrameFiles]) -> None:
             raise CaptureError(frame.labels_path, f"labels lie on colour: {error}") from error
         labels = read_raw(frame.labels_path)
         if labels.dtype != np.uint8 or labels.ndim != 2:
-            raise CaptureError(frame.labels_path, "must hold one 8-bit class id a pixel")
+            given = f"{labels.dtype} {labels.shape}"
+            raise CaptureError(
+                frame.labels_path, f"must hold one 8-bit class id a pixel, not {given}"
+            )
         wrong = labels[(labels > 11) & (labels != 255)]
         if len(wrong):
             raise CaptureError(

@@ -18,7 +18,7 @@ from world2minecraft.errors import (
     InputError,
     LimitError,
     MissingExtraError,
-    one_line,
+    reason_of,
 )
 from world2minecraft.scan.images import MAX_PIXELS
 
@@ -90,7 +90,7 @@ def _look(path: AnyPath, stamp: tuple[int, int]) -> VideoLook:
     except InputError:
         raise
     except failures as error:
-        reason = one_line(error, 80)
+        reason = reason_of(error, 80)
         raise DamagedFileError(path, f"is no whole video ({reason}); copy it again") from error
 
 
@@ -101,12 +101,15 @@ def _looked(path: AnyPath, container: Any, failures: tuple[type[Exception], ...]
     stream = container.streams.video[0]
     size = (stream.codec_context.width, stream.codec_context.height)
     if not 0 < size[0] * size[1] <= MAX_PIXELS:
-        raise LimitError(path, f"has pictures of {size[0]}x{size[1]}; at most 64 megapixels")
+        raise LimitError(
+            path,
+            f"has pictures of {size[0]}x{size[1]}; at most 64 megapixels are read: make it smaller",
+        )
     stated_s = (container.duration or 0) / 1e6  # Some containers state it for the whole alone.
     if stream.duration:
         stated_s = float(stream.duration * stream.time_base)
     if stated_s > MAX_SECONDS:
-        raise LimitError(path, f"is {stated_s / 60:.0f} minutes long; at most 60 are read")
+        raise LimitError(path, f"is {stated_s / 60:.0f} minutes long; at most 60 are read: cut it")
     stream.thread_type = "AUTO"  # The pictures are the same on any number of threads.
     times: list[int] = []
     sharpness: list[float] = []

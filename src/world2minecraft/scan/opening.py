@@ -1,5 +1,6 @@
 """``open_scan``: a capture on disk becomes a Scan that later stages read view by view."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -62,7 +63,7 @@ def open_scan(
         notes.append(found)
     progress(STAGE, 60, STEPS, "finding gravity and walls")
     alignment = _aligned(judged, stream)
-    _check_cells(alignment, voxel_m)
+    check_cells(alignment, voxel_m)
     progress(STAGE, STEPS, STEPS)
     return Scan(
         views=stream,
@@ -113,11 +114,12 @@ def _aligned(judged: JudgedCapture, stream: CaptureViews) -> Alignment:
         raise CaptureError(judged.capture.folder, str(error)) from error
 
 
-def _check_cells(alignment: Alignment, voxel_m: float) -> None:
+def check_cells(alignment: Alignment, voxel_m: float) -> None:
+    """Raise UsageError where a room has too many cells; the message names a voxel that will do."""
     volume_m3 = float(alignment.room_size_m.prod())
     if volume_m3 / voxel_m**3 > MAX_CELLS:
         least_m = (volume_m3 / MAX_CELLS) ** (1 / 3)
         raise UsageError(
             f"a voxel of {voxel_m:g} m would cut this room into {volume_m3 / voxel_m**3:,.0f} "
-            f"cells; take at least --voxel {least_m:.3f}"
+            f"cells; take at least --voxel {math.ceil(1000 * least_m) / 1000:.3f}"
         )

@@ -60,11 +60,14 @@ class PhotoFolderSource:
         colour_folder = _colour_folder(folder)
         paths = _photos(colour_folder)
         if len(paths) > MAX_PHOTOS:
-            raise CaptureError(folder, f"holds {len(paths):,} photos; at most {MAX_PHOTOS:,}")
+            raise CaptureError(
+                folder, f"holds {len(paths):,} photos; give a part, {MAX_PHOTOS:,} at most"
+            )
         kept, skipped = _kept(paths)
         if len(kept) < LEAST_FRAMES:
             why = f"; {skipped[0][0]} {skipped[0][1]}" if skipped else ""
-            reason = f"holds {len(kept)} photos that can be used{why}; take 30 or more of the room"
+            count = f"{len(kept)} photo" + "s" * (len(kept) != 1)
+            reason = f"holds {count} that can be used{why}; take 30 or more of the room"
             raise CaptureError(folder, reason)
         kept = thinned(kept, options.frames)
         depths = _depths(folder, colour_folder)

@@ -46,7 +46,7 @@ class SevenScenesSource:
             )
         every = [found for _, _, found in listed]
         matrix, notes = _intrinsics(folder, parts, every)
-        camera = _camera(every, matrix)
+        camera = _camera(folder, every, matrix)
         several = len({part for part, _, _ in listed}) > 1
         frames = tuple(
             _frame(f"{part.name}.{stem}" if several else stem, found, camera)
@@ -100,11 +100,11 @@ def _read_matrix(path: AnyPath) -> np.ndarray:
     matrix = values.reshape(side, side)[:3, :3]
     right_form = np.allclose(matrix[2], [0, 0, 1]) and np.allclose(matrix[[0, 1], [1, 0]], 0)
     if not np.isfinite(matrix).all() or not right_form or min(matrix[0, 0], matrix[1, 1]) <= 0:
-        raise CaptureError(path, "must read fx 0 cx, 0 fy cy, 0 0 1")
+        raise CaptureError(path, f"must read fx 0 cx, 0 fy cy, 0 0 1, not {matrix.tolist()}")
     return matrix
 
 
-def _camera(frames: list[dict[str, AnyPath]], matrix: np.ndarray) -> Camera:
+def _camera(folder: AnyPath, frames: list[dict[str, AnyPath]], matrix: np.ndarray) -> Camera:
     """Return the stated camera: the matrix and the image size that it speaks of.
 
     The file states no size, so it is that of the stream whose middle the principal point meets
@@ -112,7 +112,9 @@ def _camera(frames: list[dict[str, AnyPath]], matrix: np.ndarray) -> Camera:
     """
     sizes = [size for kind in ("depth", "color") if (size := _first_size(frames, kind)) is not None]
     if not sizes:
-        raise CaptureError(frames[0]["pose"].parent, "has poses but no readable image")
+        raise CaptureError(
+            folder, "has poses but no image that can be read (frame-000000.color.png, .depth.png)"
+        )
     cx, cy = matrix[0, 2], matrix[1, 2]
     width, height = min(sizes, key=lambda size: abs(cx / size[0] - 0.5) + abs(cy / size[1] - 0.5))
     return Camera(width, height, float(matrix[0, 0]), float(matrix[1, 1]), float(cx), float(cy))

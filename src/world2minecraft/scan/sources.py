@@ -46,6 +46,7 @@ TAKES_ANY = ("photos", "photo")  # Asked last, after those of other packages too
 MAX_WRAPPINGS = 3  # Folders that hold nothing but a folder, as zips often do.
 MAX_LOOKED_INTO = 50  # Folders of a wrong folder that are tried, for a hint.
 INDEX_FILES = ("capture.json", "transforms.json")
+PACKED_SUFFIXES = (".tar", ".tgz", ".gz", ".bz2", ".xz", ".zst", ".7z", ".rar")
 
 
 def find_capture(path: str | Path, options: ScanOptions | None = None) -> Capture:
@@ -59,14 +60,17 @@ def find_capture(path: str | Path, options: ScanOptions | None = None) -> Captur
         CaptureError: it is missing, empty, of another kind or contradicts itself.
     """
     place = Path(path)
-    if place.is_file() and place.name in INDEX_FILES:
-        place = place.parent
-    if not place.exists():
-        raise CaptureError(place, "is not there")
     try:
+        if place.is_file() and place.name in INDEX_FILES:
+            place = place.parent
+        if not place.exists():
+            raise CaptureError(place, "is not there")
         empty = place.is_dir() and next(place.iterdir(), None) is None
     except OSError as error:
         raise CaptureError(place, f"cannot be read: {error.strerror or error}") from error
+    if place.is_file() and place.suffix.lower() in PACKED_SUFFIXES:
+        reason = f"is packed as {place.suffix}; of packed files zips alone are read: unpack it"
+        raise CaptureError(place, f"{reason}, and give its folder")
     names = sorted(SOURCES.names(), key=lambda name: name in TAKES_ANY)
     sources: list[Source] = [SOURCES.load(name)() for name in names]
     choosy = sources[: -len(TAKES_ANY)]

@@ -101,7 +101,10 @@ def _read_labels(frame: FrameFiles, colour: np.ndarray | None) -> np.ndarray | N
         return None
     labels = read_raw(frame.labels_path)
     if labels.dtype != np.uint8 or labels.ndim != 2:
-        raise DamagedFileError(frame.labels_path, "must hold one 8-bit class id a pixel")
+        given = f"{labels.dtype} {labels.shape}"
+        raise DamagedFileError(
+            frame.labels_path, f"must hold one 8-bit class id a pixel, not {given}"
+        )
     return _at_size(labels, colour.shape[:2])
 
 
@@ -111,7 +114,8 @@ def _read_trust(frame: FrameFiles, depth: np.ndarray | None, full: float) -> np.
         return None
     stored = read_raw(frame.trust_path)
     if stored.ndim != 2 or stored.dtype.kind not in "uf":
-        raise DamagedFileError(frame.trust_path, "must hold one confidence a pixel")
+        given = f"{stored.dtype} {stored.shape}"
+        raise DamagedFileError(frame.trust_path, f"must hold one confidence a pixel, not {given}")
     share = np.clip(np.nan_to_num(stored.astype(np.float32)) / np.float32(full), 0, 1)
     return _at_size(np.round(255 * share).astype(np.uint8), depth.shape)
 

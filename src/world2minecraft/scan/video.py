@@ -48,10 +48,11 @@ class VideoSource:
         wanted = DEFAULT_FRAMES if options.frames is None else options.frames
         chosen = picked(look, wanted)
         if len(chosen) < LEAST_FRAMES:
+            places = f"{len(chosen)} place" + "s" * (len(chosen) != 1)
             raise CaptureError(
                 path,
-                f"shows only {len(chosen)} places: the camera hardly moves in its "
-                f"{look.duration_s:.0f} s; film while walking sideways through the room",
+                f"shows only {places}: the camera hardly moves "
+                f"in its {look.duration_s:.0f} s; film while walking sideways through the room",
             )
         frames = _frames(path, look, chosen)
         return Capture(
@@ -80,7 +81,10 @@ def _check(path: AnyPath, look: VideoLook) -> None:
     """
     width, height = look.size
     if width * height > MAX_PIXELS:
-        raise LimitError(path, f"has pictures of {width}x{height}; at most 64 megapixels are read")
+        raise LimitError(
+            path,
+            f"has pictures of {width}x{height}; at most 64 megapixels are read: make it smaller",
+        )
     if not len(look.times):
         raise DamagedFileError(path, "has no picture that can be decoded; copy it again")
     # A stated length of seconds more than what is there: the copy broke off.

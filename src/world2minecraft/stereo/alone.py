@@ -47,7 +47,9 @@ def network_maps(
     factors = [factor for _, factor in found if factor == factor]  # NaN is not itself.
     if not factors:
         raise CaptureError(
-            "photos", f"share too few points to tell how large {guide.name} takes the room for"
+            "photos",
+            f"share too few points to tell how large {guide.name} takes the room for: take more "
+            "that overlap",
         )
     usual = float(np.median(factors))
     for photo, (guess, factor) in zip(small, found, strict=True):

@@ -99,7 +99,9 @@ def swept_depths(
     usual = np.array([np.percentile(found, DEPTH_PERCENTILES) for found in known])
     neighbours = chosen_neighbours(small, usual, values.neighbours, values.angle_deg)
     if not any(len(found) for found in neighbours):
-        raise CaptureError("photos", "no two see the same from places far enough apart for depth")
+        raise CaptureError(
+            "photos", "no two see the same from places far enough apart: take steps aside"
+        )
     swept: list[np.ndarray] = [np.zeros(0, np.float32)] * len(small)
 
     def one(number: int) -> None:

@@ -68,7 +68,9 @@ def _small(name, colour, scene: SparseScene, frame: int, width_px: int) -> Small
         )
     target = pinhole_of(camera, min(width_px, camera.width_px))
     if min(target.width_px, target.height_px) < LEAST_SIDE_PX:
-        raise CaptureError(name, f"the photo must have sides of {LEAST_SIDE_PX} pixels or more")
+        raise CaptureError(
+            name, f"the photo must have sides of {LEAST_SIDE_PX} pixels or more: give larger ones"
+        )
     seen = np.unique(scene.track_point[scene.track_frame == frame])
     points_m = _in_camera(scene.points_m[seen], pose)
     ahead = points_m[:, 2] > 0

@@ -85,7 +85,9 @@ def _layout(path: AnyPath, data: bytes) -> _Layout:
     try:
         (version,) = struct.unpack_from("<I", data, 4)
         if version & 0xFF != 2 or version & 0x1A00:
-            raise DamagedFileError(path, "is a tiled, deep or many-part OpenEXR, which is not read")
+            raise DamagedFileError(
+                path, "is a tiled, deep or many-part OpenEXR: save it as scan lines"
+            )
         held, place = _attributes(data)
         x0, y0, x1, y1 = struct.unpack("<4i", held[b"dataWindow"])
         compression = held[b"compression"][0]
@@ -96,9 +98,11 @@ def _layout(path: AnyPath, data: bytes) -> _Layout:
         raise DamagedFileError(path, "is packed in a way that is not read: save it with ZIP")
     width, height = x1 - x0 + 1, y1 - y0 + 1
     if width <= 0 or height <= 0:
-        raise DamagedFileError(path, "has no pixels")
+        raise DamagedFileError(path, "has no pixels; export it again")
     if width * height * len(channels) > MAX_PIXELS:
-        raise LimitError(path, f"is {width}x{height}, which is too large to read")
+        raise LimitError(
+            path, f"is {width}x{height}, which is too large to read: export it smaller"
+        )
     return _Layout(width, height, y0, _LINES[compression], compression > 0, channels, place)
 
 

@@ -57,7 +57,8 @@ class LzfseImage(NamedByFile):
         if data[:3] == b"bvx":
             data = unpacked(self.path, data)
         if len(data) != self.expected_bytes:
-            raise DamagedFileError(self.path, f"unpacks to {len(data):,} bytes; copy it again")
+            reason = f"unpacks to {len(data):,} bytes, not {self.expected_bytes:,}; copy it again"
+            raise DamagedFileError(self.path, reason)
         values = np.frombuffer(data, _MODES[self.mode])
         return values.reshape(self.height_px, self.width_px).copy()
 
@@ -89,7 +90,9 @@ def unpacked_bytes(path: AnyPath, data: bytes) -> int:
         try:
             raw, size = _block(data, place)
         except struct.error as error:
-            raise DamagedFileError(path, "is cut short (LZFSE without its end)") from error
+            raise DamagedFileError(
+                path, "is cut short (LZFSE without its end); copy it again"
+            ) from error
         if size <= 0 or place + size > len(data):
             raise DamagedFileError(path, "is cut short or damaged (LZFSE); copy it again")
         total, place = total + raw, place + size

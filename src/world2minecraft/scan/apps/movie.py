@@ -49,10 +49,13 @@ class Movie:
             self.size = (self._stream.codec_context.width, self._stream.codec_context.height)
             self.times, self.key_times = self._times()
         except self._errors as error:
-            raise DamagedFileError(path, f"is no whole video ({reason_of(error, 80)})") from error
+            reason = f"is no whole video ({reason_of(error, 80)}); copy it again"
+            raise DamagedFileError(path, reason) from error
         held = len(self.times)
         if self.size[0] * self.size[1] > MAX_PIXELS or held > MAX_PICTURES:
-            raise LimitError(path, f"has {held:,} pictures of {self.size}; too many to read")
+            raise LimitError(
+                path, f"has {held:,} pictures of {self.size}; too many to read: cut it"
+            )
         self._decoded: Iterator[Any] = iter(())
         self._next = -1
 
@@ -71,7 +74,7 @@ class Movie:
             return self._picture(index)
         except self._errors as error:
             self._next = -1
-            reason = f"picture {index} cannot be decoded ({reason_of(error, 80)})"
+            reason = f"picture {index} cannot be decoded ({reason_of(error, 80)}); copy it again"
             raise DamagedFileError(self.path, reason) from error
 
     def _picture(self, index: int) -> np.ndarray:
@@ -155,7 +158,7 @@ class MoviePicture:
         """Check that the video has so many pictures."""
         held = len(open_movie(self.path).times)
         if self.index >= held:
-            raise DamagedFileError(self, f"is not there: the video holds {held}")
+            raise DamagedFileError(self, f"is not there: the video holds {held}; copy it again")
 
     def colour(self) -> np.ndarray:
         """Return uint8 [H, W, 3] sRGB."""

@@ -45,7 +45,8 @@ class PolycamSource:
         cameras = files_by_stem(keyframes / f"{prefix}cameras", (".json",))
         pictures = files_by_stem(keyframes / f"{prefix}images", _PICTURES)
         if not cameras or not pictures:
-            raise CaptureError(folder, f"has no keyframes/{prefix}images with cameras beside them")
+            lacks = f"has no keyframes/{prefix}images with cameras beside them"
+            raise CaptureError(folder, f"{lacks}; export the raw data again")
         depths = files_by_stem(keyframes / "depth", (".png",))
         trusts = files_by_stem(keyframes / "confidence", (".png",))
         frames = tuple(
@@ -91,6 +92,6 @@ def _pose(path: AnyPath, stated: dict[str, Any]) -> np.ndarray:
         for column in range(4):
             key = f"t_{row}{column}"
             if key not in stated:
-                raise CaptureError(path, f'lacks "{key}" of the pose')
+                raise CaptureError(path, f'lacks "{key}" of the pose; export it again')
             matrix[row, column] = stated_float(stated[key])
     return arkit_pose(matrix)

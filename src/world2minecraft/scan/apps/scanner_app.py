@@ -7,6 +7,7 @@ of the frames have a picture, ``frame_00000.jpg``: those are taken.
 """
 
 import re
+from pathlib import Path
 
 from world2minecraft.archive import AnyPath
 from world2minecraft.errors import CaptureError, InputError
@@ -35,7 +36,7 @@ class ScannerAppSource:
         stated = {index: files for index, files in found.items() if "frame.json" in files}
         pictured = {index: files for index, files in stated.items() if "frame.jpg" in files}
         if not stated:
-            raise CaptureError(folder, "has no frame_00000.json")
+            raise CaptureError(folder, 'has no frame_00000.json: export "All Data"')
         if not pictured:
             raise CaptureError(folder, 'has no pictures (frame_00000.jpg): export "All Data"')
         metres = not any("depth.png" in files for files in pictured.values())
@@ -75,8 +76,7 @@ def _frame(index: int, files: dict[str, AnyPath]) -> FrameFiles:
         lens = [matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2]]
         stated_camera = camera(path, read_header(picture).size, lens)
     except InputError as error:
-        named = "" if error.path.endswith(name) else f"{path.name} "
-        return FrameFiles(name, None, problem=f"{named}{error.reason}")
+        return FrameFiles(name, None, problem=f"{Path(error.path).name} {error.reason}")
     depth = files.get("depth.png")
     packed = ExrImage(files["frame.exr"]) if depth is None and "frame.exr" in files else None
     has_depth = depth is not None or packed is not None

@@ -77,7 +77,10 @@ class Bag:
     def _bound_chunks(self) -> None:
         for position, chunk in self._reader.chunks.items():
             if chunk.datasize > MAX_CHUNK_BYTES:
-                raise LimitError(self.path, f"has a chunk of {chunk.datasize:,} bytes")
+                raise LimitError(
+                    self.path,
+                    f"has a chunk of {chunk.datasize:,} bytes; {MAX_CHUNK_BYTES:,} are the most",
+                )
             unpack = _bounded(chunk.decompressor)
             self._reader.chunks[position] = chunk._replace(decompressor=unpack)
 

@@ -85,7 +85,9 @@ def _image_folder(folder: AnyPath, model: AnyPath, files: list[PurePosixPath]) -
     best = max(places, key=there)
     if not there(best):
         raise CaptureError(
-            folder, f"has a model but none of its photos, such as images/{str(files[0])[:80]}"
+            folder,
+            f"has a model but none of its photos, such as images/{str(files[0])[:80]}: put them "
+            "beside it",
         )
     return best
 

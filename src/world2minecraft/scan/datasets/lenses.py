@@ -46,7 +46,8 @@ def matrix_camera(where: AnyPath, size: tuple[int, int], matrix: np.ndarray) -> 
     """Return the camera of a 3x3 (or larger) intrinsic matrix. Raises as ``stated_camera``."""
     sound = np.isfinite(matrix[:3, :3]).all() and np.allclose(matrix[2, :3], [0, 0, 1])
     if not sound or abs(matrix[1, 0]) > 1e-6:
-        raise CaptureError(where, "its intrinsics must read fx 0 cx, 0 fy cy, 0 0 1")
+        stated = matrix[:3, :3].tolist()
+        raise CaptureError(where, f"its intrinsics must read fx 0 cx, 0 fy cy, 0 0 1, not {stated}")
     lens = (matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2])
     return stated_camera(where, size, lens)
 

@@ -55,7 +55,9 @@ class NyuRawSource:
         depth_s, depths = _stream(folder, "d-*.pgm")
         pairs = pair_times(colour_s, depth_s, WITHIN_S)
         if not pairs:
-            raise CaptureError(folder, f"no r-*.ppm and d-*.pgm lie within {WITHIN_S} s")
+            raise CaptureError(
+                folder, f"no r-*.ppm and d-*.pgm lie within {WITHIN_S} s: copy all of one scene"
+            )
         colour_camera = stated_camera(folder, VGA, *COLOUR)
         depth_camera = stated_camera(folder, VGA, *DEPTH)
         depth_to_colour = _depth_to_colour()

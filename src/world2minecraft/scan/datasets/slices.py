@@ -136,10 +136,13 @@ class RawImage(FileSlice):
         """Check the length of plain pixels; packed ones tell when they are unpacked."""
         if not self.packed and self.size != self._unpacked_size:
             raise DamagedFileError(
-                self, f"has {self.size:,} bytes, not the {self._unpacked_size:,} of its size"
+                self,
+                f"has {self.size:,} bytes, not {self._unpacked_size:,}; copy it again",
             )
         if self.packed and not 0 < self.size <= self._unpacked_size + 4096:
-            raise DamagedFileError(self, f"has {self.size:,} packed bytes, more than its pixels")
+            raise DamagedFileError(
+                self, f"has {self.size:,} packed bytes, more than its pixels: copy it again"
+            )
 
     @property
     def _unpacked_size(self) -> int:
@@ -161,7 +164,8 @@ class RawImage(FileSlice):
             data = self._unpacked(data)
         if len(data) != self._unpacked_size:
             raise DamagedFileError(
-                self, f"holds {len(data):,} bytes, not the {self._unpacked_size:,} of its size"
+                self,
+                f"holds {len(data):,} bytes, not {self._unpacked_size:,}; copy it again",
             )
         return np.frombuffer(data, dtype).astype(dtype.newbyteorder("="))
 

@@ -40,7 +40,7 @@ class SunSource:
         matrix = read_matrix(_lens(folder), [(3, 3), (4, 4)])
         size = first_size([colour for colour, _ in pairs])
         if size is None:
-            raise CaptureError(folder, "has no image that can be read")
+            raise CaptureError(folder, "has no image that can be read; copy it again")
         camera = matrix_camera(_lens(folder), size, matrix)
         poses = _poses(folder, len(pairs))
         frames = tuple(

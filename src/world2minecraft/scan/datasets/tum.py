@@ -90,7 +90,8 @@ def _listed(path: AnyPath) -> tuple[np.ndarray, list[AnyPath]]:
     files = [path.parent / str(checked_inside(path, row[1])) for row in rows]
     stems = [file.stem for file in files]
     if len(set(stems)) != len(stems):
-        raise CaptureError(path, "names a file twice")
+        twice = next(stem for stem in stems if stems.count(stem) > 1)
+        raise CaptureError(path, f"names a file twice, {twice[:80]!r}: keep one of its lines")
     return seconds, files
 
 
@@ -129,7 +130,9 @@ class _Poses:
         table = table[np.isfinite(table).all(axis=1)]
         table = table[np.linalg.norm(table[:, 4:], axis=1) > 1e-6]
         if not len(table):
-            raise CaptureError(path, "holds no pose that is finite")
+            raise CaptureError(
+                path, "holds no pose that is finite; without this file they are found"
+            )
         table = table[np.argsort(table[:, 0], kind="stable")]
         self.seconds, self.poses = table[:, 0], table[:, 1:]
 

@@ -71,6 +71,12 @@ def plan_of(judged: JudgedCapture) -> Plan:
         found = align(gathered.views(), judged.capture.world_up)
     except ImplausibleRoomError as error:
         problem = str(error)
+    if not sum(map(len, gathered.points)):
+        raise CaptureError(
+            judged.capture.folder,
+            f"none of the {len(gathered.holes)} depth images looked at has any depth that the "
+            "device trusts; scan again, nearer and slower",
+        )
     scan_to_level = _level(judged, poses) if found is None else found.scan_to_room
     return _drawn(gathered, scan_to_level @ poses, scan_to_level, found, problem)
 
@@ -164,8 +170,6 @@ def _drawn(
 ) -> Plan:
     points = apply(scan_to_level, np.concatenate(gathered.points).astype(np.float64))
     colours = np.concatenate(gathered.colours)
-    if not len(points):
-        raise CaptureError("depth", "none of the frames looked at has any")
     low, high = _extent(points, cameras[:, :2, 3], found)
     cell = float((high - low).max()) / CELLS
     floor = 0.0 if found is not None else float(np.quantile(points[:, 2], 0.01))
