@@ -42,7 +42,7 @@ def network_maps(
     for number, photo in enumerate(small):
         predicted = guide.predict(photo.colour, photo.camera)
         laid = laid_on_points(predicted, guide.kind, photo.guide_px, photo.guide_m)
-        found.append((predicted, np.nan) if laid is None else laid)
+        found.append((predicted, np.nan) if laid is None else (laid[0].astype(np.float32), laid[1]))
         progress(STAGE, number + 1, len(small), photo.name)
     factors = [factor for _, factor in found if factor == factor]  # NaN is not itself.
     if not factors:

@@ -86,7 +86,7 @@ def test_a_cloud_is_entered_as_its_mesh_is(quads):
 
 def test_the_inside_of_a_cupboard_is_no_room(quads):
     grid, interior = interior_of(mesh_of(quads))
-    cupboard = grid.cell_of(np.array([3.95, 0.5, 1.0]))
+    cupboard = np.floor(([3.95, 0.5, 1.0] - grid.origin_m) / grid.cell_m).astype(int)
     assert interior is not None and not interior.clear[tuple(cupboard)]
 
 

@@ -26,11 +26,6 @@ class Grid:
         """Return the middles of cells int [N, 3], float64 [N, 3]."""
         return self.origin_m + (cells + 0.5) * self.cell_m
 
-    def cell_of(self, place_m: np.ndarray) -> np.ndarray:
-        """Return the cell of a place, int64 [3], clipped to the grid."""
-        cell = np.floor((place_m - self.origin_m) / self.cell_m).astype(np.int64)
-        return np.clip(cell, 0, np.array(self.held.shape) - 1)
-
 
 def grid_of(solid: Solid, low_m: np.ndarray, high_m: np.ndarray) -> Grid:
     """Return which cells of a box hold surface of a solid in metres.
