@@ -7,16 +7,14 @@ page do the same through here.
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.archive import AnyPath, is_zip
-from world2minecraft.errors import InputError
+from world2minecraft.archive import AnyPath
 from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct, registered_before
-from world2minecraft.plans import PlanWorld, build_plan, find_roomplan
+from world2minecraft.plans import PlanWorld, build_plan
 from world2minecraft.prepare import open_prepared
 from world2minecraft.progress import Progress, silent
 from world2minecraft.report import write_brief_report, write_report
 from world2minecraft.report.ahead import pictures_compiled_meanwhile
-from world2minecraft.scan.sources import find_capture
 
 
 def make_run(
@@ -39,22 +37,6 @@ def make_run(
             scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)
     truth = capture if (capture / "truth.npz").is_file() else None
     return write_report(out, scan, truth=truth, progress=progress)
-
-
-def plan_in(capture: Path) -> AnyPath | None:
-    """Return the RoomPlan JSON of a capture that is nothing else, None where there is none.
-
-    A capture with frames and a plan is a capture; its plan is given by ``--plan``.
-    """
-    if capture.suffix.lower() == ".json":
-        return find_roomplan(capture)
-    if capture.is_file() and not is_zip(capture):  # A video is not looked through for this.
-        return None
-    try:
-        find_capture(capture)
-    except InputError:
-        return find_roomplan(capture)
-    return None
 
 
 def make_from_plan(

@@ -84,3 +84,14 @@ def test_a_room_plan(tmp_path, capsys, monkeypatch):
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("Room.json: a RoomPlan capture, 1 room, 0 walls")
     assert lines[-1] == "next: w2m reconstruct Room.json --out OUT"
+
+
+def test_frames_with_a_plan_beside_them_are_frames(capture, capsys):
+    (capture / "Room.json").write_text('{"walls": [], "doors": []}')
+    assert w2m(["scan", str(capture), "--no-picture"]) == 0
+    assert "pictures with poses, no depth (plain)" in capsys.readouterr().out
+
+
+def test_a_place_that_cannot_be_read_is_bad_input(capsys):
+    assert w2m(["scan", "a" * 400]) == 3
+    assert "please report" not in capsys.readouterr().err

@@ -15,7 +15,7 @@ from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.exchange.objects import read_objects, read_placements
 from world2minecraft.exchange.room import read_room
 from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.making import make_from_plan, plan_in
+from world2minecraft.making import make_from_plan
 from world2minecraft.parameters import Parameters
 from world2minecraft.plans import (
     PlanMismatchError,
@@ -31,6 +31,7 @@ from world2minecraft.plans.cells import cells_of_plan
 from world2minecraft.plans.furniture import template_of
 from world2minecraft.plans.outlines import moved_plan
 from world2minecraft.progress import silent
+from world2minecraft.scan.plan_alone import plan_in
 from world2minecraft.types import FusedEvidence
 
 SESSION = session_of(21.0, (3.0, -1.4, 0.7))

@@ -17,7 +17,6 @@ from world2minecraft.cli.build_options import (
 )
 
 if TYPE_CHECKING:
-    from world2minecraft.archive import AnyPath
     from world2minecraft.parameters import Parameters
     from world2minecraft.progress import Progress
 
@@ -127,7 +126,7 @@ def run(
     """
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
-    from world2minecraft.making import make_run, plan_in
+    from world2minecraft.making import make_run
     from world2minecraft.parameters import Parameters, with_method, with_settings
 
     chosen = Parameters(
@@ -146,8 +145,8 @@ def run(
     check_stage(start, follow)
     style_note(chosen)
     compiling_note()
-    if (drawn := plan_in(capture)) is not None:
-        return from_plan(drawn, capture, out, chosen)
+    if built_from_plan(capture, out, chosen):
+        return
     with shown() as progress:
         if follow:
             watch(capture, out, chosen, labels, follow_idle_s, progress)
@@ -173,16 +172,21 @@ def as_settings(semantics: str, fov: float | None) -> list[str]:
     return [f"{key}={value}" for key, value in told.items() if value]
 
 
-def from_plan(drawn: "AnyPath", capture: Path, out: Path, chosen: "Parameters") -> None:
-    """Build what a RoomPlan alone says."""
+def built_from_plan(capture: Path, out: Path, chosen: "Parameters") -> bool:
+    """Build what a RoomPlan alone says, where the capture is one; return whether it is."""
     from world2minecraft.cli.from_plan import say_plan
     from world2minecraft.cli.progress import shown
     from world2minecraft.making import make_from_plan
     from world2minecraft.prepare import scene_name
+    from world2minecraft.scan.plan_alone import plan_in
 
+    drawn = plan_in(capture)
+    if drawn is None:
+        return False
     with shown() as progress:
         built = make_from_plan(drawn, out, chosen, progress, scene_name(capture))
     say_plan(out, built)
+    return True
 
 
 def watch(

@@ -49,15 +49,16 @@ def run(
         settings: options of the reader, such as ``capture.depth_unit=mm``.
     """
     from world2minecraft.errors import UsageError
-    from world2minecraft.exchange.roomplan import find_roomplan, read_roomplan
+    from world2minecraft.exchange.roomplan import read_roomplan
     from world2minecraft.parameters import Parameters, with_settings
     from world2minecraft.scan import describe_capture
+    from world2minecraft.scan.plan_alone import plan_in
     from world2minecraft.scan.telling import as_data, plan_lines, summary_lines
 
     if picture is not None and (no_picture or as_json):
         raise UsageError("--picture draws one; leave out --no-picture and --json")
     options = with_settings(Parameters(), settings or []).capture
-    plan = find_roomplan(capture)
+    plan = plan_in(capture)
     if plan is not None:
         _print_all(plan_lines(capture, read_roomplan(plan)), as_json)
         return

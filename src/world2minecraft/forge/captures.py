@@ -31,8 +31,8 @@ from world2minecraft.errors import (
 )
 from world2minecraft.files import read_json, write_json
 from world2minecraft.forge.upload_names import UploadFile, checked_files, common_folder
-from world2minecraft.making import plan_in
 from world2minecraft.minecraft.worlds.installing import check_name
+from world2minecraft.scan.plan_alone import plan_in
 from world2minecraft.scan.sources import find_capture
 
 MOST_UPLOAD_BYTES = 512 << 20
