@@ -154,3 +154,15 @@ def test_the_manifest_knows_the_palette_and_the_furniture_of_ones_own(tmp_path, 
     assert told[0] != told[1] != told[2]
     plain = manifest(capture, None, Parameters())
     assert plain["palette"] is None and plain["furniture"] == told[2]["furniture"] is not None
+
+
+def test_results_within_a_capture_are_no_part_of_it(tmp_path):
+    (tmp_path / "a").write_text("1")
+    out = tmp_path / "OUT"
+    first = hash_capture(tmp_path, without=out)
+    (out / "capture").mkdir(parents=True)
+    (out / "capture" / "b").write_text("2")
+    assert hash_capture(tmp_path, without=out) == first != hash_capture(tmp_path)
+    inner = hash_capture(out / "capture", without=out)
+    (out / "capture" / "b").write_text("3")
+    assert hash_capture(out / "capture", without=out) != inner

@@ -67,7 +67,7 @@ def reconstruct(
     used = predictor(chosen.predictor, chosen.occupy) if early else None
     with run.timed("scan"):
         scan = open_prepared(capture, out, chosen, labels, progress)
-    run.begin(manifest(capture, labels, chosen))
+    run.begin(manifest(capture, labels, chosen, out))
     if run.needs("scan"):
         with run.stage("scan"):
             write_scan(run.path("scan.json"), scan)
@@ -126,12 +126,17 @@ def network_files(chosen: Parameters) -> list[Path]:
     return [Path(name) for name in named if name]
 
 
-def manifest(capture: Path, labels: Path | None, chosen: Parameters) -> dict:
-    """Return what decides a result: the hashes of what is read, the parameters and the versions."""
+def manifest(
+    capture: Path, labels: Path | None, chosen: Parameters, out: Path | None = None
+) -> dict:
+    """Return what decides a result: the hashes of what is read, the parameters and the versions.
+
+    What lies in ``out``, the folder of the results, is not read of a capture that holds it.
+    """
     palette = Path(chosen.build.palette)
     return {
         "program": __version__,
-        "capture": hash_capture(capture),
+        "capture": hash_capture(capture, without=out),
         "labels": None if labels is None else hash_capture(labels),
         "plan": hash_capture(Path(chosen.plan)) if chosen.plan else None,
         "networks": [hash_capture(path) for path in network_files(chosen)],

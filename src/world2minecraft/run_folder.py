@@ -193,11 +193,21 @@ def check_writable(folder: Path) -> None:
         raise OutputError(folder, f"its disk has {free >> 20} MB free; {needed}")
 
 
-def hash_capture(path: Path) -> str:
-    """Return a SHA-256 over the names and bytes of all files of a capture, hidden ones left out."""
+def hash_capture(path: Path, without: Path | None = None) -> str:
+    """Return a SHA-256 over the names and bytes of all files of a capture, hidden ones left out.
+
+    Args:
+        path: a folder or a file.
+        without: a folder in it whose files are left out: results may lie within a capture.
+    """
     digest = hashlib.sha256()
     names = [path] if path.is_file() else sorted(path.rglob("*"))
+    results = None if without is None else without.resolve()
+    if results is not None and path.resolve().is_relative_to(results):
+        results = None  # A capture within the results is none of them.
     for name in names:
+        if results is not None and name.resolve().is_relative_to(results):
+            continue
         relative = name.relative_to(path) if name != path else Path(name.name)
         if name.is_file() and not any(part.startswith(".") for part in relative.parts):
             digest.update(relative.as_posix().encode() + b"\0")

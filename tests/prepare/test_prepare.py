@@ -282,3 +282,10 @@ def test_a_scale_reaches_what_single_frames_state(tmp_path, views):
         for key in {"camera_to_world", "depth_to_colour"} & set(one):
             moved = np.array(two[key])[:3, 3], 2 * np.array(one[key])[:3, 3]
             np.testing.assert_allclose(*moved, rtol=0.02, atol=1e-9)
+
+
+def test_nothing_is_written_into_the_photos_themselves(tmp_path, views, stood_in):
+    folder = write_photos(tmp_path / "capture", views)
+    with pytest.raises(UsageError, match="keeps what is computed; name another --out"):
+        prepared(folder, tmp_path, Parameters())
+    assert len(list(folder.iterdir())) == len(views) and not stood_in

@@ -5,6 +5,7 @@ import zipfile
 import numpy as np
 import pytest
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from world2minecraft.errors import CaptureError, InputError, UsageError
 from world2minecraft.scan.images import check_whole, read_colour, read_header
@@ -12,6 +13,7 @@ from world2minecraft.scan.judged import judge_capture
 from world2minecraft.scan.options import ScanOptions, parse_options
 from world2minecraft.scan.photo_folder import natural_key, thinned
 from world2minecraft.scan.photos import judged_photos
+from world2minecraft.scan.poster_mark import MARK
 from world2minecraft.scan.sources import find_capture
 from world2minecraft.scan.upright_photo import UprightPhoto, photo_facts
 
@@ -232,3 +234,15 @@ def test_what_phones_append_to_a_jpeg_is_no_damage(tmp_path):
     path.write_bytes(whole[: len(whole) // 2])
     with pytest.raises(InputError, match="is cut short .* copy it again"):
         check_whole(path)
+
+
+def test_the_page_of_a_scan_is_no_photo(tmp_path):
+    _photos(tmp_path)
+    told = PngInfo()
+    told.add_text("Software", MARK)
+    page = Image.fromarray(_picture(9))
+    page.save(tmp_path / "capture-scan.png", pnginfo=told)
+    page.save(tmp_path / "my-scan.png")
+    judged = judge_capture(tmp_path, ScanOptions())
+    assert [f.name for f in judged.frames] == [f"IMG_{n}" for n in range(1, 5)]
+    assert judged.skipped == (("my-scan.png", "is a screenshot"),)

@@ -51,6 +51,7 @@ def prepared(capture: Path, out: Path, chosen: Parameters, progress: Progress = 
     Raises:
         CaptureError: nothing can be made of the pictures; the message says what would help.
         MissingExtraError: pycolmap is not installed. OutputError: ``out`` cannot be written.
+        UsageError: ``out`` would be written into the capture's own images.
     """
     options = parse_options(chosen.capture)
     found = find_capture(capture, options)
@@ -61,9 +62,13 @@ def prepared(capture: Path, out: Path, chosen: Parameters, progress: Progress = 
                 "and --known-points"
             )
         return capture
+    if capture.resolve() == (out / FOLDER).resolve():
+        raise UsageError(
+            f"{capture} is where --out {out} keeps what is computed; name another --out"
+        )
     fresh = not out.exists()
     check_writable(out)
-    folder, stamp = out / FOLDER, stamp_of(capture, chosen)
+    folder, stamp = out / FOLDER, stamp_of(capture, chosen, out)
     if is_one_photo(found.source):
         stamp["predictor"] = chosen.predictor.partition(":")[0]
     if not _made_before(folder, stamp):
@@ -89,12 +94,12 @@ def has_all(found: Capture) -> bool:
     )
 
 
-def stamp_of(capture: Path, chosen: Parameters) -> dict[str, Any]:
-    """Return what decides the computed capture."""
+def stamp_of(capture: Path, chosen: Parameters, out: Path) -> dict[str, Any]:
+    """Return what decides the computed capture in ``out``."""
     parameters = chosen.as_json()
     keys = ("capture", "posing", "stereo", "known", "known_points", "depth_model")
     return {
-        "capture": hash_capture(capture),
+        "capture": hash_capture(capture, without=out),
         "parameters": {key: parameters[key] for key in keys},
         "versions": {name: _version(name) for name in ("numpy", "numba", "pycolmap", "pillow")},
     }

@@ -17,6 +17,7 @@ from world2minecraft.errors import CaptureError, InputError
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import HEIF_SUFFIXES
 from world2minecraft.scan.options import LEAST_FRAMES, ScanOptions
+from world2minecraft.scan.poster_mark import lies_about
 from world2minecraft.scan.upright_photo import PhotoFacts, UprightPhoto, photo_facts
 
 PHOTO_SUFFIXES = (".jpg", ".jpeg", ".png", ".webp", *HEIF_SUFFIXES)
@@ -109,6 +110,7 @@ def _photos(folder: AnyPath) -> list[AnyPath]:
         and not path.name.startswith((".", "._"))
         and not _NOT_COLOUR.search(path.stem)
         and path.is_file()
+        and not lies_about(path)
     ]
     return sorted(found, key=lambda path: (natural_key(path.name), path.name))
 

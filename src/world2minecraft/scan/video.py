@@ -13,6 +13,7 @@ from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import MAX_PIXELS, ImagePlace
 from world2minecraft.scan.motion import VideoLook, look_through, picked
 from world2minecraft.scan.options import LEAST_FRAMES, ScanOptions
+from world2minecraft.scan.poster_mark import lies_about
 from world2minecraft.scan.upright import TurnedImage
 from world2minecraft.scan.upright_photo import DIAGONAL_MM
 from world2minecraft.types import Camera
@@ -67,7 +68,7 @@ def _video_in(place: AnyPath) -> AnyPath | None:
     if not place.is_dir():
         return None
     held = [path for path in place.iterdir() if not path.name.startswith(".")]
-    if any(path.suffix.lower() in _IMAGES for path in held):
+    if any(path.suffix.lower() in _IMAGES and not lies_about(path) for path in held):
         return None
     videos = [path for path in held if path.suffix.lower() in SUFFIXES and path.is_file()]
     return videos[0] if len(videos) == 1 else None

@@ -25,6 +25,7 @@ from world2minecraft.scan.poster.ink import (
 from world2minecraft.scan.poster.looks_panel import draw_looks
 from world2minecraft.scan.poster.photos_panel import draw_bars, draw_photos
 from world2minecraft.scan.poster.plan_panel import draw_plan
+from world2minecraft.scan.poster_mark import MARK
 from world2minecraft.scan.survey.doubts import (
     ALONE_SHARE,
     BLURRED,
@@ -41,7 +42,6 @@ WIDTH_PX, HEIGHT_PX = 1600, 1040
 EDGE_PX = 40
 LEFT_PX, RIGHT_PX = 780, 700  # Widths of the two columns; 40 lie between them.
 TOP_PX, FOOT_PX = 140, 76
-MARK = "w2m scan"
 BODY_PX = 19
 
 
@@ -188,12 +188,3 @@ def poster_png(summary: "CaptureSummary") -> bytes:
     told.add_text("Software", MARK)
     Image.fromarray(poster(summary)).save(stream, "PNG", pnginfo=told)
     return stream.getvalue()
-
-
-def is_poster(path: Path) -> bool:
-    """Return whether a file is such a page, so that it may be written anew."""
-    try:
-        with Image.open(path, formats=("PNG",)) as image:
-            return getattr(image, "text", {}).get("Software") == MARK
-    except (OSError, SyntaxError, ValueError):
-        return False

@@ -1,0 +1,22 @@
+"""How the page that ``w2m scan`` draws is known again, so that it is taken for no photo."""
+
+from PIL import Image
+
+from world2minecraft.archive import AnyPath
+
+MARK = "w2m scan"  # What the PNG says of the software that wrote it.
+NAME_END = "-scan.png"
+
+
+def is_poster(path: AnyPath) -> bool:
+    """Return whether a file is such a page, so that it may be written anew."""
+    try:
+        with path.open("rb") as stream, Image.open(stream, formats=("PNG",)) as image:
+            return getattr(image, "text", {}).get("Software") == MARK
+    except (OSError, SyntaxError, ValueError):
+        return False
+
+
+def lies_about(path: AnyPath) -> bool:
+    """Return whether a file of a capture's folder is such a page, drawn by one who stood in it."""
+    return path.name.endswith(NAME_END) and is_poster(path)
