@@ -70,6 +70,7 @@ def test_a_person_walks_the_same_episode(flat_path, tmp_path, capsys, monkeypatc
             urlopen(asked, timeout=10).close()
 
     monkeypatch.setattr("webbrowser.open", lambda link: Thread(target=person, args=[link]).start())
+    monkeypatch.setattr("webbrowser.get", lambda: None)  # Whatever this machine would open.
     assert cli.run([*words, str(second), "--agent", "human"]) == 0
     assert "walk here: http://127.0.0.1:" in capsys.readouterr().out
     one, other = (json.loads((run / "result.json").read_text()) for run in (first, second))
