@@ -227,6 +227,18 @@ def test_an_encrypted_member_is_refused(tmp_path):
         files.read_npz(path, ("x",))
 
 
+def test_yaml_is_read_without_aliases_which_make_a_huge_tree_of_a_small_file():
+    assert files.plain_yaml("a: [1, x]\nb: {c: 0.5}\n") == {"a": [1, "x"], "b": {"c": 0.5}}
+    with pytest.raises(ValueError, match=r"^aliases \(\*name\) are not read$"):
+        files.plain_yaml("a: &a [x, x]\nb: [*a, *a]\n")
+
+
+@pytest.mark.parametrize("text", ["a: [1\n", "[" * 5000, "a: !!python/object:os.system x"])
+def test_what_is_no_yaml_is_told_in_one_line(text):
+    with pytest.raises(ValueError, match=r"\A[^\n]+\Z"):
+        files.plain_yaml(text)
+
+
 def test_json_rows_come_with_their_lines_and_a_wrong_one_is_named():
     source = Path("rows.jsonl")
     assert files.json_rows('{"a": 1}\n\n{"b": 2}\n', source) == [(1, {"a": 1}), (3, {"b": 2})]

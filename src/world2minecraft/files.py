@@ -12,12 +12,19 @@ import tempfile
 import zipfile
 import zlib
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, OutputError
+from world2minecraft.errors import (
+    DamagedFileError,
+    InputError,
+    LimitError,
+    OutputError,
+    one_line,
+)
 
 if TYPE_CHECKING:
     from world2minecraft.archive import ArchivePath
@@ -85,6 +92,35 @@ def read_json(path: "str | Path | ArchivePath", limit_bytes: int = 256 << 20) ->
         return json.loads(data)
     except (ValueError, RecursionError) as error:
         raise DamagedFileError(path, f"is not JSON ({error})") from error
+
+
+def plain_yaml(text: str | bytes) -> Any:
+    """Return what a YAML text holds, without aliases: they make a huge tree of a small file.
+
+    Raises:
+        ValueError: it is no YAML, or has aliases; one line.
+    """
+    import yaml  # noqa: PLC0415  # Few commands read any.
+
+    try:
+        return yaml.load(text, _plain_loader())  # It is the safe loader, and stricter.
+    except (yaml.YAMLError, RecursionError) as error:
+        raise ValueError(one_line(error)) from error
+
+
+@cache
+def _plain_loader() -> Any:
+    import yaml  # noqa: PLC0415
+
+    class PlainLoader(yaml.SafeLoader):
+        """Reads plain values alone."""
+
+        def compose_node(self, parent: Any, index: Any) -> Any:
+            if self.check_event(yaml.AliasEvent):
+                raise yaml.YAMLError("aliases (*name) are not read")
+            return super().compose_node(parent, index)
+
+    return PlainLoader
 
 
 def read_bytes(path: "str | Path | ArchivePath", limit_bytes: int) -> bytes:

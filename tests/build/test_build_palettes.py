@@ -331,6 +331,10 @@ def test_what_is_no_palette_file_is_told(tmp_path):
     deep.write_text("[" * 20_000)
     with pytest.raises(InputError, match="is not YAML"):
         load_palette(str(deep))
+    aliases = tmp_path / "a.yaml"
+    aliases.write_text("name: &n x\nabout: *n\n")
+    with pytest.raises(InputError, match=r"is not YAML \(aliases \(\*name\) are not read\)"):
+        load_palette(str(aliases))
     big = tmp_path / "big.yaml"
     big.write_text("#" * (2 << 20))
     with pytest.raises(InputError, match="at most"):

@@ -133,6 +133,7 @@ def test_a_table_of_ones_own_is_read_again_when_it_was_edited(tmp_path):
         ("chairs: [stool]", "no class is named 'chairs'; did you mean 'chair'"),
         ("chair: stool", "needs a list of names after chair:"),
         ("[", "is not YAML"),
+        ("chair: &a [stool]\nsofa: *a", "aliases .* are not read"),
         ("", "needs lines such as  chair:"),
         ("empty: [air]", "no class is named 'empty'"),
     ],

@@ -11,14 +11,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from world2minecraft.build.meanings import meanings_of
 from world2minecraft.build.own_furniture import piece_of
 from world2minecraft.build.palettes import PALETTE_FILES, Palette, shipped
 from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.errors import InputError, UsageError, one_line
-from world2minecraft.files import read_bytes
+from world2minecraft.files import plain_yaml, read_bytes
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colours_of, nearest_oklab
 from world2minecraft.minecraft.shapes import is_full_cube
@@ -47,8 +45,8 @@ def read_palette(path: Path) -> Palette:
     """
     text = read_bytes(path, MAX_BYTES)
     try:
-        raw = json.loads(text) if path.suffix == ".json" else yaml.safe_load(text)
-    except (ValueError, RecursionError, yaml.YAMLError) as error:
+        raw = json.loads(text) if path.suffix == ".json" else plain_yaml(text)
+    except (ValueError, RecursionError) as error:
         kind = "JSON" if path.suffix == ".json" else "YAML"
         raise InputError(path, f"is not {kind} ({one_line(error, 200)})") from error
     try:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import yaml
 
 from world2minecraft.errors import DamagedFileError, UnknownNameError, UsageError
-from world2minecraft.files import read_bytes, write_text
+from world2minecraft.files import plain_yaml, read_bytes, write_text
 
 MAX_BYTES = 1 << 20
 
@@ -196,9 +196,9 @@ def read_config(path: str | Path) -> RunConfig:
 def parse_config(text: str, source: str) -> RunConfig:
     """Return the run that a YAML text says; ``source`` names it in messages."""
     try:
-        plain = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        raise DamagedFileError(source, f"is no YAML ({' '.join(str(error).split())})") from error
+        plain = plain_yaml(text)
+    except ValueError as error:
+        raise DamagedFileError(source, f"is no YAML ({error})") from error
     if not isinstance(plain, dict):
         raise DamagedFileError(source, "holds no settings; write network: NAME, data: ...")
     known = {entry.name: entry for entry in fields(RunConfig)}

@@ -11,10 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from world2minecraft.errors import BudgetError, DamagedFileError, UsageError
-from world2minecraft.files import read_bytes
+from world2minecraft.files import plain_yaml, read_bytes
 from world2minecraft.models.chat_messages import Question, Reply
 
 PRICES_FILE = Path(__file__).with_name("chat_prices.yaml")
@@ -48,9 +46,9 @@ def read_prices(path: str | Path = PRICES_FILE) -> dict[str, Price]:
         InputError: the file is missing. DamagedFileError: it is no such table.
     """
     try:
-        table = yaml.safe_load(read_bytes(path, MAX_PRICES_BYTES))
+        table = plain_yaml(read_bytes(path, MAX_PRICES_BYTES))
         prices = {str(name): Price(*map(float, pair)) for name, pair in table.items()}
-    except (yaml.YAMLError, AttributeError, TypeError, ValueError, RecursionError) as error:
+    except (AttributeError, TypeError, ValueError) as error:
         raise DamagedFileError(
             path, "is no table of prices; a line is `MODEL: [1.25, 10.0]`"
         ) from error

@@ -7,11 +7,10 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-import yaml
 
 from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES, class_id
 from world2minecraft.errors import DamagedFileError, UnknownNameError
-from world2minecraft.files import read_bytes
+from world2minecraft.files import plain_yaml, read_bytes
 
 TABLE = Path(__file__).parent / "data" / "label_names.yaml"
 NOTHING = "nothing"  # In place of a class: outdoor things, which vote for none.
@@ -81,9 +80,9 @@ def _shipped() -> dict[str, int | None]:
 
 def _read(path: Path) -> dict[str, int | None]:
     try:
-        raw = yaml.safe_load(read_bytes(path, MAX_BYTES))
-    except (ValueError, RecursionError, yaml.YAMLError) as error:
-        raise DamagedFileError(path, f"is not YAML ({' '.join(str(error).split())})") from None
+        raw = plain_yaml(read_bytes(path, MAX_BYTES))
+    except ValueError as error:
+        raise DamagedFileError(path, f"is not YAML ({error})") from None
     rows = raw if isinstance(raw, dict) else {}
     table: dict[str, int | None] = {}
     for key, names in rows.items():

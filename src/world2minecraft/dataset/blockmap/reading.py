@@ -9,13 +9,11 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.dataset.blockmap.conditions import CONDITIONS, MEASURES, NEIGHBOURS
 from world2minecraft.dataset.blockmap.rules import BlockMap, Pattern, Rule, Span, Words, pattern_of
 from world2minecraft.errors import InputError, UnknownNameError
-from world2minecraft.files import read_bytes
+from world2minecraft.files import plain_yaml, read_bytes
 
 MAPS = ("nyu", "paper")
 MAX_BYTES = 256 << 10  # The longest that is shipped has 12 kB; PyYAML reads about 100 kB a second.
@@ -28,15 +26,6 @@ KEYS = (
 _TABLES = ("blocks", "kinds", "rules", "designs", "entities")
 _LISTS = ("structure", "apart", "sheets", "plates", "unless_known")
 SPAN_SIZE = 2
-
-
-class _Loader(yaml.SafeLoader):
-    """Reads plain values alone; anchors could make a small file a huge tree."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        if self.check_event(yaml.AliasEvent):
-            raise yaml.YAMLError("aliases (*name) are not read")
-        return super().compose_node(parent, index)
 
 
 def load_block_map(name: str | Path) -> BlockMap:
@@ -154,8 +143,8 @@ def _shipped(name: str) -> dict[str, Any]:
 
 def _yaml(text: bytes, path: Path) -> Any:
     try:
-        return yaml.load(text, _Loader)  # It is a safe loader.
-    except (ValueError, RecursionError, yaml.YAMLError) as error:
+        return plain_yaml(text)
+    except ValueError as error:
         raise InputError(path, f"is not YAML ({' '.join(str(error).split())[:200]})") from error
 
 
