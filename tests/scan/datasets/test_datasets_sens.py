@@ -228,7 +228,7 @@ def test_depth_that_unpacks_to_more_than_its_size_or_not_at_all(tmp_path, views)
     path.write_bytes(b"".join(parts))
     bomb = find_capture(path).frames[2].depth_path
     tracemalloc.start()
-    with pytest.raises(DamagedFileError, match="000002 depth: holds 38,401 bytes, not the 38,400"):
+    with pytest.raises(DamagedFileError, match="000002 depth: holds 38,401 bytes, not 38,400"):
         bomb.raw()
     assert tracemalloc.get_traced_memory()[1] < 1e6
     tracemalloc.stop()
