@@ -106,8 +106,9 @@ class VerbCommand(TyperCommand):
         try:
             return super().parse_args(ctx, args)
         except Exception as error:
-            if hasattr(error, "ctx") and error.ctx is None:
-                error.ctx = ctx
+            wrong: Any = error
+            if getattr(wrong, "ctx", ctx) is None:
+                wrong.ctx = ctx
             raise
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
