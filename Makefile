@@ -43,7 +43,7 @@ fi; \
 rm $(HALF); pwd > $@
 endef
 
-.PHONY: help demo docs forge test test-live test-server test-trainers mutants release-check lint bench
+.PHONY: help demo docs forge test coverage test-live test-server test-trainers mutants release-check lint bench
 .PHONY: setup clean
 .DEFAULT_GOAL := help
 
@@ -73,6 +73,12 @@ forge:  ## Build SceneForge's page from its TypeScript (needs Node 20 and npm).
 
 test: $(STAMP)  ## Run the tests, a file a core (TESTS=tests/fuse for a part).
 	@$(BIN)/python -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile $(TESTS)
+
+coverage: $(STAMP)  ## Run the tests and tell which lines none of them reaches (90 % are asked).
+	@rm -f .coverage .coverage.*
+	@$(BIN)/python -m coverage run -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile $(TESTS)
+	@$(BIN)/python -m coverage combine --quiet
+	@$(BIN)/python -m coverage report
 
 test-live: $(STAMP)  ## Load a built world into a real server and walk in it (needs Node and npm).
 	@$(BIN)/python -m pytest -m live tests/live

@@ -21,6 +21,8 @@ from world2minecraft.types import OccupancyGrid
 
 FRAMES = 40
 REPEATS = 3
+# What developers set and users do not: with the second, all modules are compiled at each start.
+NOT_A_USERS = ("NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE")
 
 
 def run() -> list[Row]:
@@ -125,7 +127,7 @@ def reconstruct(words: list[str], out: Path, environment: dict[str, str]) -> tup
         "import resource, sys; from world2minecraft.cli import run; code = run(sys.argv[1:]);"
         "print('PEAK', resource.getrusage(resource.RUSAGE_SELF).ru_maxrss); sys.exit(code)"
     )
-    cleared = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    cleared = {name: value for name, value in os.environ.items() if name not in NOT_A_USERS}
     begun = time.perf_counter()
     done = subprocess.run(
         [sys.executable, "-c", code, *words, str(out)],

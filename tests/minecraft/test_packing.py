@@ -90,6 +90,16 @@ def test_varints_are_leb128_and_come_back(values):
     assert back.ravel().tolist() == values
 
 
+@pytest.mark.parametrize("shape", [(3, 70, 5), (1, 129, 2), (2, 64, 3), (4, 1, 130)])
+def test_varints_fill_any_box_in_their_order(shape):
+    values = np.random.default_rng(0).integers(0, 65_536, shape).astype(np.uint16)
+    out = np.zeros(3 * values.size, np.uint8)
+    data = out[: write_varints(values.ravel(), out)]
+    back = np.zeros((shape[2], shape[0], shape[1]), np.uint16).transpose(1, 2, 0)
+    assert read_varints(data, np.arange(65_536, dtype=np.int32), back) == len(data)
+    np.testing.assert_array_equal(back, values)
+
+
 def test_broken_varints_are_told():
     back, lookup = np.zeros((1, 1, 1), np.uint16), np.array([0, -1, 7], np.int32)
     for data, code in (([0x80], -1), ([0x80] * 9, -2), ([1], -4), ([3], -6), ([2], 1)):

@@ -5,6 +5,7 @@ import numpy as np
 from world2minecraft.jit import njit
 
 SECTION = 4096
+BAND_ROWS = 64
 
 
 @njit
@@ -79,8 +80,8 @@ def unpack_section(words, numbers, out, origin):  # pragma: no cover
     per_word = 64 // bits
     mask = np.uint64((1 << bits) - 1)
     for y in range(16):
-        for z in range(16):
-            for x in range(16):
+        for x in range(16):  # A volume's memory runs along z.
+            for z in range(16):
                 number = np.uint64(0)
                 if len(words):
                     at = y * 256 + z * 16 + x
@@ -124,25 +125,31 @@ def read_varints(data, lookup, out):  # pragma: no cover
     """
     at = 0
     size_y, size_z, size_x = out.shape
+    band = np.empty((min(size_z, BAND_ROWS), size_x), np.uint16)
     for y in range(size_y):
-        for z in range(size_z):
-            for x in range(size_x):
-                value = np.int64(0)
-                shift = 0
-                while True:
-                    if at >= len(data):
-                        return -1
-                    byte = np.int64(data[at])
-                    at += 1
-                    value |= (byte & 127) << shift
-                    if byte < 128:
-                        break
-                    shift += 7
-                    if shift > 21:
-                        return -2
-                if value >= len(lookup) or lookup[value] < 0:
-                    return -3 - value
-                out[y, z, x] = lookup[value]
+        for first in range(0, size_z, BAND_ROWS):
+            rows = min(BAND_ROWS, size_z - first)
+            for row in range(rows):
+                for x in range(size_x):
+                    value = np.int64(0)
+                    shift = 0
+                    while True:
+                        if at >= len(data):
+                            return -1
+                        byte = np.int64(data[at])
+                        at += 1
+                        value |= (byte & 127) << shift
+                        if byte < 128:
+                            break
+                        shift += 7
+                        if shift > 21:
+                            return -2
+                    if value >= len(lookup) or lookup[value] < 0:
+                        return -3 - value
+                    band[row, x] = lookup[value]
+            for x in range(size_x):  # A volume's memory runs along z: rows are written together.
+                for row in range(rows):
+                    out[y, first + row, x] = band[row, x]
     return at
 
 

@@ -42,14 +42,14 @@ def unpack_straddled(words, bits, lookup, out):  # pragma: no cover
         out: uint16 [Y, Z, X] out, filled whole where all goes well, the last axis fastest.
 
     Returns:
-        -1, or the first number that ``lookup`` lacks, and then ``out`` is half written.
+        -1, or a number that ``lookup`` lacks, and then ``out`` is half written.
     """
     mask = np.uint64((1 << bits) - 1)
     size_y, size_z, size_x = out.shape
-    at = np.int64(0)
     for y in range(size_y):
-        for z in range(size_z):
-            for x in range(size_x):
+        for x in range(size_x):  # A volume's memory runs along z.
+            for z in range(size_z):
+                at = ((np.int64(y) * size_z + z) * size_x + x) * bits
                 word, shift = at >> 6, at & 63
                 value = words[word] >> np.uint64(shift)
                 if shift + bits > 64:
@@ -58,5 +58,4 @@ def unpack_straddled(words, bits, lookup, out):  # pragma: no cover
                 if number >= len(lookup):
                     return number
                 out[y, z, x] = lookup[number]
-                at += bits
     return -1
