@@ -8,6 +8,7 @@ import pytest
 from roomplans import captured_room, session_of
 from test_plans_roomplan import layout
 
+from world2minecraft import cli
 from world2minecraft.classes import SemanticClass
 from world2minecraft.cli.from_plan import say_plan
 from world2minecraft.coordinates import rotation_about_z
@@ -247,3 +248,11 @@ def test_a_plan_alone_has_a_brief_report(place, tmp_path, capsys):
     assert (out / "preview.png").is_file()
     facts = json.loads((out / "report.json").read_text())
     assert facts["rooms"][0]["floor_m2"] == pytest.approx(11.0, abs=0.01)
+
+
+def test_a_plan_refuses_what_needs_frames(place, tmp_path, capsys):
+    words = ["reconstruct", str(place), "--out", str(tmp_path / "out")]
+    assert cli.run([*words, "--labels", str(tmp_path), "--from", "build"]) == 2
+    told = "Room.json is a RoomPlan and has no frames; leave out --from and --labels"
+    assert told in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

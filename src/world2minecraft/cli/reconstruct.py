@@ -145,7 +145,8 @@ def run(
     check_stage(start, follow)
     style_note(chosen)
     compiling_note()
-    if built_from_plan(capture, out, chosen):
+    needs_frames = {"--from": start, "--labels": labels, "--follow": follow}
+    if built_from_plan(capture, out, chosen, [name for name in needs_frames if needs_frames[name]]):
         return
     with shown() as progress:
         if follow:
@@ -172,10 +173,16 @@ def as_settings(semantics: str, fov: float | None) -> list[str]:
     return [f"{key}={value}" for key, value in told.items() if value]
 
 
-def built_from_plan(capture: Path, out: Path, chosen: "Parameters") -> bool:
-    """Build what a RoomPlan alone says, where the capture is one; return whether it is."""
+def built_from_plan(
+    capture: Path, out: Path, chosen: "Parameters", needs_frames: list[str]
+) -> bool:
+    """Build what a RoomPlan alone says, where the capture is one; return whether it is.
+
+    UsageError for options that need frames, of which a plan has none.
+    """
     from world2minecraft.cli.from_plan import say_plan
     from world2minecraft.cli.progress import shown
+    from world2minecraft.errors import UsageError
     from world2minecraft.making import make_from_plan
     from world2minecraft.prepare import scene_name
     from world2minecraft.scan.plan_alone import plan_in
@@ -183,6 +190,10 @@ def built_from_plan(capture: Path, out: Path, chosen: "Parameters") -> bool:
     drawn = plan_in(capture)
     if drawn is None:
         return False
+    if needs_frames:
+        raise UsageError(
+            f"{capture} is a RoomPlan and has no frames; leave out {' and '.join(needs_frames)}"
+        )
     with shown() as progress:
         built = make_from_plan(drawn, out, chosen, progress, scene_name(capture))
     say_plan(out, built)

@@ -222,6 +222,7 @@ def _walk(
     def watching(episode: "Episode", ground: Any) -> list[Any]:
         place = folder / _place(episode, episodes)
         found: list[Any] = [shown, TraceWriter(place), *_people(walker)]
+        (place / FILM_FILE).unlink(missing_ok=True)  # Of a walk that was kept here before.
         if video:
             films[:] = [Film(place / FILM_FILE, ground, ground.plans)]
         return [*found, *films]
