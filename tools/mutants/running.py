@@ -169,12 +169,14 @@ class _Tracing:
 
     def __init__(self, names: dict[str, str], lines: set[tuple[str, int]]):
         self.names, self.lines = names, lines
+        self.before: Any = None  # A debugger, or coverage, which goes on afterwards.
 
     def __enter__(self) -> None:
+        self.before = sys.gettrace()
         sys.settrace(self._call)
 
     def __exit__(self, *_: object) -> None:
-        sys.settrace(None)
+        sys.settrace(self.before)
 
     def _call(self, frame: Any, event: str, _: Any) -> Any:
         name = self.names.get(frame.f_code.co_filename)
