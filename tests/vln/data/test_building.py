@@ -1,5 +1,6 @@
 """How a set is put together: workers, splits as the paper has them, scenes that are made for it."""
 
+import json
 import shutil
 from collections import Counter
 from functools import partial
@@ -7,6 +8,7 @@ from functools import partial
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from PIL import Image
 
 from world2minecraft import cli
 from world2minecraft.errors import UsageError
@@ -129,6 +131,38 @@ def test_a_set_split_as_the_paper_has_no_unseen_scene(one_worker):
     assert {one.trajectory_id: one.split for one in read_episodes(out)} == splits
     assert all(item.split == splits[item.trajectory_id] for item in read_items(out))
     assert not built.leaks.images and not built.leaks.trajectories
+
+
+def test_a_set_is_counted_by_the_command(one_worker, tmp_path, capsys):
+    out, built = one_worker
+    words = ["vln", "stats", str(out), "--json", str(tmp_path / "s.json")]
+    assert cli.run([*words, "--plot", str(tmp_path / "lengths.png")]) == 0
+    told = capsys.readouterr().out
+    figures = json.loads((tmp_path / "s.json").read_text())
+    by_task = Counter(item.task for item in built.items)
+    assert {task: sum(own.values()) for task, own in figures["letters"].items()} == by_task
+    assert figures["scenes"] == {"base": 0, "extend": 2, "combined": 2}
+    assert figures["leaks"]["images"] == figures["leaks"]["trajectories"] == 0
+    held = Counter(item.task for item in built.items if item.split != "train")
+    for row in figures["baselines"]:
+        whole = held[row["task"]] or by_task[row["task"]]
+        assert 0 <= row["hits"] <= row["total"] <= whole
+        assert row["total"] == whole or row["name"].startswith("nearest ")  # Of one grade.
+        assert f"{row['hits'] / row['total']:.3f}" in told
+    assert {row["task"] for row in figures["baselines"]} == set(by_task)
+    assert min(Image.open(tmp_path / "lengths.png").size) > 200
+    assert "Without understanding, on " in told
+    assert f"w2m vln evaluate {out} --agent oracle" in told
+
+
+def test_a_set_is_counted_without_its_pictures(one_worker, tmp_path, capsys):
+    items = shutil.copy(one_worker[0] / "items.jsonl", tmp_path)
+    assert cli.run(["vln", "stats", str(items), "--no-baselines"]) == 0
+    assert "Without understanding" not in capsys.readouterr().out
+    assert cli.run(["vln", "stats", str(items)]) == 3
+    assert "Traceback" not in capsys.readouterr().err
+    assert cli.run(["vln", "stats", str(tmp_path / "none")]) == 3
+    assert "none" in capsys.readouterr().err
 
 
 def test_scenes_are_made_once(tmp_path, monkeypatch):
