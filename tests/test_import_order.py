@@ -48,7 +48,7 @@ ROWS: tuple[tuple[str, ...], ...] = (
         "build",
     ),
     ("parameters", "run_folder"),
-    ("steps",),
+    ("steps", "kept"),
     ("prepare", "plans", "joining"),
     ("pipeline", "rebuild"),
     ("live",),

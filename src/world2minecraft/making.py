@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.archive import AnyPath
+from world2minecraft.kept import kept_before
 from world2minecraft.parameters import Parameters
-from world2minecraft.pipeline import reconstruct, registered_before
+from world2minecraft.pipeline import STAGES, reconstruct, registered_before
 from world2minecraft.plans import PlanWorld, build_plan
 from world2minecraft.prepare import open_prepared
 from world2minecraft.progress import Progress, silent
@@ -31,7 +32,8 @@ def make_run(
         CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.
     """
     if start == "report":
-        scan = registered_before(open_prepared(capture, out, chosen, labels, progress), out)
+        as_before = kept_before(out, start, STAGES, chosen).parameters
+        scan = registered_before(open_prepared(capture, out, as_before, labels, progress), out)
     else:
         with pictures_compiled_meanwhile():
             scan = reconstruct(capture, out, chosen, start=start, labels=labels, progress=progress)

@@ -45,7 +45,6 @@ class Parameters:
     plan: str = ""
     labeller: str = "auto"
     mc_version: str = "1.20.1"
-    seed: int = 0
     mend: bool = True
     formats: str = ""
     known: tuple[str, float] | None = None

@@ -23,6 +23,7 @@ from world2minecraft.exchange.poses import read_poses, write_poses
 from world2minecraft.exchange.scan import placed_as_written, read_registration, write_scan
 from world2minecraft.furniture.own import own_files, own_folder
 from world2minecraft.fuse import fuse_views
+from world2minecraft.kept import kept_before, with_kept_files
 from world2minecraft.occupy import notes_of, predictor
 from world2minecraft.parameters import Parameters
 from world2minecraft.plans import add_plan_openings, voted_by_plan
@@ -60,14 +61,16 @@ def reconstruct(
 
     Raises:
         CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.
+        UsageError: a setting is other than the one that stages before ``start`` were made with.
     """
-    chosen = parameters or Parameters()
     run = RunFolder(out, STAGES, start)
+    kept = kept_before(out, start, STAGES, parameters or Parameters())
+    chosen = kept.parameters
     early = start is None or STAGES.index(start) <= STAGES.index("fuse")
     used = predictor(chosen.predictor, chosen.occupy) if early else None
     with run.timed("scan"):
         scan = open_prepared(capture, out, chosen, labels, progress)
-    run.begin(manifest(capture, labels, chosen, out))
+    run.begin(with_kept_files(out, start, manifest(capture, labels, chosen, out), kept))
     if run.needs("scan"):
         with run.stage("scan"):
             write_scan(run.path("scan.json"), scan)
@@ -91,7 +94,7 @@ def reconstruct(
             write_evidence(run.path("evidence.npz"), evidence)
             write_scan(run.path("scan.json"), scan, read_registration(run.path("scan.json")))
     run_later_stages(run, chosen, until, progress)
-    return scan
+    return replace(scan, notes=(*scan.notes, *kept.notes))
 
 
 def run_later_stages(
