@@ -88,7 +88,8 @@ def test_boxes_lie_before_the_camera_on_the_scenes_cells(quarters, shape):
     assert to_scene[:2, 1] @ ahead[:2] > 0.7
     numbers = torch.arange(int(np.prod(shape))).reshape(1, 1, *shape)
     turned = torch.rot90(numbers, window.quarters, (2, 3))[0, 0].numpy()
-    assert turned.shape == window.turned_shape
+    right, forward, up = shape
+    assert turned.shape == ((forward, right, up) if quarters % 2 else shape)
     for cell in [(0, 0, 0), (3, 5, 2), (shape[0] - 1, 0, 1), (7, shape[1] - 1, 4)]:
         place = (to_scene @ [*((np.array(cell) + 0.5) * VOXEL_M), 1])[:3] / VOXEL_M - 0.5
         at = np.round(place).astype(int) - window.low

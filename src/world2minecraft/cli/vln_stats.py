@@ -59,7 +59,7 @@ def run(
     statistics, leaks = statistics_of(items), leaks_of(items)
     print(statistics_text(statistics, leaks))
     rows = score(items, path if path.is_dir() else path.parent) if baselines else []
-    _say_baselines(rows, any(item.split != "train" for item in items))
+    _say_baselines(rows)
     if json_file is not None:
         write_json(json_file, figures(statistics, leaks, rows))
         print(f"  wrote  {json_file}")
@@ -71,10 +71,9 @@ def run(
     print(f"  next   w2m vln evaluate {path} --agent oracle")
 
 
-def _say_baselines(rows: "list[BaselineRow]", is_held: bool) -> None:
+def _say_baselines(rows: "list[BaselineRow]") -> None:
     if rows:
-        where = "what is held out" if is_held else "train, as nothing is held out"
-        print(f"\nWithout understanding, on {where} (95 % interval):")
+        print(f"\nWithout understanding, on {_where(rows)} (95 % interval):")
     for row in rows:
         low, high = row.accuracy.low, row.accuracy.high
         flag = "  FLAG: needs no picture" if row.is_flagged else ""
@@ -83,3 +82,13 @@ def _say_baselines(rows: "list[BaselineRow]", is_held: bool) -> None:
             f"[{low:.3f}, {high:.3f}]  of {row.accuracy.total:,}, chance {row.chance:.3f}{flag}"
         )
     print()
+
+
+def _where(rows: "list[BaselineRow]") -> str:
+    """Return what the baselines were scored on, in words."""
+    trained = sorted({row.task for row in rows if not row.is_held})
+    if not trained:
+        return "what is held out"
+    if len(trained) == len({row.task for row in rows}):
+        return "train, as nothing is held out"
+    return f"what is held out; {', '.join(trained)} on train, as nothing of it is"

@@ -151,7 +151,9 @@ def test_a_set_is_counted_by_the_command(one_worker, tmp_path, capsys):
         assert f"{row['hits'] / row['total']:.3f}" in told
     assert {row["task"] for row in figures["baselines"]} == set(by_task)
     assert min(Image.open(tmp_path / "lengths.png").size) > 200
-    assert "Without understanding, on " in told
+    trained = sorted(set(by_task) - set(held))
+    where = f"; {', '.join(trained)} on train, as nothing of it is" if trained else ""
+    assert f"Without understanding, on what is held out{where} (95 % interval)" in told
     assert f"w2m vln evaluate {out} --agent oracle" in told
 
 

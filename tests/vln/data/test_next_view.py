@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.vln.data.free_floor import free_walker
 
 from world2minecraft.vln.data.album import Album, Pictured, are_apart, unlike
-from world2minecraft.vln.data.discretise import Walk, free_walker
+from world2minecraft.vln.data.discretise import Walk
 from world2minecraft.vln.data.keyframes import marks_of
 from world2minecraft.vln.data.next_view import FOUND_OF, GRADES, MOST_FAR, view_question
 from world2minecraft.vln.data.pictures import Shot

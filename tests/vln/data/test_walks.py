@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.vln.data.free_floor import free_walker
 
+from world2minecraft.coordinates import eye_height_blocks
 from world2minecraft.errors import DamagedFileError
+from world2minecraft.render.views.tour_file import read_tour
 from world2minecraft.vln.data.cleaning import segments_of
-from world2minecraft.vln.data.discretise import discretise, free_walker
+from world2minecraft.vln.data.discretise import discretise
 from world2minecraft.vln.data.keyframes import marks_of
 from world2minecraft.vln.data.simplify import corners_of
-from world2minecraft.vln.data.stream import StreamFrame, read_stream
+from world2minecraft.vln.data.stream import StreamFrame, frame_of
 from world2minecraft.vln.data.validity import fault_of_pictures, fault_of_way, path_m
 from world2minecraft.vln.values import MOVE_SETS, Move, Stance
 
@@ -194,8 +197,8 @@ def test_streams_are_read_with_feet_under_their_eyes(tmp_path):
     ]
     path = tmp_path / "walk.jsonl"
     path.write_text("".join(json.dumps(line) + "\n" for line in lines))
-    first, second = read_stream(path, 4.0)
-    assert (first.stance.y, second.stance.y) == (70.0, pytest.approx(70.0 - 4 * 1.62))
+    eye, feet = (frame_of(one, eye_height_blocks(4.0)) for one in read_tour(path))
+    assert (feet.stance.y, eye.stance.y) == (70.0, pytest.approx(70.0 - 4 * 1.62))
     path.write_text("{}\n")
     with pytest.raises(DamagedFileError, match="line 1 has no x"):
-        read_stream(path, 4.0)
+        read_tour(path)

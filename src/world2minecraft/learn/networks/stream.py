@@ -27,12 +27,6 @@ class Window:
     low: tuple[int, int, int]  # cells of the scene: the corner of the turned box
     shape: tuple[int, int, int]  # in the frame's own order: right, forward, up
 
-    @property
-    def turned_shape(self) -> tuple[int, int, int]:
-        """The box's sides along the scene's axes."""
-        right, ahead, up = self.shape
-        return (ahead, right, up) if self.quarters % 2 else (right, ahead, up)
-
     def box_to_scene(self, voxel_m: float) -> Tensor:
         """Return 4x4: metres from the box's own minimum corner to metres of the scene."""
         right, ahead, _ = self.shape

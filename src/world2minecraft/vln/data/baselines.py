@@ -27,12 +27,16 @@ NAMES = ("uniform", "majority", "blind", "repeat", "nearest", "alike", "odd", "o
 
 @dataclass(frozen=True)
 class BaselineRow:
-    """A baseline's accuracy on a task; ``chance`` is that of guessing."""
+    """A baseline's accuracy on a task; ``chance`` is that of guessing.
+
+    is_held: whether its items are kept from training; those of train where none is.
+    """
 
     name: str
     task: str
     accuracy: Rate
     chance: float
+    is_held: bool = True
 
     @property
     def is_flagged(self) -> bool:
@@ -82,7 +86,8 @@ def _row(
     name: str, task: str, held: Sequence[Item], answers: Sequence[str], chance: float
 ) -> BaselineRow:
     hits = sum(a == item.answer for a, item in zip(answers, held, strict=True))
-    return BaselineRow(name, task, rate(hits, len(held)), chance)
+    is_held = all(item.split != "train" for item in held)
+    return BaselineRow(name, task, rate(hits, len(held)), chance, is_held)
 
 
 def baseline_letters(

@@ -161,18 +161,3 @@ class _Follower:
             self.refusal = "meets something"
         self.moves.append(move)
         self.stances.append(stance)
-
-
-def free_walker(move_set: MoveSet, blocks_per_metre: float) -> Walker:
-    """Return the physics of an endless empty floor: for tests, and for streams without a world."""
-    step = (move_set.forward_m or 1 / blocks_per_metre) * blocks_per_metre
-
-    def walk(stance: Stance, move: Move) -> tuple[Stance, bool]:
-        yaw = stance.yaw_deg + move_set.turn_deg * ((move == Move.RIGHT) - (move == Move.LEFT))
-        yaw = float(wrapped_deg(yaw))
-        ahead = step if move == Move.FORWARD else 0.0
-        x = stance.x - ahead * float(np.sin(np.radians(yaw)))
-        z = stance.z + ahead * float(np.cos(np.radians(yaw)))
-        return Stance(x, stance.y, z, yaw, stance.pitch_deg), False
-
-    return walk

@@ -2,13 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
-from world2minecraft.coordinates import eye_height_blocks
-from world2minecraft.render.views.tour_file import TourPose, read_tour
+from world2minecraft.render.views.tour_file import TourPose
 from world2minecraft.vln.values import Stance
 
 
@@ -21,30 +18,6 @@ class StreamFrame:
     scene_id: str = ""
     tour_id: str = ""
     image: str = ""
-
-
-def read_stream(
-    path: str | Path, blocks_per_metre: float, *, at: Literal["feet", "eye"] = "eye"
-) -> list[StreamFrame]:
-    """Read the walks of a tour file, ours or one that came with screenshots, in time's order.
-
-    Args:
-        path: JSONL or CSV as every tour of the program: x, y, z, yaw, pitch, and where known t,
-            image, scene_id, tour_id. Where no line says a time, see ``timed``.
-        blocks_per_metre: of the world; an eye is 1.62 player sizes over the feet.
-        at: what x, y, z is in lines that do not say it.
-
-    Raises:
-        InputError: it cannot be read. DamagedFileError: a line is no pose, or there is none.
-        LimitError: it is too large.
-
-    Example:
-        >>> frames = read_stream("tour.jsonl", 1.0)                     # doctest: +SKIP
-    """
-    eye = eye_height_blocks(blocks_per_metre)
-    frames = [frame_of(one, eye) for one in read_tour(path, at)]
-    order = sorted(range(len(frames)), key=lambda n: (frames[n].tour_id, frames[n].t_s, n))
-    return [frames[n] for n in order]
 
 
 def frame_of(one: TourPose, eye: float) -> StreamFrame:
