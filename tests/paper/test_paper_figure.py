@@ -1,15 +1,25 @@
 """``w2m paper figure``: cells become blocks where they are, and the page holds all pictures."""
 
+import json
+from dataclasses import asdict
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from PIL import Image
 from tests.exact_room import BoxRoom
 
 from world2minecraft.cli import run
 from world2minecraft.coordinates import invert
+from world2minecraft.errors import InputError
 from world2minecraft.paper import figure
+from world2minecraft.paper.walked import spread, views_of_walk
 from world2minecraft.scan.plain import write_plain
 from world2minecraft.types import OccupancyGrid
+from world2minecraft.vln.running.scene_ground import SceneGround
+from world2minecraft.vln.scene import open_scene
+from world2minecraft.vln.values import Stance
 
 
 def grid(labels):
@@ -79,4 +89,29 @@ def test_a_room_is_drawn(finished, capsys, monkeypatch):
     strip = page[-20, 8:].reshape(-1, 3)
     assert strip[5, 0] < 10 and 150 < strip[-30, 0] < 170  # The first step, and the last.
     assert run([*words, "--walk", str(finished / "scan"), "--out", str(out)]) == 3
-    assert "holds no views of a walk; name a folder of w2m vln run" in capsys.readouterr().err
+    assert "holds no walk; name a folder of w2m vln run" in capsys.readouterr().err
+
+
+def test_what_an_agent_saw_that_kept_no_views_is_drawn_again(finished, tmp_path):
+    scene = open_scene(finished / "OUT")
+    east, north = (Stance(*scene.graph.feet[0], yaw_deg=yaw) for yaw in (270.0, 180.0))
+    walk = tmp_path / "run" / "episodes" / "wish"
+    walk.mkdir(parents=True)
+    lines = [{"scene": "OUT"}, {"stance": asdict(east)}, {"end": "x", "stance": asdict(north)}]
+    (walk / "trace.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    views = views_of_walk(finished / "OUT", walk, 6)
+    ground = SceneGround(scene)
+    assert len(views) == 2
+    for view, stance in zip(views, (east, north), strict=True):
+        np.testing.assert_array_equal(view, ground.view(stance))
+    with pytest.raises(InputError, match="holds 1 walks; name one, such as .*wish"):
+        views_of_walk(finished / "OUT", tmp_path / "run", 6)
+
+
+@given(st.integers(1, 40), st.integers(1, 9))
+def test_views_are_spread_over_the_whole_walk(count, most):
+    numbers = list(spread(count, most))
+    assert len(numbers) == min(count, most) == len(set(numbers))
+    assert numbers[0] == 0 and (numbers[-1] == count - 1 or most == 1)
+    apart = np.diff(numbers)
+    assert not len(apart) or apart.max() - apart.min() <= 1

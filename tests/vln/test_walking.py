@@ -111,7 +111,7 @@ def test_an_episode_that_cannot_be_walked_is_told_before_the_first_is(tmp_path):
 
 def test_a_trace_of_anyone_is_checked(tmp_path):
     (tmp_path / "trace.jsonl").write_text('{"a": 1}\n[1]\n')
-    with pytest.raises(InputError, match="line 2 is no object"):
+    with pytest.raises(InputError, match="line 2 is no JSON object"):
         read_trace(tmp_path / "trace.jsonl")
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="cannot be written"):

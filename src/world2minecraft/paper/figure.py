@@ -14,9 +14,10 @@ from PIL import Image, ImageDraw, ImageFont
 
 from world2minecraft.classes import CLASS_COLOURS, OBJECT_CLASSES, UNKNOWN
 from world2minecraft.coordinates import grid_to_block_axes
-from world2minecraft.errors import CaptureError, InputError
+from world2minecraft.errors import CaptureError
 from world2minecraft.exchange.room import read_room
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
+from world2minecraft.paper.walked import views_of_walk
 from world2minecraft.render.lamps import NEUTRAL, PAPER
 from world2minecraft.render.picture import render_volume
 from world2minecraft.render.scene import BlockScene, prepare_scene
@@ -65,7 +66,7 @@ def reconstruction_figure(run: Path, capture: Path, walk: Path | None = None) ->
         [colour for colour, _ in _outside(built, start_deg)],
     ]
     rows = [[_fitted(column[n], CELL_PX) for column in columns] for n in range(len(photos))]
-    strip = _strip(walk, len(HEADS)) if walk is not None else []
+    strip = _strip(run, walk, len(HEADS)) if walk is not None else []
     return _page(rows, strip)
 
 
@@ -142,16 +143,11 @@ def _present(pixels: np.ndarray | None) -> np.ndarray:
     return pixels
 
 
-def _strip(walk: Path, across: int) -> list[Pixels]:
+def _strip(run: Path, walk: Path, across: int) -> list[Pixels]:
     """Return what an agent saw, first and last step among it, to fill the width of the page."""
-    paths = sorted((walk / "views").glob("*.jpg"))
-    if not paths:
-        raise InputError(walk, "holds no views of a walk; name a folder of w2m vln run")
-    count = min(STEPS, len(paths))
-    chosen = [paths[n * (len(paths) - 1) // max(count - 1, 1)] for n in range(count)]
     width = (across * (CELL_PX[0] + GAP_PX) - GAP_PX * STEPS) // STEPS
     size = (width, width * CELL_PX[1] // CELL_PX[0])
-    return [_fitted(read_colour(path), size) for path in chosen]
+    return [_fitted(view, size) for view in views_of_walk(run, walk, STEPS)]
 
 
 def _fitted(pixels: Pixels, size: tuple[int, int]) -> Pixels:

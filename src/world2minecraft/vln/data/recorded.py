@@ -7,25 +7,22 @@ feet stood, and is called by names of ours: those of a file could lead anywhere.
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from scipy.spatial import KDTree
 
 from world2minecraft.coordinates import eye_height_blocks
-from world2minecraft.errors import DamagedFileError, UsageError
-from world2minecraft.files import json_rows, read_bytes
+from world2minecraft.errors import UsageError
 from world2minecraft.render.views.tour_file import read_tour
 from world2minecraft.vln.data.stream import StreamFrame, frame_of, timed
+from world2minecraft.vln.running.trace import TRACE_FILE, read_trace, stances_of, traces_in
 from world2minecraft.vln.scene import VlnScene
-from world2minecraft.vln.values import Stance
 
 At = Literal["feet", "eye"]
-TRACE = "trace.jsonl"  # Of w2m vln run.
 EVERY_S = 0.2  # Between lines that say no time,
 DECISION_S = 0.5  # and between an agent's decisions: a metre at most.
 ASIDE_M, HIGH_M = 0.4, 0.75  # A place of the floor is so near to where feet were said to be.
-MAX_BYTES = 256 << 20
 
 
 def checked_at(text: str) -> At:
@@ -40,8 +37,8 @@ def scene_ids_of(path: str | Path) -> set[str]:
 
     Raises: as ``recorded_tours``.
     """
-    if traces := _traces_in(path):
-        return {str(_trace(place)[0].get("scene", "")) for place in traces}
+    if traces := _traces(path):
+        return {str(read_trace(place)[0].get("scene", "")) for place in traces}
     return {one.scene_id for one in read_tour(path)}
 
 
@@ -111,8 +108,8 @@ def streams_of(paths: Sequence[str], scene_ids: Sequence[str]) -> dict[str, tupl
 
 def _streams(path: str | Path, scene: VlnScene, at: At) -> list[list[StreamFrame]]:
     """Return the frames of a tour file, or of each walk of a run."""
-    if traces := _traces_in(path):
-        return [_frames_of_trace(_trace(place), place) for place in traces]
+    if traces := _traces(path):
+        return [_frames_of_trace(place) for place in traces]
     eye = eye_height_blocks(scene.blocks_per_metre)
     return [[frame_of(one, eye) for one in read_tour(path, at)]]
 
@@ -124,37 +121,16 @@ def _in_time(frames: list[StreamFrame]) -> list[StreamFrame]:
     return sorted(frames, key=lambda one: one.t_s)
 
 
-def _traces_in(path: str | Path) -> list[Path]:
+def _traces(path: str | Path) -> list[Path]:
     """Return the traces of a run, one a walk; none where the path is a tour file."""
     place = Path(path)
     if place.is_dir():
-        several = sorted(place.glob(f"episodes/*/{TRACE}"))
-        return several if several and not (place / TRACE).is_file() else [place / TRACE]
-    return [place] if place.name == TRACE else []
+        return traces_in(place)
+    return [place] if place.name == TRACE_FILE else []
 
 
-def _trace(path: Path) -> list[dict[str, Any]]:
-    try:
-        text = read_bytes(path, MAX_BYTES).decode()
-    except UnicodeDecodeError as error:
-        raise DamagedFileError(path, "is no text in UTF-8") from error
-    lines = [dict(row) for _, row in json_rows(text, path)]
-    if not lines:
-        raise DamagedFileError(path, "is empty; it is no trace of w2m vln run")
-    return lines
-
-
-def _frames_of_trace(lines: Sequence[dict[str, Any]], path: Path) -> list[StreamFrame]:
-    scene, frames = str(lines[0].get("scene", "")), []
-    for number, line in enumerate(lines, 1):
-        if "stance" not in line:
-            continue
-        try:
-            values = {key: float(value) for key, value in line["stance"].items()}
-            stance = Stance(**values)
-        except (AttributeError, TypeError, ValueError) as error:
-            raise DamagedFileError(path, f"line {number} has no stance ({error})") from error
-        if not np.isfinite(list(values.values())).all():
-            raise DamagedFileError(path, f"line {number} has a stance that is not finite")
-        frames.append(StreamFrame(len(frames) * DECISION_S, stance, scene))
-    return frames
+def _frames_of_trace(path: Path) -> list[StreamFrame]:
+    lines = read_trace(path)
+    scene = str(lines[0].get("scene", ""))
+    stances = stances_of(lines, path)
+    return [StreamFrame(n * DECISION_S, stance, scene) for n, stance in enumerate(stances)]

@@ -6,13 +6,15 @@ that a run can be followed and what a crash leaves can be read.
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TextIO
 
+import numpy as np
+
 from world2minecraft.errors import DamagedFileError, OutputError
-from world2minecraft.files import read_bytes, write_bytes
+from world2minecraft.files import json_rows, read_bytes, write_bytes
 from world2minecraft.vln.agents.model import jpeg
 from world2minecraft.vln.agents.values import Decision, Sight
 from world2minecraft.vln.agents.words import MOVE_NAMES
@@ -120,18 +122,43 @@ def score_told(walk: Walk) -> dict[str, Any]:
 
 
 def read_trace(path: str | Path) -> list[dict[str, Any]]:
-    """Return the lines of a trace.
+    """Return the lines of a trace: the episode, its decisions, the score.
 
     Raises:
-        InputError: it is missing. DamagedFileError: a line is no object. LimitError: too large.
+        InputError: it is missing. DamagedFileError: it is empty, or a line is no object.
+        LimitError: too large.
     """
-    lines = []
-    for number, line in enumerate(read_bytes(path, MAX_TRACE_BYTES).splitlines(), start=1):
-        try:
-            value = json.loads(line)
-        except (ValueError, RecursionError):
-            value = None
-        if not isinstance(value, dict):
-            raise DamagedFileError(path, f"line {number} is no object of a trace")
-        lines.append(value)
+    data = read_bytes(path, MAX_TRACE_BYTES)
+    try:
+        lines = [row for _, row in json_rows(data.decode(), Path(path))]
+    except UnicodeDecodeError as error:
+        raise DamagedFileError(path, "is no text in UTF-8") from error
+    if not lines:
+        raise DamagedFileError(path, "is empty; it is no trace of w2m vln run")
     return lines
+
+
+def traces_in(folder: Path) -> list[Path]:
+    """Return where the traces of a run are, one a walk; of one walk the one that has to be."""
+    several = sorted(folder.glob(f"episodes/*/{TRACE_FILE}"))
+    return several if several and not (folder / TRACE_FILE).is_file() else [folder / TRACE_FILE]
+
+
+def stances_of(lines: Sequence[Mapping[str, Any]], path: Path) -> list[Stance]:
+    """Return where a walker stood at each decision of a trace, and in the end.
+
+    Raises:
+        DamagedFileError: a line's stance is none.
+    """
+    stances = []
+    for number, line in enumerate(lines, 1):
+        if "stance" not in line:
+            continue
+        try:
+            values = {key: float(value) for key, value in line["stance"].items()}
+            stances.append(Stance(**values))
+        except (AttributeError, TypeError, ValueError) as error:
+            raise DamagedFileError(path, f"line {number} has no stance ({error})") from error
+        if not np.isfinite(list(values.values())).all():
+            raise DamagedFileError(path, f"line {number} has a stance that is not finite")
+    return stances
