@@ -8,7 +8,7 @@ from world2minecraft.render import plan_view, preview
 from world2minecraft.render.cutaway import ceiling_level, without_ceiling, without_near_walls
 
 
-def furnished():
+def furnished(blocks_per_metre=4.0):
     """A room of white walls, a red floor block in its (+x, +y) corner, a plank chest."""
     states = np.zeros((20, 12, 16), np.int64)
     semantic = np.zeros(states.shape, np.uint8)
@@ -18,7 +18,7 @@ def furnished():
     states[:, -1], semantic[:, -1] = 1, 1
     states[15:19, 0, 1:5] = 6  # Block -z is room +y: the far right corner of the plan.
     states[2:6, 1:4, 1:3], semantic[2:6, 1:4, 1:3] = 2, 10
-    return volume_of(states, semantic)
+    return volume_of(states, semantic, blocks_per_metre)
 
 
 def redness(image):
@@ -52,6 +52,20 @@ def test_near_walls_are_cut_to_a_rim_and_nothing_else(near_x, near_z):
     inner = slice(1, -1)
     assert cut.states[far_x, 1:11, inner].all()
     assert np.array_equal(cut.states[1:-1, :, 1:-1], opened.states[1:-1, :, 1:-1])
+
+
+@pytest.mark.parametrize("joined", [False, True])
+def test_floor_seen_past_a_near_wall_is_no_room(joined):
+    opened = without_ceiling(furnished(12.5))
+    beside = ((0, 3), (0, 0), (0, 0))
+    states, semantic = np.pad(opened.states, beside), np.pad(opened.semantic, beside)
+    states[20:23, 0, 6:9], semantic[20:23, 0, 6:9] = 1, 2  # Beyond the wall at the end of x.
+    if joined:  # By a door.
+        states[19, 1:10, 6:9], semantic[19, 1:10, 6:9] = 0, 0
+    wider = volume_of(states, semantic, 12.5)
+    cut = without_near_walls(wider, 1, 1)
+    assert not cut.states[19:, 5:].any()
+    assert cut.states[0, 5:11, 1:-1].all()
 
 
 def test_the_plan_has_room_x_to_the_right_and_room_y_up():

@@ -11,6 +11,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+from scipy import ndimage
 
 from world2minecraft.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
@@ -22,6 +23,7 @@ HUNG_M = 0.12  # What hangs on a near wall reaches this far into the room,
 HIGH_M = 1.0  # and hangs above this height; lower things stand on the floor.
 BREAST_M = 1.1  # So much of a wall between two rooms stays.
 ROOM_M2 = 1.0
+STRIP_M = 0.4  # A strip of floor so narrow is no room.
 STOREY_M = 1.9  # Floors lie at least this far over one another,
 STOREY_SHARE = 0.15  # and have at least this share of the largest one's area.
 APART_M = 1.5  # Between storeys that stand side by side.
@@ -123,7 +125,7 @@ def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVo
         near_z: the same for block z.
     """
     semantic = volume.semantic
-    floor = floor_columns(semantic)
+    floor = _rooms_alone(floor_columns(semantic), volume.blocks_per_metre)
     outside = _beyond(floor, 0, near_x) | _beyond(floor, 1, near_z)
     level = floor_level(semantic) + 1 + round(RIM_M * volume.blocks_per_metre)
     drop = np.zeros(semantic.shape, bool)
@@ -173,6 +175,17 @@ def _rooms(floor: np.ndarray, least: float) -> np.ndarray:
     parts, count = connected_parts(floor, corners=False)
     sizes = np.bincount(parts.ravel(), minlength=count + 1)
     return floor & (sizes[parts] >= least)
+
+
+def _rooms_alone(floor: np.ndarray, blocks_per_metre: float) -> np.ndarray:
+    """Return the floor of rooms: without what a scan saw of it past a door or under a wall.
+
+    All of it where nothing as large as a room is left.
+    """
+    side = 2 * int(STRIP_M / 2 * blocks_per_metre) + 1
+    wide = ndimage.binary_opening(floor, np.ones((side, side)))
+    rooms = _rooms(wide, ROOM_M2 * blocks_per_metre**2)
+    return rooms if rooms.any() else floor
 
 
 def _both_sides(floor: np.ndarray, axis: int, reach: int) -> np.ndarray:
