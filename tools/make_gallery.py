@@ -1,12 +1,13 @@
-"""Makes docs/gallery.md and its pictures, from scenes of our own and nothing else.
+"""Makes docs/gallery.md, its pictures and those of the tutorials, from scenes of our own alone.
 
-    python tools/make_gallery.py            some minutes, 200 MB in a folder that is thrown away
+    python tools/make_gallery.py            some minutes, 300 MB in a folder that is thrown away
 
-Every picture's caption is the commands that make it, so that anyone can make it again; they are run
-here as they stand there.
+Under the pictures stand the commands that make them, so that anyone can make them again; they are
+run here as they stand there.
 """
 
 import contextlib
+import io
 import os
 import shlex
 import sys
@@ -14,21 +15,35 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
+from PIL import Image
+
 from world2minecraft import cli
 from world2minecraft.files import write_bytes, write_text
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-FOLDER = "images/gallery"
+GALLERY, TUTORIALS = "images/gallery", "images/tutorials"
 SIZE = "--size 960x600 --format jpg --quality 82"
+WIDEST_PX, QUALITY = 1600, 85
+NORDIC = """\
+name: nordic
+blocks: [white_concrete, light_gray_concrete, birch_planks, birch_slab, birch_stairs,
+         dark_oak_planks, red_wool, glass, glass_pane]
+"""
 
 
 class Shot(NamedTuple):
-    """A picture: its name, what it shows, the words of its w2m render, and which one of those."""
+    """A picture: its name, what it shows, the command that makes it, and the file that it is in."""
 
     stem: str
     title: str
-    render: str
-    take: int = 0
+    command: str
+    file: str
+
+
+def render(stem: str, title: str, words: str, take: int = 0) -> Shot:
+    """Return one of the pictures that ``w2m render`` with these words makes."""
+    command = f"w2m render {words} {SIZE} --out shots/{stem}"
+    return Shot(stem, title, command, f"shots/{stem}/{take:06d}.jpg")
 
 
 class Scene(NamedTuple):
@@ -49,10 +64,10 @@ SCENES = (
             "w2m demo --kind bed --seed 4 --out bed",
         ),
         (
-            Shot("kitchen", "A kitchen, from outside", "kitchen --orbit --frames 4", 2),
-            Shot("kitchen-inside", "and inside", "kitchen --tour --frames 8", 4),
-            Shot("bed", "A bedroom, from outside", "bed --orbit --frames 4"),
-            Shot("bed-inside", "and inside", "bed --tour --frames 8", 6),
+            render("kitchen", "A kitchen, from outside", "kitchen --orbit --frames 4", 2),
+            render("kitchen-inside", "and inside", "kitchen --tour --frames 8", 4),
+            render("bed", "A bedroom, from outside", "bed --orbit --frames 4"),
+            render("bed-inside", "and inside", "bed --tour --frames 8", 6),
         ),
     ),
     Scene(
@@ -60,12 +75,12 @@ SCENES = (
         "Furnished houses in styles that each draws for itself: block worlds with exact truth.",
         ("w2m rooms generate --houses 4 --seed 21 --worlds houses",),
         (
-            Shot("house-1", "Two storeys, opened", "houses/house_0001 --orbit --frames 4"),
-            Shot("house-2", "One, opened", "houses/house_0002 --orbit --frames 4"),
-            Shot("room-1", "A living room", "houses/house_0001 --tour --frames 8", 3),
-            Shot("room-2", "Another", "houses/house_0002 --tour --frames 8", 4),
-            Shot("room-3", "and one in lime", "houses/house_0003 --tour --frames 8", 1),
-            Shot("room-4", "A dining room", "houses/house_0004 --tour --frames 8", 2),
+            render("house-1", "Two storeys, opened", "houses/house_0001 --orbit --frames 4"),
+            render("house-2", "One, opened", "houses/house_0002 --orbit --frames 4"),
+            render("room-1", "A living room", "houses/house_0001 --tour --frames 8", 3),
+            render("room-2", "Another", "houses/house_0002 --tour --frames 8", 4),
+            render("room-3", "and one in lime", "houses/house_0003 --tour --frames 8", 1),
+            render("room-4", "A dining room", "houses/house_0004 --tour --frames 8", 2),
         ),
     ),
     Scene(
@@ -77,9 +92,45 @@ SCENES = (
             "w2m build kitchen --out exact --blocks-per-metre 12.5",
         ),
         (
-            Shot("style-blocks", "Blocks, 2 a metre", "coarse --orbit --frames 4", 2),
-            Shot("style-display", "Displays, 2 a metre", "fine --orbit --frames 4", 2),
-            Shot("style-exact", "A block a voxel", "exact --orbit --frames 4"),
+            render("style-blocks", "Blocks, 2 a metre", "coarse --orbit --frames 4", 2),
+            render("style-display", "Displays, 2 a metre", "fine --orbit --frames 4", 2),
+            render("style-exact", "A block a voxel", "exact --orbit --frames 4"),
+        ),
+    ),
+    Scene(
+        "As the paper shows it",
+        "Photo, world, predicted cells and construction; below, what an agent saw on its way.",
+        ('w2m vln run kitchen "Go to the table" --out walk --no-video',),
+        (
+            Shot(
+                "figure",
+                "The kitchen, and the oracle's way to its table",
+                "w2m paper figure kitchen --walk walk --out figure.png",
+                "figure.png",
+            ),
+        ),
+    ),
+)
+TUTORIAL = Scene(
+    "Tutorials",
+    "What the commands of the tutorials show; the pages say them.",
+    (
+        "w2m rooms scan --seed 7 --kind study --out my_scan",
+        "w2m reconstruct my_scan --out OUT",
+        "w2m build OUT --out NORDIC --palette nordic.yaml",
+        'w2m vln run OUT "Go to the table" --out WALK --no-video',
+        "w2m dataset build DATA --houses 2 --images 20",
+    ),
+    (
+        Shot("scan", "", "w2m scan my_scan", "my_scan-scan.png"),
+        render("room", "", "OUT --tour --frames 8", 3),
+        Shot("figure", "", "w2m paper figure OUT --capture my_scan --walk WALK", "figure.png"),
+        render("nordic", "", "NORDIC --orbit --frames 4", 2),
+        Shot(
+            "sample",
+            "",
+            "w2m dataset show DATA house_0001-r02t000-000000 --out sample.png",
+            "sample.png",
         ),
     ),
 )
@@ -88,19 +139,25 @@ SCENES = (
 def main() -> None:
     """Make the scenes, draw the pictures, write the page."""
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-        for scene in SCENES:
+        Path("nordic.yaml").write_text(NORDIC, "utf-8")
+        for scene, place in (*((one, GALLERY) for one in SCENES), (TUTORIAL, TUTORIALS)):
             for line in scene.make:
                 _run(line)
             for shot in scene.shots:
-                _run(command_of(shot))
-                taken = Path("shots", shot.stem, f"{shot.take:06d}.jpg").read_bytes()
-                write_bytes(DOCS / FOLDER / f"{shot.stem}.jpg", taken)
+                _run(shot.command)
+                write_bytes(DOCS / place / f"{shot.stem}.jpg", small_jpeg(Path(shot.file)))
     write_text(DOCS / "gallery.md", page())
 
 
-def command_of(shot: Shot) -> str:
-    """Return the command that draws a picture, and some beside it."""
-    return f"w2m render {shot.render} {SIZE} --out shots/{shot.stem}"
+def small_jpeg(path: Path) -> bytes:
+    """Return a picture as a JPEG that a page loads fast; one that is already is not made worse."""
+    if path.suffix == ".jpg":
+        return path.read_bytes()
+    picture = Image.open(path).convert("RGB")
+    picture.thumbnail((WIDEST_PX, WIDEST_PX), Image.Resampling.LANCZOS)
+    stream = io.BytesIO()
+    picture.save(stream, "JPEG", quality=QUALITY, optimize=True)
+    return stream.getvalue()
 
 
 def page() -> str:
@@ -115,11 +172,11 @@ def page() -> str:
 
 def _section(scene: Scene) -> str:
     pictures = "\n".join(
-        f"<figure markdown>\n![{shot.title}]({FOLDER}/{shot.stem}.jpg)\n"
+        f"<figure markdown>\n![{shot.title}]({GALLERY}/{shot.stem}.jpg)\n"
         f"<figcaption>{shot.title}</figcaption>\n</figure>\n"
         for shot in scene.shots
     )
-    commands = "\n".join([*scene.make, *map(command_of, scene.shots)])
+    commands = "\n".join([*scene.make, *(shot.command for shot in scene.shots)])
     return (
         f"## {scene.title}\n\n{scene.about}\n\n"
         f'<div class="gallery" markdown>\n\n{pictures}\n</div>\n\n'
