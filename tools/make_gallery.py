@@ -100,11 +100,11 @@ SCENES = (
     Scene(
         "As the paper shows it",
         "Photo, world, predicted cells and construction; below, what an agent saw on its way.",
-        ('w2m vln run kitchen "Go to the table" --out walk --no-video',),
+        ('w2m vln run kitchen "Go to the black cabinet" --out walk --no-video',),
         (
             Shot(
                 "figure",
-                "The kitchen, and the oracle's way to its table",
+                "The kitchen, and the oracle's way to its black cabinet",
                 "w2m paper figure kitchen --walk walk --out figure.png",
                 "figure.png",
             ),
@@ -129,7 +129,7 @@ TUTORIAL = Scene(
         Shot(
             "sample",
             "",
-            "w2m dataset show DATA house_0001-r02t000-000000 --out sample.png",
+            "w2m dataset show DATA house_0002-r01t000-000000 --picture sample.png",
             "sample.png",
         ),
     ),

@@ -5,7 +5,12 @@ import pytest
 from scenes import volume_of
 
 from world2minecraft.render import plan_view, preview
-from world2minecraft.render.cutaway import ceiling_level, without_ceiling, without_near_walls
+from world2minecraft.render.cutaway import (
+    ceiling_level,
+    without_ceiling,
+    without_near_walls,
+    without_partitions,
+)
 
 
 def furnished(blocks_per_metre=4.0):
@@ -66,6 +71,19 @@ def test_floor_seen_past_a_near_wall_is_no_room(joined):
     cut = without_near_walls(wider, 1, 1)
     assert not cut.states[19:, 5:].any()
     assert cut.states[0, 5:11, 1:-1].all()
+
+
+def test_a_far_wall_stays_behind_what_hid_the_floor():
+    opened = without_ceiling(furnished(12.5))
+    states, semantic = opened.states.copy(), opened.semantic.copy()
+    states[1:7, 0, 1:15], semantic[1:7, 0, 1:15] = 0, 0  # Under a counter along the start of x,
+    states[1:7, 1:8, 1:15], semantic[1:7, 1:8, 1:15] = 2, 10
+    states[1:4, 8:10, 1:15], semantic[1:4, 8:10, 1:15] = 2, 10  # and a cupboard above.
+    for near_z in (-1, 1):
+        far = without_near_walls(without_partitions(volume_of(states, semantic, 12.5)), 1, near_z)
+        assert far.states[0, 1:10, 1:15].all() and far.states[1:4, 8:10, 1:15].all()
+        near = without_near_walls(volume_of(states, semantic, 12.5), -1, near_z)
+        assert not near.states[0, 5:].any() and near.states[1:7, 1:8, 1:15].all()
 
 
 def test_the_plan_has_room_x_to_the_right_and_room_y_up():

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.classes import UNKNOWN, SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.render.standing import entities_within, kept_entities, moved_entities
 from world2minecraft.types import BlockVolume
@@ -100,7 +100,7 @@ def without_partitions(volume: BlockVolume) -> BlockVolume:
     """
     semantic = volume.semantic
     bpm = volume.blocks_per_metre
-    floor = _rooms(floor_columns(semantic), ROOM_M2 * bpm**2)
+    floor = room_columns(semantic, bpm)
     reach = max(2, round(0.5 * bpm))
     walls = np.isin(semantic, _WALLS).any(axis=1)  # A lintel too, over the floor of its doorway.
     between = walls & (_both_sides(floor, 0, reach) | _both_sides(floor, 1, reach))
@@ -125,7 +125,7 @@ def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVo
         near_z: the same for block z.
     """
     semantic = volume.semantic
-    floor = _rooms_alone(floor_columns(semantic), volume.blocks_per_metre)
+    floor = room_columns(semantic, volume.blocks_per_metre)
     outside = _beyond(floor, 0, near_x) | _beyond(floor, 1, near_z)
     level = floor_level(semantic) + 1 + round(RIM_M * volume.blocks_per_metre)
     drop = np.zeros(semantic.shape, bool)
@@ -150,9 +150,29 @@ def floor_level(semantic: np.ndarray) -> int:
 
 def floor_columns(semantic: np.ndarray) -> np.ndarray:
     """Return bool [X, Z]: columns with floor in them and no wall at a man's height."""
-    is_floor = (semantic == SemanticClass.FLOOR).any(axis=1)
-    is_wall = np.isin(semantic, _WALLS).mean(axis=1) > 0.4
-    return is_floor & ~is_wall
+    return (semantic == SemanticClass.FLOOR).any(axis=1) & ~_wall_columns(semantic)
+
+
+def _wall_columns(semantic: np.ndarray) -> np.ndarray:
+    """Return bool [X, Z]: columns that are wall or window for most of a man's height."""
+    return np.isin(semantic, _WALLS).mean(axis=1) > 0.4
+
+
+def room_columns(semantic: np.ndarray, blocks_per_metre: float) -> np.ndarray:
+    """Return bool [X, Z]: where rooms are: floor, and things under which nobody saw any.
+
+    Without what a scan saw of a floor past a door or under a wall, sills, hedges round a house. All
+    of the floor where nothing as large as a room is left.
+    """
+    floor = floor_columns(semantic)
+    named = (semantic >= SemanticClass.CHAIR) & (semantic != UNKNOWN)
+    things = named.any(axis=1) & ~_wall_columns(semantic)
+    side = 2 * int(STRIP_M / 2 * blocks_per_metre) + 1
+    wide = ndimage.binary_opening(floor | things, np.ones((side, side)))
+    parts, count = connected_parts(wide, corners=False)
+    floors = np.bincount(parts[floor], minlength=count + 1)
+    rooms = wide & (floors[parts] >= ROOM_M2 * blocks_per_metre**2)
+    return rooms if rooms.any() else floor
 
 
 def _beyond(floor: np.ndarray, axis: int, side: int) -> np.ndarray:
@@ -168,24 +188,6 @@ def _beyond(floor: np.ndarray, axis: int, side: int) -> np.ndarray:
         nearest = last[np.abs(last[None] - np.flatnonzero(empty)[:, None]).argmin(axis=1)]
         beyond[:, empty] = beyond[:, nearest]
     return np.moveaxis(beyond, 0, axis)
-
-
-def _rooms(floor: np.ndarray, least: float) -> np.ndarray:
-    """Return a plan's parts of at least so many columns: a sill outside a window is no room."""
-    parts, count = connected_parts(floor, corners=False)
-    sizes = np.bincount(parts.ravel(), minlength=count + 1)
-    return floor & (sizes[parts] >= least)
-
-
-def _rooms_alone(floor: np.ndarray, blocks_per_metre: float) -> np.ndarray:
-    """Return the floor of rooms: without what a scan saw of it past a door or under a wall.
-
-    All of it where nothing as large as a room is left.
-    """
-    side = 2 * int(STRIP_M / 2 * blocks_per_metre) + 1
-    wide = ndimage.binary_opening(floor, np.ones((side, side)))
-    rooms = _rooms(wide, ROOM_M2 * blocks_per_metre**2)
-    return rooms if rooms.any() else floor
 
 
 def _both_sides(floor: np.ndarray, axis: int, reach: int) -> np.ndarray:
