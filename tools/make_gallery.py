@@ -1,4 +1,4 @@
-"""Makes docs/gallery.md, its pictures and those of the tutorials, from scenes of our own alone.
+"""Makes docs/gallery.md and the pictures of it, the tutorials and the README, of own scenes alone.
 
     python tools/make_gallery.py            some minutes, 300 MB in a folder that is thrown away
 
@@ -136,6 +136,13 @@ TUTORIAL = Scene(
 )
 
 
+FRONT = (  # The README's picture: where each part lies, and what makes it.
+    ((0, 0), "w2m render demo --orbit --frames 4 --size 800x560 --out front/outside", 0),
+    ((804, 0), "w2m render demo --tour --frames 8 --size 480x278 --out front/day", 5),
+    ((804, 282), "w2m render demo --tour --frames 8 --size 480x278 --hour 22 --out front/night", 5),
+)
+
+
 def main() -> None:
     """Make the scenes, draw the pictures, write the page."""
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
@@ -146,7 +153,19 @@ def main() -> None:
             for shot in scene.shots:
                 _run(shot.command)
                 write_bytes(DOCS / place / f"{shot.stem}.jpg", small_jpeg(Path(shot.file)))
+        _run("w2m demo --out demo")
+        write_bytes(DOCS / "images" / "demo.jpg", front_picture())
     write_text(DOCS / "gallery.md", page())
+
+
+def front_picture() -> bytes:
+    """Return the demo's room from above, by day and by night, as one JPEG."""
+    whole = Image.new("RGB", (1284, 560), "white")
+    for place, command, take in FRONT:
+        _run(command)
+        folder = Path(shlex.split(command)[-1])
+        whole.paste(Image.open(folder / f"{take:06d}.png").convert("RGB"), place)
+    return _jpeg(whole)
 
 
 def small_jpeg(path: Path) -> bytes:
@@ -155,6 +174,10 @@ def small_jpeg(path: Path) -> bytes:
         return path.read_bytes()
     picture = Image.open(path).convert("RGB")
     picture.thumbnail((WIDEST_PX, WIDEST_PX), Image.Resampling.LANCZOS)
+    return _jpeg(picture)
+
+
+def _jpeg(picture: Image.Image) -> bytes:
     stream = io.BytesIO()
     picture.save(stream, "JPEG", quality=QUALITY, optimize=True)
     return stream.getvalue()
