@@ -207,6 +207,52 @@ def test_a_share_of_a_cell_is_so_many_of_its_64_sub_cells(share, least):
 def test_the_map_tells_the_memory_of_its_arrays():
     map_ = EvidenceMap(np.eye(4))
     before = map_.memory_mb
+    assert before * (1 << 20) == (3 + 2) * 8, "a fresh map has a corner and two counters"
     map_.blocks.reserve_records(1 << 20)
     per_record = (12 + 3 + 3 + 48) * 4 + 8  # Votes, colour, offsets, faces as float32; hits.
     assert map_.memory_mb - before == pytest.approx(per_record, rel=1e-3)
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize(("edge_m", "side", "cell"), [(0.0, 1, -1), (0.64, -1, 8)])
+def test_matter_behind_the_last_point_has_a_place_in_the_next_block(axis, edge_m, side, cell):
+    """The points lie a millimetre before a block's edge, their matter behind it."""
+    points_m = np.full((4, 3), 0.25, np.float32)
+    points_m[:, axis] = edge_m + 0.001 * side
+    points_m[:, (axis + 1) % 3] += np.arange(4) * 0.01
+    normals = np.zeros((4, 3), np.float32)
+    normals[:, axis] = side
+    map_ = EvidenceMap(np.eye(4), RULES)
+    map_.add(
+        PointEvidence("v", np.full(3, 0.25), points_m, np.full(4, 0.01, "f4"), normals=normals)
+    )
+    _, record, low = map_._dense()
+    (met,) = np.argwhere(record) + low
+    expected = np.full(3, 3)
+    expected[axis] = cell
+    np.testing.assert_array_equal(met, expected)
+
+
+def test_a_cell_that_one_view_met_last_is_carved_by_the_next():
+    """In either order: two views down one row, the second through the first's surface."""
+    rules = FuseParameters(min_points=1, min_share=0.0, clear_m=0.0, clear_growth=0.0)
+    views = [
+        PointEvidence(
+            "v", np.array([0.0, 0.04, 0.04]), np.array([[x, 0.04, 0.04]] * 2, np.float32),
+            np.full(2, 0.01, np.float32),
+        )
+        for x in (1.0, 2.0)
+    ]  # fmt: skip
+    found = []
+    for order in (views, views[::-1]):
+        map_ = EvidenceMap(np.eye(4), rules)
+        for one in order:
+            map_.add(one)
+        found.append(map_.fused().log_odds)
+    np.testing.assert_array_equal(*found)
+
+
+def test_a_map_of_nothing_is_one_cell_of_which_nothing_is_known():
+    log_odds, record, low = EvidenceMap(np.eye(4))._dense()
+    assert log_odds.shape == record.shape == (1, 1, 1)
+    assert log_odds.item() == record.item() == 0 and low.tolist() == [0, 0, 0]

