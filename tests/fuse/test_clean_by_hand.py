@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from world2minecraft.errors import UsageError
 from world2minecraft.fuse import CleanParameters, close_structure, read_out, remove_floaters
 from world2minecraft.fuse.clean import structure_layers
 from world2minecraft.types import FusedEvidence, OccupancyGrid
@@ -149,3 +150,17 @@ def test_a_colour_is_the_rounded_mean_of_the_points():
     colour_sum = np.array([[3, 511, 0], [7, 7, 7], [2, 1, 900]], np.float32).reshape(3, 1, 1, 3)
     grid = read_out(evidence_of([1.0, 1.0, 1.0], hits=hits, colour_sum=colour_sum))
     assert grid.colour.reshape(3, 3).tolist() == [[2, 255, 0], [7, 7, 7], [1, 0, 255]]
+
+
+@pytest.mark.parametrize(("width", "flat"), [(2, False), (3, True)])
+def test_a_strip_of_three_cells_is_flat_and_one_of_two_is_not(width, flat):
+    mask = np.zeros((5, 8, 60), bool)
+    mask[2, 2 : 2 + width, 2:58] = True
+    assert structure_layers(mask, 0) == ([2] if flat else [])
+
+
+def test_what_cannot_be_cleaned_is_refused():
+    CleanParameters(floater_cells=0, hole_m=0.0), CleanParameters(hole_m=10.0)
+    for wrong in ({"floater_cells": -1}, {"hole_m": -0.01}, {"hole_m": 10.01}):
+        with pytest.raises(UsageError, match="must be"):
+            CleanParameters(**wrong)

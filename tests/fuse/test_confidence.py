@@ -8,7 +8,7 @@ import pytest
 
 from world2minecraft.errors import DamagedFileError
 from world2minecraft.fuse import ConfidenceTable, calibrate, confidence, confidence_table
-from world2minecraft.fuse.confidence import _neighbours, occupied_features
+from world2minecraft.fuse.confidence import _neighbours, free_features, occupied_features
 from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 TABLE = ConfidenceTable(
@@ -206,3 +206,11 @@ def test_a_damaged_table_says_which_file(tmp_path, monkeypatch):
 def test_a_table_of_the_wrong_size_is_refused():
     with pytest.raises(ValueError, match="occupied must be 8 finite numbers"):
         ConfidenceTable((1.0,), TABLE.classes, TABLE.free, TABLE.completed, True)
+
+
+def test_log_odds_of_a_free_cell_count_up_to_six_either_way():
+    grid, evidence = scene(3)
+    log_odds = np.resize([-9.0, -6.0, 5.5, 8.0], grid.shape).astype(np.float16)
+    rows = free_features(grid, replace(evidence, log_odds=log_odds), np.ones(grid.shape, bool))
+    expected = np.resize([-1.0, -1.0, 5.5 / 6, 1.0], grid.shape).ravel()
+    np.testing.assert_allclose(rows[:, 1], expected, rtol=1e-6)

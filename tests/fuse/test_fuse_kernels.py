@@ -8,7 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from world2minecraft.coordinates import rotation_about_z
 from world2minecraft.fuse import EvidenceMap, FuseParameters, fuse_views
+from world2minecraft.fuse.kernels import face_normals, to_cells
 from world2minecraft.types import PointEvidence, Scan
 
 PARAMETERS = FuseParameters(min_share=0.2)
@@ -159,3 +161,23 @@ def test_fuse_views_reports_progress_to_the_end(items, told):
     views = (view(n) for n in range(items))
     fuse_views(views, scan, progress=lambda *call: calls.append(call[:3]))
     assert calls == [("fuse", done, 3) for done in told]
+
+
+def test_points_are_carried_by_the_transform_and_bounded():
+    points_m = np.random.default_rng(0).normal(size=(9, 3)).astype(np.float32)
+    carry = np.random.default_rng(1).normal(size=(3, 4))
+    cells, low, high = to_cells(points_m, carry)
+    np.testing.assert_allclose(cells, points_m @ carry[:, :3].T + carry[:, 3], rtol=1e-5, atol=1e-5)
+    np.testing.assert_allclose([low, high], [cells.min(axis=0), cells.max(axis=0)], rtol=1e-6)
+
+
+@pytest.mark.parametrize("count", [1, 4])
+def test_a_normal_is_turned_and_where_none_is_given_it_faces_the_camera(count):
+    points = np.zeros((count, 3), np.float32)
+    normals = np.array([[1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, 0]], np.float32)[:count]
+    turn = rotation_about_z(90)[:3, :3]
+    camera = np.array([0.0, 0.0, 5.0])
+    expected = np.array([[0, 1, 0], [1, 0, 0], [0, 0, 1], [0, 0, 1]])[:count]
+    np.testing.assert_allclose(face_normals(points, normals, camera, turn), expected, atol=1e-6)
+    none = face_normals(points, normals[:0], camera, turn)
+    np.testing.assert_allclose(none, [[0, 0, 1]] * count, atol=1e-6)

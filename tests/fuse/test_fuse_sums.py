@@ -256,3 +256,20 @@ def test_a_map_of_nothing_is_one_cell_of_which_nothing_is_known():
     log_odds, record, low = EvidenceMap(np.eye(4))._dense()
     assert log_odds.shape == record.shape == (1, 1, 1)
     assert log_odds.item() == record.item() == 0 and low.tolist() == [0, 0, 0]
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize(("side", "way", "carved"), [(1, 12.0, 12), (-1, 12.0, 12), (1, 0.9, 1)])
+def test_a_ray_along_an_axis_carves_every_cell_before_its_surface(axis, side, way, carved):
+    """From the middle of a cell, ``way`` cells far; the surface's own cell is left alone."""
+    rules = FuseParameters(min_points=1, min_share=0.0, clear_m=0.0, clear_growth=0.0)
+    camera_m = np.full(3, 0.04)
+    point_m = camera_m.copy()
+    point_m[axis] += side * way * rules.voxel_m
+    map_ = EvidenceMap(np.eye(4), rules)
+    points_m = np.array([point_m] * 2, np.float32)
+    map_.add(PointEvidence("v", camera_m, points_m, np.full(2, 0.01, np.float32)))
+    log_odds, _, low = map_._dense()
+    found = np.argwhere(log_odds < 0) + low
+    assert sorted(side * found[:, axis]) == list(range(carved))
+    assert not np.delete(found, axis, axis=1).any()
