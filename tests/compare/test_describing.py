@@ -47,7 +47,7 @@ SCENE = ComparedScene(
 WORDS = (
     "A bedroom of 4.0 m from west to east and 3.0 m from south to north, 2.6 m high. There is a "
     "window of 1.5 m in the north wall. There is one double bed (1.6 m wide, 2.0 m deep, 0.5 m "
-    "high) at the west wall. There are two of this: nightstand (0.5 m wide, 0.4 m deep, 0.5 m "
+    "high) at the west wall. There are two nightstands (0.5 m wide, 0.4 m deep, 0.5 m "
     "high) at the west wall. There is one wardrobe (1.2 m wide, 0.6 m deep, 2.0 m high) at the "
     "south wall.\n"
 )

@@ -214,8 +214,8 @@ def test_the_same_seed_gives_the_same_bytes_and_another_gives_others():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({"rooms": 2}, "rooms must be from 3 to 14 on 1 storeys, not 2"),
-        ({"rooms": 15}, "rooms must be from 3 to 14 on 1 storeys, not 15"),
+        ({"rooms": 2}, "rooms must be from 3 to 14 on 1 storey, not 2"),
+        ({"rooms": 15}, "rooms must be from 3 to 14 on 1 storey, not 15"),
         ({"rooms": 3, "storeys": 2}, "rooms must be from 4 to 14 on 2 storeys, not 3"),
         ({"storeys": 3}, "storeys must be 1 or 2, not 3"),
         ({"clutter": 1.5}, "clutter must be from 0 to 1, not 1.5"),

@@ -175,9 +175,8 @@ def _where(item: Any, room: Layout) -> str:
     turn = np.abs([[np.cos(angle), np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     side, away = _nearest(np.asarray(item.center_m[:2]), room, turn @ half)
     bottom = float(item.center_m[2] - item.size_m[2] / 2) - room.floor_z_m
-    hung = " up on it" if bottom > 1.0 else ""
     if away <= AT_WALL_M:
-        return f"at the {side} wall{hung}"
+        return f"{'high on' if bottom > 1.0 else 'at'} the {side} wall"
     return "hanging in the room" if bottom > 1.0 else f"{away:.1f} m from the {side} wall"
 
 
@@ -197,4 +196,25 @@ def _size_words(item: Any) -> str:
 
 def _count(number: int, name: str) -> str:
     told = _COUNTS[number] if number < len(_COUNTS) else str(number)
-    return f"{told} {name}" if number == 1 else f"{told} of this: {name}"
+    return f"{told} {name if number == 1 else plural_of(name)}"
+
+
+def plural_of(name: str) -> str:
+    """Return the plural of a thing's name.
+
+    Example:
+        >>> [plural_of(one) for one in ("box", "wall shelf", "chest of drawers", "curtains")]
+        ['boxes', 'wall shelves', 'chests of drawers', 'curtains']
+    """
+    noun, of, rest = name.partition(" of ")
+    if noun.endswith("s") and not noun.endswith("ss"):
+        return name  # It is one already, such as stairs.
+    if noun.endswith(("ss", "x", "ch", "sh")):
+        noun += "es"
+    elif noun.endswith("y") and noun[-2:-1] not in "aeiou":
+        noun = noun[:-1] + "ies"
+    elif noun.endswith("lf"):
+        noun = noun[:-1] + "ves"
+    else:
+        noun += "s"
+    return noun + of + rest

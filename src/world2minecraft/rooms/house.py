@@ -58,7 +58,8 @@ def check_house(seed: int, rooms: int, storeys: int, clutter: float) -> None:
     least = max(ROOMS[0], 2 * storeys)
     if not least <= rooms <= ROOMS[1]:
         raise ValueError(
-            f"rooms must be from {least} to {ROOMS[1]} on {storeys} storeys, not {rooms}"
+            f"rooms must be from {least} to {ROOMS[1]} on {storeys} "
+            f"{'storey' if storeys == 1 else 'storeys'}, not {rooms}"
         )
     if not 0 <= clutter <= 1:
         raise ValueError(f"clutter must be from 0 to 1, not {clutter}")
