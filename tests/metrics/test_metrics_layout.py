@@ -172,3 +172,16 @@ def test_only_what_no_structure_carries_floats():
 
 def test_nothing_floats_in_an_empty_grid():
     assert floaters(np.zeros((2, 2, 2), np.uint8)).parts == 0
+
+
+def test_an_outline_lies_in_a_plane():
+    with pytest.raises(ValueError, match="floor_polygon_m must be"):
+        out_of_bounds([], np.zeros((4, 3)))
+
+
+def test_a_corner_that_is_told_twice_changes_nothing():
+    twice = np.repeat(L_ROOM, 2, axis=0)
+    points = np.array([[1, 1], [3, 3], [2.02, 3.0], [3.9, 1.9], [-0.01, 0.0]])
+    for tolerance_m in (0.0, 0.05):
+        expected = inside_polygon(points, L_ROOM, tolerance_m)
+        np.testing.assert_array_equal(inside_polygon(points, twice, tolerance_m), expected)

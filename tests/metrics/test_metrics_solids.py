@@ -230,3 +230,18 @@ def test_kept_is_what_a_slow_reading_keeps(blocks_per_metre, seed):
             )
             kept = slow_share_shown(volume, one, 0.08) >= least
             assert kept_objects(volume, [one], grid, least) == ([0] if kept else [])
+
+
+def test_own_cells_of_a_box_that_reaches_out_of_the_grid():
+    grid = grid_with({7: [(0, 0, 0), (1, 0, 0), (39, 39, 19)]})
+    far = grid.origin_m + np.array([40, 40, 20]) * grid.voxel_m
+    for center, cells in ((grid.origin_m, [[0, 0, 0], [1, 0, 0]]), (far, [[39, 39, 19]])):
+        size = np.full(3, 6 * grid.voxel_m)
+        found = own_cells(Placement(7, 11, "cells", center, size, 0, 0.0), grid)
+        assert found.tolist() == cells
+
+
+def test_parts_that_are_apart_meet_by_nothing():
+    one = np.array([[[0, 0, 0], [1, 1, 1]]], float)
+    assert depth_m(one, one + 0.75) == 0.25
+    assert depth_m(one, one + 5) == 0.0

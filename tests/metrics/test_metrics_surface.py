@@ -98,3 +98,10 @@ def test_wrong_distances_are_refused(wrong):
 def test_different_shapes_are_refused():
     with pytest.raises(ValueError, match="same shape"):
         count_surface(np.ones((2, 2, 2), bool), np.ones((2, 2, 3), bool))
+
+
+@given(SETS, SETS, SETS)
+def test_free_space_is_asked_for_within_the_mask_alone(free, true, mask):
+    asked = [tuple(cell) for cell in np.argwhere(true) if mask[tuple(cell)]]
+    expected = np.mean([free[cell] for cell in asked]) if asked else 1.0
+    assert free_space_recall(free, true, mask) == pytest.approx(expected)

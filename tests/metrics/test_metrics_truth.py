@@ -98,3 +98,24 @@ def test_a_truth_coarser_than_the_grid_is_refused():
     fine = np.zeros((2, 2, 2), np.uint8)
     with pytest.raises(ValueError, match="voxel_m must be above 0 and at most 0.05"):
         carry_truth(fine, 0.1, np.zeros(3), np.eye(4), (1, 1, 1), np.zeros(3), 0.05)
+
+
+@settings(max_examples=10)
+@given(st.integers(0, 99), st.floats(5, 40), st.floats(5, 40), st.permutations(range(3)))
+def test_fast_and_slow_agree_in_a_frame_that_is_tilted_every_way(seed, first_deg, second_deg, axes):
+    swap = np.eye(4)
+    swap[:3, :3] = np.eye(3)[list(axes)]
+    tilt = swap @ rotation_about_z(first_deg) @ swap.T @ rotation_about_z(second_deg)
+    tilt = np.roll(np.roll(rotation_about_z(second_deg)[:3, :3], 1, 0), 1, 1) @ tilt[:3, :3]
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = tilt, [0.03, 0.013, -0.02]
+    fine, low = random_fine(seed), np.array([-0.08, 0.0, -0.08])
+    found = carry_truth(fine, FINE_M, np.zeros(3), pose, (4, 3, 3), low, COARSE_M)
+    np.testing.assert_array_equal(found, slow_truth(fine, np.zeros(3), pose, (4, 3, 3), low))
+
+
+def test_a_truth_of_cells_without_a_size_is_refused():
+    fine = np.zeros((2, 2, 2), np.uint8)
+    for wrong in (0.0, -0.02):
+        with pytest.raises(ValueError, match="voxel_m must be above 0"):
+            carry_truth(fine, wrong, np.zeros(3), np.eye(4), (1, 1, 1), np.zeros(3), COARSE_M)

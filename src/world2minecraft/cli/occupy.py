@@ -92,7 +92,7 @@ def run(
         if colour is not None:
             raise typer.BadParameter("--colour goes with one depth picture and its --grid")
         cells = _of_capture(source, out, place, predictor, labels, fov, keep)
-    for line in told(out, cells, grid):
+    for line in told(source, out, cells, grid):
         print(line)
 
 
@@ -210,8 +210,8 @@ def _write_frame(out: Path, cells: "SaidCells", place: "GridPlace") -> None:
     write_cells(out, cells, "xzy", camera_to_world=place.camera_to_world)
 
 
-def told(out: Path, cells: "SaidCells", grid: Path | None) -> list[str]:
-    """Return what is printed of cells."""
+def told(source: Path, out: Path, cells: "SaidCells", grid: Path | None) -> list[str]:
+    """Return what is printed of the cells of a capture or a photo."""
     import numpy as np
 
     from world2minecraft.classes import CLASS_NAMES
@@ -222,9 +222,11 @@ def told(out: Path, cells: "SaidCells", grid: Path | None) -> list[str]:
     )
     sides = " x ".join(map(str, cells.labels.shape))
     next_step = f"w2m evaluate occupancy {out} {grid} --protocol monoscene"
+    if grid is None:
+        next_step = f"w2m reconstruct {source} --out OUT     makes a world of the same"
     return [
         f"{out}: {found}" if found else f"{out}: nothing but empty cells",
         f"{cells.observed.mean():.0%} of its {sides} cells were seen; the rest is a network's "
         "guess, or unknown",
-        f"next: {next_step}" if grid else "next: w2m reconstruct builds of the same a world",
+        f"next: {next_step}",
     ]
