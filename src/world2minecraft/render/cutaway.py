@@ -168,7 +168,7 @@ def room_columns(semantic: np.ndarray, blocks_per_metre: float) -> np.ndarray:
     named = (semantic >= SemanticClass.CHAIR) & (semantic != UNKNOWN)
     things = named.any(axis=1) & ~_wall_columns(semantic)
     side = 2 * int(STRIP_M / 2 * blocks_per_metre) + 1
-    wide = ndimage.binary_opening(floor | things, np.ones((side, side)))
+    wide = np.asarray(ndimage.binary_opening(floor | things, np.ones((side, side))), bool)
     parts, count = connected_parts(wide, corners=False)
     floors = np.bincount(parts[floor], minlength=count + 1)
     rooms = wide & (floors[parts] >= ROOM_M2 * blocks_per_metre**2)
