@@ -154,3 +154,4 @@ def test_the_embodied_network_trains_on_sequences_by_itself(tmp_path):
     odd = replace(config, network="monoscene", frames=3)
     with pytest.raises(UsageError, match="monoscene looks at one frame; frames is for embodied"):
         train_run(odd, tmp_path / "odd", device="cpu", cache=cache)
+    assert not (tmp_path / "odd").exists()

@@ -155,6 +155,15 @@ def test_a_folder_of_another_run_is_refused(whole, store, cache):
         trained(toy_config(store, steps=9), whole, cache)
 
 
+def test_a_run_that_cannot_begin_leaves_nothing_behind(store, cache, tmp_path):
+    nowhere = toy_config(tmp_path / "none")
+    with pytest.raises(InputError):
+        trained(nowhere, tmp_path / "run", cache)
+    assert not (tmp_path / "run").exists()
+    trained(toy_config(store, steps=1), tmp_path / "run", cache)
+    assert read_config(tmp_path / "run" / "run.yaml").steps == 1
+
+
 def test_another_seed_is_another_run(whole, store, cache, tmp_path):
     trained(toy_config(store, seed=1), tmp_path / "run", cache)
     assert (tmp_path / "run/last.safetensors").read_bytes() != (

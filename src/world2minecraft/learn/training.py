@@ -18,7 +18,7 @@ import platform
 import time
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -106,19 +106,23 @@ def train_run(
         InputError, UsageError: the sets or the settings cannot be used, or the loss came to be no
         number.
     """
+    if config.frames > 1 and config.network not in OWN_FRAMES:
+        raise UsageError(f"{config.network} looks at one frame; frames is for embodied")
     check_folder(config, folder)
     folder.mkdir(parents=True, exist_ok=True)
     lock = Lock(folder / ".lock", "trained")
     lock.take()
     try:
-        write_config(folder / RUN, config)
         if config.threads:
             torch.set_num_threads(config.threads)
         data = open_run_data(config, cache, progress)
+        write_config(folder / RUN, config)  # Only of what can be trained.
         state = _fit(config, folder, data, device_named(device), progress)
         return Trained(folder, state, data)
     finally:
         lock.remove()
+        with suppress(OSError):
+            folder.rmdir()  # Where nothing came of it.
 
 
 def check_folder(config: RunConfig, folder: Path) -> None:
@@ -152,8 +156,6 @@ def _fit(
             _finish_again(config, folder, device, state)
         return state
     network = network_of(config)
-    if config.frames > 1 and config.network not in OWN_FRAMES:
-        raise UsageError(f"{config.network} looks at one frame; frames is for embodied")
     weights = torch.from_numpy(class_weights(data.counts, config.class_weights))
     steps = Steps(network, config, weights)
     steps.first_step = state.step
