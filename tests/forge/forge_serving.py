@@ -17,7 +17,7 @@ from world2minecraft.forge.sources import Opened
 HANG_S = 180.0  # No measure of speed: only what never answers is given up.
 
 
-def small_editor(shape=(12, 10, 8), folder=Path("OUT")) -> Editor:
+def small_editor(shape=(12, 10, 8), folder=Path("none such/OUT")) -> Editor:
     """A floor and a wall, without objects."""
     labels = np.zeros(shape, np.uint8)
     labels[:, :, 0], labels[0] = 2, 3
