@@ -12,7 +12,9 @@ from world2minecraft.fuse.settle import (
     SOLID,
     SPILL_BEFORE,
     SPILL_BEHIND,
+    _joined_plane,
     _spill_share,
+    _weight_before,
     inherit,
     settle,
 )
@@ -278,3 +280,36 @@ def test_points_of_spill_keep_their_number_and_their_place(seed):
         np.testing.assert_allclose(votes[row], of_votes)
         np.testing.assert_allclose(colour_sum[row], of_colour)
         np.testing.assert_allclose(offset_sum[row] + hits[row] * middle_m, of_place, atol=1e-3)
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("sigmas_m", [(0.0, 0.0), (0.01, 0.0), (0.0, 0.01)])
+@pytest.mark.parametrize("gap_m", [0.01, 0.03, 0.06])
+def test_planes_of_neighbours_join_as_near_as_noise_explains(axis, sigmas_m, gap_m):
+    """Two cells, one behind the other along each axis; their planes lie ``gap_m`` apart."""
+    record = np.zeros((3, 3, 3), np.int64)
+    beside = [1, 1, 1]
+    beside[axis] = 2
+    record[1, 1, 1], record[tuple(beside)] = 1, 2
+    faces = np.zeros((3, 6, 8))
+    face = 2 * axis + 1
+    for number, sigma_m in enumerate(sigmas_m, start=1):
+        faces[number, face, 0], faces[number, face, 7] = 1.0, sigma_m
+        faces[number, face, 4 + axis] = 1.0
+    faces[2, face, 1 + axis] = gap_m - VOXEL_M
+    plane = np.zeros(7)
+    _joined_plane(1, 1, 1, face, record, faces, VOXEL_M, RULES, plane)
+    joined = gap_m < MERGE_M + MERGE_SIGMAS * max(sigmas_m)
+    assert plane[axis] == pytest.approx(gap_m / 2 if joined else 0.0)
+
+
+def test_the_weight_before_a_cell_is_that_of_the_cell_which_its_face_looks_at():
+    record = np.arange(27).reshape(3, 3, 3)
+    faces = np.random.default_rng(0).random((27, 6, 8))
+    for cell in np.ndindex(3, 3, 3):
+        for face in range(6):
+            before = np.array(cell)
+            before[face // 2] += 1 if face % 2 else -1
+            inside = (before >= 0).all() and (before < 3).all()
+            expected = faces[record[tuple(before)], face, 0] if inside else 0.0
+            assert _weight_before(*cell, face, record, faces) == expected
