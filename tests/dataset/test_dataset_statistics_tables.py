@@ -1,5 +1,6 @@
 import json
 import re
+import sys
 from dataclasses import replace
 
 import pytest
@@ -7,6 +8,7 @@ from PIL import Image
 from tests.dataset.exchange import synthetic
 from tests.dataset.samples import occ_labels, random_labels, sample
 
+from world2minecraft.classes import CLASS_COLOURS, CLASS_NAMES
 from world2minecraft.coordinates import invert_rigid
 from world2minecraft.dataset.exporters import export_samples
 from world2minecraft.dataset.formats.boxes import cells_in_image
@@ -23,7 +25,7 @@ from world2minecraft.dataset.statistics.reading import rooms_of, statistics_of, 
 from world2minecraft.dataset.statistics.tables import class_shares, columns, escape, short
 from world2minecraft.dataset.statistics.values import FineCount, SceneCount
 from world2minecraft.dataset.store import write_store
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.errors import InputError, MissingExtraError, UsageError
 
 SMALL = DatasetStatistics(
     "houses & more",
@@ -126,8 +128,12 @@ def test_shares_of_nothing_are_nothing_and_columns_line_up():
 
 @pytest.mark.parametrize(
     "statistics",
-    [SMALL, replace(SMALL, fine=(), scenes=(), class_voxels=(0,) * 12)],
-    ids=["some", "nothing"],
+    [
+        SMALL,
+        replace(SMALL, fine=(), scenes=(), class_voxels=(0,) * 12),
+        replace(SMALL, name="a $ and a_ $"),
+    ],
+    ids=["some", "nothing", "dollars"],
 )
 def test_plots_are_pictures_and_the_same_each_time(tmp_path, statistics):
     first = write_plots(statistics, tmp_path / "a")
@@ -142,11 +148,24 @@ def test_plots_are_pictures_and_the_same_each_time(tmp_path, statistics):
         assert Image.open(one).size[0] == 1520
 
 
+COLOURS = {tuple(colour) for colour in CLASS_COLOURS[1:]}
+WALL = tuple(CLASS_COLOURS[CLASS_NAMES.index("wall")])
+
+
 def test_the_longest_bar_is_the_commonest_classs(tmp_path):
     place = write_plots(SMALL, tmp_path)[0]
     picture = Image.open(place).convert("RGB")
-    row = [picture.getpixel((x, 2 * (66 + 15))) for x in range(picture.width)]
-    assert row.count((158, 216, 229)) > 600  # Wall, by its colour, in the first row.
+    wide = [picture.crop((0, y, picture.width, y + 1)) for y in range(picture.height)]
+    counts = [{colour: n for n, colour in row.getcolors(4096)} for row in wide]
+    bars = [next((c for c, n in row.items() if c in COLOURS and n > 9), None) for row in counts]
+    assert next(colour for colour in bars if colour) == WALL
+    assert max(row.get(WALL, 0) for row in counts) > 600
+
+
+def test_plots_without_matplotlib_name_the_extra(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib.style", None)
+    with pytest.raises(MissingExtraError, match=r"pip install 'world2minecraft\[data\]'"):
+        write_plots(SMALL, tmp_path)
 
 
 @pytest.fixture
