@@ -1,19 +1,15 @@
 """Rotations as phones and data sets state them: quaternions x, y, z, w."""
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 
 def rotation_of(quaternion: np.ndarray) -> np.ndarray:
     """Return the 3x3 rotation of a quaternion x, y, z, w of any length; NaN where it is 0."""
-    with np.errstate(all="ignore"):
-        x, y, z, w = np.asarray(quaternion, np.float64) / np.linalg.norm(quaternion)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    length = np.linalg.norm(quaternion)
+    if not 0 < length < np.inf:  # scipy raises; captures leave out a frame whose pose is NaN.
+        return np.full((3, 3), np.nan)
+    return Rotation.from_quat(np.asarray(quaternion, np.float64) / length).as_matrix()
 
 
 def pose_of(translation: np.ndarray, quaternion: np.ndarray) -> np.ndarray:
