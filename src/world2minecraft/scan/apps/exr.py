@@ -5,6 +5,10 @@ or half. The first channel is the depth in metres. The format is described at op
 but its public description is followed here.
 """
 
+# OpenEXR's own library writes our pictures, but does not read those of strangers: it tells of each
+# damaged file on stderr by itself, where one line of ours is due, and to see whether a file is
+# whole it unpacks all of it.
+
 import struct
 import zlib
 from dataclasses import dataclass
