@@ -6,6 +6,8 @@ one who gave the order still lives *after* it has taken hold: so whoever takes t
 then finds the file free knows that nobody writes there any more.
 """
 
+# Not by filelock: its locks that readers share are databases of SQLite beside the data set.
+
 import os
 import time
 from collections.abc import Callable, Iterator

@@ -14,10 +14,11 @@ from contextlib import contextmanager
 from io import FileIO
 from pathlib import Path
 
+from filelock import lock_descriptor
+
 from world2minecraft.dataset.store.stored import stored_samples
 from world2minecraft.dataset.store.tar import end_bytes, member_bytes
 from world2minecraft.errors import ConflictError, OutputError
-from world2minecraft.lock import try_lock
 
 PART = ".part"
 PATIENCE_S = 60.0  # A worker whose builder was killed ends with its sample.
@@ -137,7 +138,7 @@ def _locked(part: Path) -> FileIO | None:
     while time.monotonic() < until:
         handle = os.open(part, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o644)
         stream = os.fdopen(handle, "r+b", buffering=0)
-        if try_lock(handle) and _is_at(handle, part):
+        if lock_descriptor(handle, blocking=False) and _is_at(handle, part):
             if not part.with_name(part.name.removesuffix(PART)).exists():
                 return stream
             stream.close()

@@ -4,6 +4,8 @@ The game keeps the first byte of the file locked as long as it has the world ope
 can be taken, nobody has it; while it is held here, the game refuses to open the world.
 """
 
+# Not by filelock: it locks by flock, and Java, with it the game, by POSIX locks, which do not meet.
+
 import errno
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
