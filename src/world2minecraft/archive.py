@@ -8,7 +8,9 @@ members that swell beyond reason are refused before anything is unpacked.
 
 import io
 import stat
+import struct
 import zipfile
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -17,8 +19,19 @@ from pathlib import Path, PurePosixPath
 from types import SimpleNamespace
 
 from world2minecraft.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.files import UNREADABLE
 
+# What zipfile and numpy raise over a damaged archive; RuntimeError is an encrypted member.
+UNREADABLE = (
+    zipfile.BadZipFile,
+    zlib.error,
+    ValueError,
+    EOFError,
+    OSError,
+    NotImplementedError,
+    RuntimeError,
+    struct.error,
+    OverflowError,
+)
 MAX_MEMBERS = 300_000  # An hour of frames with depth and confidence beside them.
 MAX_MEMBER_BYTES = 1 << 30
 MAX_RATIO = 1000  # The most that deflate can do is about 1032; real pictures stay under 20.

@@ -7,17 +7,16 @@ renamed, so that a crash leaves the old file or the new one. Time stamps inside 
 import io
 import json
 import os
-import struct
 import tempfile
 import zipfile
-import zlib
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from world2minecraft.archive import UNREADABLE, ArchivePath
 from world2minecraft.errors import (
     DamagedFileError,
     InputError,
@@ -26,22 +25,7 @@ from world2minecraft.errors import (
     one_line,
 )
 
-if TYPE_CHECKING:
-    from world2minecraft.archive import ArchivePath
-
 FIXED_DATE = (2020, 1, 1, 0, 0, 0)
-# What zipfile and numpy raise over a damaged archive; RuntimeError is an encrypted member.
-UNREADABLE = (
-    zipfile.BadZipFile,
-    zlib.error,
-    ValueError,
-    EOFError,
-    OSError,
-    NotImplementedError,
-    RuntimeError,
-    struct.error,
-    OverflowError,
-)
 MAX_ARRAY_BYTES = 4 << 30  # A 400 x 400 x 100 grid of FusedEvidence takes about 1 GiB.
 
 

@@ -45,7 +45,7 @@ from world2minecraft.label import (
     without_wall_guesses,
 )
 from world2minecraft.label.completion_net import LEARNT_VOXEL_M, VOXEL_TOLERANCE
-from world2minecraft.minecraft.formats import WriteOptions
+from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.parameters import Parameters
 from world2minecraft.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
 

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from world2minecraft.build import BuildParameters, build_volume
 from world2minecraft.build.meanings import Meaning, labelled, meanings_of
-from world2minecraft.build.own_furniture import furniture_of, piece_of
+from world2minecraft.build.own_furniture import furniture_of
 from world2minecraft.build.palette_files import palette_of
 from world2minecraft.build.palettes import PALETTE_FILES, load_palette
+from world2minecraft.build.pieces import piece_of
 from world2minecraft.build.restricting import UNSEEN, nearest_allowed
 from world2minecraft.classes import CLASS_NAMES, SemanticClass
 from world2minecraft.errors import InputError, UnknownNameError, UsageError

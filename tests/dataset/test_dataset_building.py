@@ -42,7 +42,8 @@ from world2minecraft.errors import ConflictError, OutputError, UsageError
 from world2minecraft.lock import Lock
 from world2minecraft.minecraft.formats import write_blocks
 from world2minecraft.render import LookLight, prepare_scene, render_volume
-from world2minecraft.render.views import Shot, camera_of, exposed
+from world2minecraft.render.views import Shot, camera_of
+from world2minecraft.render.views.frames import exposed
 
 REGION = RegionRule("paper", (20, 20, 12), 0.25)
 RECIPE = Recipe(camera=camera_of(64, 48, vertical_fov_deg=70), region=REGION)

@@ -7,7 +7,8 @@ from house_of_blocks import Blocks, cottage
 from world2minecraft.classes import CLASS_NAMES, class_id
 from world2minecraft.dataset.source import open_scene_source
 from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.minecraft.formats import WriteOptions, write_blocks
+from world2minecraft.minecraft.file_format import WriteOptions
+from world2minecraft.minecraft.formats import write_blocks
 
 MODERN = ("modern_apartment", "modern_cottage", "modern_library", "modern_restaurant")
 EMPTY_BLOCKS = ("air", "water", "barrier", "light", "structure_void")

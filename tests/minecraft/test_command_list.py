@@ -15,7 +15,8 @@ from world2minecraft.minecraft.commands import reading as command_reading
 from world2minecraft.minecraft.commands.reading import read_command_list, read_datapack
 from world2minecraft.minecraft.commands.snbt import SnbtReader, read_snbt
 from world2minecraft.minecraft.commands.writing import snbt
-from world2minecraft.minecraft.formats import WriteOptions, read_blocks, write_blocks
+from world2minecraft.minecraft.file_format import WriteOptions
+from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 from world2minecraft.types import AIR, Entity

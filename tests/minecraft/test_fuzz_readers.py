@@ -9,7 +9,8 @@ from block_volumes import furnished_volume, random_volume
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.minecraft.formats import WriteOptions, write_blocks
+from world2minecraft.minecraft.file_format import WriteOptions
+from world2minecraft.minecraft.formats import write_blocks
 from world2minecraft.minecraft.nbt import Byte, Long, Short, pack_gzip, write_nbt
 
 COUNT = 4  # Broken copies of each source here; ``benchmarks.check_fuzz`` makes as many as asked.

@@ -8,7 +8,8 @@ from block_volumes import volume_of
 
 from world2minecraft.errors import UsageError
 from world2minecraft.minecraft.commands.datapack import datapack_files
-from world2minecraft.minecraft.formats import WriteOptions, read_blocks, write_blocks
+from world2minecraft.minecraft.file_format import WriteOptions
+from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.nbt import Byte, read_nbt, write_nbt
 from world2minecraft.minecraft.server.plan import plan_build

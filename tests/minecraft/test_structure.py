@@ -14,7 +14,8 @@ from nbt_equality import same_block_entities, same_entities
 
 from world2minecraft.errors import InputError, LimitError, UsageError
 from world2minecraft.minecraft.block_list import _SIZES, skip_value
-from world2minecraft.minecraft.formats import WriteOptions, read_blocks, write_blocks
+from world2minecraft.minecraft.file_format import WriteOptions
+from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import (
     Byte,

@@ -14,7 +14,6 @@ from world2minecraft.render.views import (
     GamePose,
     Shot,
     camera_of,
-    frames,
     game_pose_of,
     orbit_shots,
     plan_tour,
@@ -23,6 +22,7 @@ from world2minecraft.render.views import (
     with_open_doors,
     write_lines,
 )
+from world2minecraft.render.views.frames import frames
 from world2minecraft.render.views.heading import TURN_COST, _best_sequence
 from world2minecraft.render.views.hiding import hiding_of
 from world2minecraft.render.views.orbit import corner_points_m

@@ -4,7 +4,8 @@ import numpy as np
 from scenes import volume_of
 
 from world2minecraft.coordinates import look_at
-from world2minecraft.render.views import DrawOptions, camera_of, orbit_shots
+from world2minecraft.render.views import camera_of, orbit_shots
+from world2minecraft.render.views.frames import DrawOptions
 from world2minecraft.render.views.opened import OpenedBuild, has_ceiling
 from world2minecraft.render.views.studio import GROUND, studio_of
 from world2minecraft.render.views.turntable import turntable

@@ -18,29 +18,10 @@ from world2minecraft.coordinates import cells_to_block_axes
 from world2minecraft.furniture import Idiom
 from world2minecraft.furniture.idiom import block_size
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colour_of, colours_of, nearest_oklab
+from world2minecraft.minecraft.colours import DYES, WOODS, colour_of, colours_of, nearest_oklab
 from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.types import Placement
 
-WOODS = ("oak", "spruce", "birch", "jungle", "acacia", "dark_oak", "mangrove")
-DYES = (
-    "white",
-    "light_gray",
-    "gray",
-    "black",
-    "brown",
-    "red",
-    "orange",
-    "yellow",
-    "lime",
-    "green",
-    "cyan",
-    "light_blue",
-    "blue",
-    "purple",
-    "magenta",
-    "pink",
-)
 _KEPT_DYES = ("white",)  # A design's own white is meant: a pillow, a sheet.
 LIFTED_UNDER, HIGH_M = (
     1.5,

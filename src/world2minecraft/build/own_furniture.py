@@ -6,80 +6,24 @@ there. Which way a block faces, and how it joins those beside it, stands in the 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
-from world2minecraft.build.idioms import DYES, WOODS, idiom_box
+from world2minecraft.build.idioms import idiom_box
+from world2minecraft.build.pieces import FACINGS, Piece
 from world2minecraft.coordinates import cells_to_block_axes
 from world2minecraft.furniture import Idiom, template
 from world2minecraft.furniture.idiom import block_size, laid
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Span, Template
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.metrics.solids import own_cells
-from world2minecraft.minecraft.colours import colours_of, nearest_oklab
+from world2minecraft.minecraft.colours import DYES, WOODS, colours_of, nearest_oklab
 from world2minecraft.minecraft.states import BlockState, parse_state
 from world2minecraft.types import OccupancyGrid, Placement
 
-FILLS = ("one", "row", "floor", "box")
-# Where a block's facing looks, of a piece that looks east.
-FACINGS = {"front": "east", "back": "west", "left": "north", "right": "south"}
-JOINS = ("sides", "flags", "shape")
 SLACK = 0.7  # Blocks by which an object may be larger than a piece of a fixed size.
 HIGHEST = 1.7  # Blocks: furniture of one layer stands for nothing higher.
-LARGEST = 8  # Blocks a side of a piece made of several.
-
-
-class Cell(NamedTuple):
-    """One block of a piece of several: front-to-back, side, up from its first; its block."""
-
-    at: tuple[int, int, int]
-    id: str
-    properties: tuple[tuple[str, str], ...]
-
-
-@dataclass(frozen=True)
-class Piece:
-    """What stands for some templates.
-
-    designs: the names of templates, or of families, that it stands for.
-    cells: its blocks; ``{wood}`` and ``{dye}`` in their names take the object's colour.
-    fill: ``one`` as they are; ``row`` across its width, ``floor`` over its footprint, ``box``
-        over all of it, each by the one cell.
-    facing: where ``facing`` looks: ``front``, ``back``, ``left`` or ``right``; none without it.
-    joins: how it joins its like: ``sides`` (north, east ... of tables), ``flags`` (left, right of
-        desks), ``shape`` (the shape of sofas); none for blocks that stand alone.
-    """
-
-    designs: tuple[str, ...]
-    cells: tuple[Cell, ...]
-    fill: str = "one"
-    facing: Literal["front", "back", "left", "right"] | None = None
-    joins: str | None = None
-
-
-def piece_of(raw: Any) -> Piece:
-    """Return the piece that an entry of a palette file holds.
-
-    Raises:
-        ValueError: it is none. UsageError: it names no block.
-    """
-    known = ("for", "id", "properties", "cells", "fill", "facing", "joins")
-    if not isinstance(raw, dict) or not set(raw) <= set(known) or "for" not in raw:
-        raise ValueError(f"furniture must have for and id, and may have {', '.join(known[2:])}")
-    designs = raw["for"]
-    if not (isinstance(designs, list) and designs and all(isinstance(d, str) for d in designs)):
-        raise ValueError(f"for must be a list of designs or families, not {designs!r}")
-    for key, choices in (("fill", FILLS), ("facing", tuple(FACINGS)), ("joins", JOINS)):
-        if key in raw and raw[key] not in choices:
-            raise ValueError(f"{key} must be one of {', '.join(choices)}, not {raw[key]!r}")
-    listed = raw.get("cells", [{"id": raw.get("id"), "properties": raw.get("properties", {})}])
-    cells = tuple(_cell(one) for one in listed)
-    if len(cells) > 1 and raw.get("fill", "one") != "one":
-        raise ValueError("a piece of several cells cannot fill a place")
-    return Piece(tuple(designs), cells, raw.get("fill", "one"), raw.get("facing"), raw.get("joins"))
 
 
 def furniture_of(
@@ -157,22 +101,6 @@ def _put(canvas: Canvas, found: Idiom, placement: Placement, within: np.ndarray)
         number = canvas.id_of(block.state)
         canvas.put(tuple(cell), number, placement.class_id, placement.object_id)
     return True
-
-
-def _cell(raw: Any) -> Cell:
-    if not isinstance(raw, dict) or not isinstance(raw.get("id"), str):
-        raise ValueError(f"a piece of furniture needs an id, such as mod:oak_chair, not {raw!r}")
-    at = raw.get("at", [0, 0, 0])
-    good = isinstance(at, list) and len(at) == 3 and all(type(v) is int for v in at)
-    if not good or not all(0 <= v < LARGEST for v in at):
-        raise ValueError(f"at must be three whole numbers from 0 to {LARGEST - 1}, not {at!r}")
-    properties = raw.get("properties", {})
-    if not isinstance(properties, dict):
-        raise ValueError(f"properties must be keys with values, not {properties!r}")
-    texts = {str(key): str(value).lower() for key, value in properties.items()}
-    for kind in (WOODS[0], DYES[0]):
-        BlockState(raw["id"].replace("{wood}", kind).replace("{dye}", kind), texts)
-    return Cell((at[0], at[1], at[2]), raw["id"], tuple(sorted(texts.items())))
 
 
 def _fits(piece: Piece, size: BlockSize) -> bool:

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.build.meanings import meanings_of
-from world2minecraft.build.own_furniture import piece_of
 from world2minecraft.build.palettes import PALETTE_FILES, Palette, shipped
+from world2minecraft.build.pieces import piece_of
 from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.errors import InputError, UsageError, one_line
 from world2minecraft.files import plain_yaml, read_bytes

@@ -16,7 +16,7 @@ from world2minecraft.errors import InputError, UnknownNameError
 
 if TYPE_CHECKING:
     from world2minecraft.build.meanings import Meanings
-    from world2minecraft.build.own_furniture import Piece
+    from world2minecraft.build.pieces import Piece
 
 PALETTE_FILES = {
     "vanilla": "palette_vanilla.json",

@@ -12,7 +12,7 @@ from world2minecraft.errors import InputError, OutputError, UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.exchange.cutting import Box
-    from world2minecraft.minecraft.formats import WriteOptions
+    from world2minecraft.minecraft.file_format import WriteOptions
     from world2minecraft.minecraft.losses import Losses
     from world2minecraft.types import BlockVolume
 
@@ -76,7 +76,7 @@ def run(
     check_target(source, target, force)
     from world2minecraft.cli.render_options import box_of
     from world2minecraft.exchange.forms import templates_of_run
-    from world2minecraft.minecraft.formats import WriteOptions
+    from world2minecraft.minecraft.file_format import WriteOptions
 
     options = WriteOptions(
         mc_version=mc_version,

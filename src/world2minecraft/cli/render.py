@@ -24,7 +24,8 @@ from world2minecraft.progress import Progress
 
 if TYPE_CHECKING:
     from world2minecraft.render import Picture
-    from world2minecraft.render.views import DrawOptions, Shot
+    from world2minecraft.render.views import Shot
+    from world2minecraft.render.views.frames import DrawOptions
     from world2minecraft.types import BlockVolume
 
 MOST_WRITERS = 16  # Each holds a picture.
@@ -170,7 +171,7 @@ def _pictures(
 ) -> Generator[tuple["Shot", "Picture", "BlockVolume"], None, None]:
     """Take the pictures of a plan; each volume that is seen is made ready once at a time."""
     from world2minecraft.render import prepare_scene
-    from world2minecraft.render.views import exposed
+    from world2minecraft.render.views.frames import exposed
 
     exposure = None
     for _, run_of in groupby(plan.shots, key=lambda shot: id(plan.volume_of(shot))):

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from world2minecraft.render import BlockScene, LookLight, Picture
     from world2minecraft.render.elements import LookSource
     from world2minecraft.render.packs import PackLooks
-    from world2minecraft.render.views import DrawOptions, Shot
+    from world2minecraft.render.views import Shot
+    from world2minecraft.render.views.frames import DrawOptions
 
 TEXTURES_PX = (16, 32, 64, 128)
 MOST_SAMPLES = 4
@@ -114,7 +115,7 @@ class Look:
     def options_of(self, kind: "Kind", medium: "Medium", outputs: tuple[str, ...]) -> "DrawOptions":
         """Return how pictures are drawn; lone pictures get more rays than those of a data set."""
         from world2minecraft.render.lamps import PAPER
-        from world2minecraft.render.views import DrawOptions
+        from world2minecraft.render.views.frames import DrawOptions
 
         usual = 1 if medium == "folder" and kind != "turntable" else STILL_SAMPLES
         # From above one sees no sky; a build stands out best on paper, but not at night.
@@ -160,7 +161,7 @@ def take(
     Raises:
         UsageError: this version has no such tier, or it cannot do what is asked for.
     """
-    from world2minecraft.render.views import frames_of
+    from world2minecraft.render.views.frames import frames_of
 
     if look.photo:
         yield from _photos(scene, shots, look, options, step)

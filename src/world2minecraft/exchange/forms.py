@@ -10,12 +10,11 @@ from typing import Literal
 
 from world2minecraft.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.exchange.labelled import labelled, place_of_blocks
-from world2minecraft.minecraft.file_format import FileFormat
+from world2minecraft.minecraft.file_format import FileFormat, WriteOptions
 from world2minecraft.minecraft.formats import (
     FORMATS,
     LABELS,
     BlockFormat,
-    WriteOptions,
     block_formats,
     read_blocks,
 )

@@ -1,7 +1,7 @@
 """Questions about the cells of a scene: what floats, where holes are, how it differs."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
@@ -15,11 +15,8 @@ from world2minecraft.edit.scene.planes import find_planes
 from world2minecraft.edit.scene.runs import runs_of_cells
 from world2minecraft.errors import UsageError
 from world2minecraft.forge.comparing import labels_of_file, labels_of_truth, truth_folder
-from world2minecraft.forge.query import Query
+from world2minecraft.forge.query import QueriedScene, Query
 from world2minecraft.metrics.occupancy import count_occupancy
-
-if TYPE_CHECKING:
-    from world2minecraft.forge.editor import Editor
 
 OPENED, TRUTH = "opened", "truth"
 DECIMALS = 4
@@ -30,10 +27,10 @@ class Floaters(Query):
 
     max_cells: Annotated[int, Field(ge=1)] = MAX_CELLS
 
-    def answer(self, editor: "Editor") -> Any:
+    def answer(self, scene: QueriedScene) -> Any:
         """Return ``[{"cells", "runs", "class_id", "object_ids", "at_m"}]``."""
-        draft = editor.draft
-        editor.progress("pieces", 0, 0)
+        draft = scene.draft
+        scene.progress("pieces", 0, 0)
         return [
             {
                 "cells": len(one.cells),
@@ -56,11 +53,11 @@ class Holes(Query):
 
     hole_m2: Annotated[float, Field(ge=0)] = HOLE_M2
 
-    def answer(self, editor: "Editor") -> Any:
+    def answer(self, scene: QueriedScene) -> Any:
         """Return ``[{"plane", "class_id", "axis", "at_m", "area_m2", "share", "cells", "runs",
         "openings"}]``, floors and ceilings first.
         """  # noqa: D205
-        draft, rows, progress = editor.draft, [], editor.progress
+        draft, rows, progress = scene.draft, [], scene.progress
         progress("planes", 0, 0)
         planes = find_planes(draft)
         for done, plane in enumerate(planes):
@@ -96,21 +93,21 @@ class Compare(Query):
 
     path: Annotated[str, Field(max_length=1000)] = OPENED
 
-    def answer(self, editor: "Editor") -> Any:
+    def answer(self, scene: QueriedScene) -> Any:
         """Return ``{"added", "removed", "changed"}`` runs, ``cells`` of each and the figures."""
-        return compared(editor.draft, self._other(editor))
+        return compared(scene.draft, self._other(scene))
 
-    def _other(self, editor: "Editor") -> np.ndarray:
+    def _other(self, scene: QueriedScene) -> np.ndarray:
         if self.path == OPENED:
-            labels = editor.opened.grid.labels
+            labels = scene.opened.grid.labels
             return np.where(labels == UNKNOWN, 0, labels).astype(np.uint8)
-        folder = editor.opened.folder
+        folder = scene.opened.folder
         if self.path != TRUTH:
-            return labels_of_file(file_within(folder, self.path), editor.draft)
+            return labels_of_file(file_within(folder, self.path), scene.draft)
         place = truth_folder(folder, None)
         if place is None:
             raise UsageError("no truth lies in the scene's folder; only generated rooms have one")
-        return labels_of_truth(place, editor.draft, editor.opened.scan_to_room)
+        return labels_of_truth(place, scene.draft, scene.opened.scan_to_room)
 
 
 def compared(draft: SceneDraft, other: np.ndarray) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from world2minecraft.edit.placing import placed
 from world2minecraft.exchange.forms import form_named, templates_of_run, write_form
 from world2minecraft.forge.tasks import parameters_of
 from world2minecraft.minecraft.commands.sizes import size_pack
-from world2minecraft.minecraft.formats import WriteOptions
+from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.server.address import note_of, parse_address
 from world2minecraft.minecraft.server.building import LiveBuilder

@@ -1,7 +1,7 @@
 """Questions about the objects of a scene: other furniture, centres, clashes, doubtful places."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import AfterValidator, Field
@@ -15,12 +15,9 @@ from world2minecraft.edit.scene.objects_of import instance_of, placements_of
 from world2minecraft.find import FindParameters
 from world2minecraft.find.clusters import centroids, cluster_candidates
 from world2minecraft.find.density import candidate_cells, density_map, object_cells
-from world2minecraft.forge.query import Query
+from world2minecraft.forge.query import QueriedScene, Query
 from world2minecraft.furnish import ranked_matches
 from world2minecraft.metrics.layout import collisions, out_of_rooms
-
-if TYPE_CHECKING:
-    from world2minecraft.forge.editor import Editor
 
 OFFERED = 5
 LEAST_DOUBT = 0.3  # Of what is surer than this nobody needs to be told.
@@ -38,11 +35,11 @@ class Alternatives(Query):
 
     id: Id
 
-    def answer(self, editor: "Editor") -> Any:
+    def answer(self, scene: QueriedScene) -> Any:
         """Return ``[{"template", "quarter_turns", "iou"}]``, best first; none without cells."""
-        one = object_named(editor.draft, self.id)
-        found = instance_of(one, editor.draft.cells_of(one.id))
-        rows = ranked_matches(editor.draft.grid(), found, OFFERED, editor.opened.rooms)
+        one = object_named(scene.draft, self.id)
+        found = instance_of(one, scene.draft.cells_of(one.id))
+        rows = ranked_matches(scene.draft.grid(), found, OFFERED, scene.opened.rooms)
         return [{"template": name, "quarter_turns": turns, "iou": iou} for name, turns, iou in rows]
 
 
@@ -57,9 +54,9 @@ class Centers(Query):
     cluster_radius: Annotated[float, Field(gt=0, le=100)]
     class_id: ObjectClass | None = None
 
-    def answer(self, editor: "Editor") -> Any:
+    def answer(self, scene: QueriedScene) -> Any:
         """Return ``[{"class_id", "at_m", "cells"}]``: a centre and how many cells it has."""
-        draft = editor.draft
+        draft = scene.draft
         binary = object_cells(draft.labels)
         density = density_map(binary, self.density_kernel)
         if self.class_id is not None:
@@ -80,9 +77,9 @@ class Centers(Query):
 class Warnings(Query):
     """Furniture that collides or reaches out of its room, by the metrics of the report."""
 
-    def answer(self, editor: "Editor") -> Any:
+    def answer(self, scene: QueriedScene) -> Any:
         """Return ``[{"kind": "collision" or "outside", "ids", "at_m"}]``, in the order of ids."""
-        return list(_clashes(editor))
+        return list(_clashes(scene))
 
 
 class Doubtful(Query):
@@ -93,9 +90,9 @@ class Doubtful(Query):
     ``crumb`` or ``completed``.
     """
 
-    def answer(self, editor: "Editor") -> Any:
+    def answer(self, scene: QueriedScene) -> Any:
         """Return ``[{"at_m", "why", "kind", "doubt" 0 to 1, "object_id" or null}]``."""
-        found = ordered([*_clash_doubts(editor), *find_doubts(editor.draft, editor.progress)])
+        found = ordered([*_clash_doubts(scene), *find_doubts(scene.draft, scene.progress)])
         return [
             {
                 "at_m": np.round(one.at_m, 3).tolist(),
@@ -109,24 +106,24 @@ class Doubtful(Query):
         ]
 
 
-def _clash_doubts(editor: "Editor") -> Iterator[Doubt]:
-    for clash in _clashes(editor):
+def _clash_doubts(scene: QueriedScene) -> Iterator[Doubt]:
+    for clash in _clashes(scene):
         number = clash["ids"][-1]
-        name = CLASS_NAMES[editor.draft.objects[number].class_id]
+        name = CLASS_NAMES[scene.draft.objects[number].class_id]
         doubt, why = 1.0, f"this {name} reaches out of its room"
         if clash["kind"] == "collision":
-            other = editor.draft.objects[clash["ids"][0]]
+            other = scene.draft.objects[clash["ids"][0]]
             doubt, why = 0.95, f"this {name} and {CLASS_NAMES[other.class_id]} {other.id} collide"
         yield Doubt(clash["kind"], why, doubt, np.array(clash["at_m"]), number)
 
 
-def _clashes(editor: "Editor") -> Iterator[dict[str, Any]]:
-    placed = placements_of(editor.draft.objects.values())
-    for m, n in collisions(placed, grid=editor.draft.grid()):
+def _clashes(scene: QueriedScene) -> Iterator[dict[str, Any]]:
+    placed = placements_of(scene.draft.objects.values())
+    for m, n in collisions(placed, grid=scene.draft.grid()):
         middle = np.round((placed[m].center_m + placed[n].center_m) / 2, 3).tolist()
         ids = [placed[m].object_id, placed[n].object_id]
         yield {"kind": "collision", "ids": ids, "at_m": middle}
-    rooms = editor.opened.rooms
+    rooms = scene.opened.rooms
     for index in out_of_rooms(placed, rooms) if rooms else ():
         at_m = np.round(placed[index].center_m, 3).tolist()
         yield {"kind": "outside", "ids": [placed[index].object_id], "at_m": at_m}

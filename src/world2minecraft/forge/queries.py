@@ -4,7 +4,7 @@ Like a command, a query is a small checked value; it changes nothing. A new one 
 its line in ``QUERIES``.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -12,19 +12,16 @@ from world2minecraft.edit.scene.commands import first_fault
 from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.forge.cell_queries import CELL_QUERIES
 from world2minecraft.forge.object_queries import OBJECT_QUERIES
-from world2minecraft.forge.query import Query
-
-if TYPE_CHECKING:
-    from world2minecraft.forge.editor import Editor
+from world2minecraft.forge.query import QueriedScene, Query
 
 
 class Counts(Query):
     """How many cells each class has, and how many objects there are."""
 
-    def answer(self, editor: "Editor") -> Any:
+    def answer(self, scene: QueriedScene) -> Any:
         """Return ``{"cells": by class id, "objects": number}``."""
-        counts = editor.draft.counts[:12].tolist()
-        return {"cells": counts, "objects": len(editor.draft.objects)}
+        counts = scene.draft.counts[:12].tolist()
+        return {"cells": counts, "objects": len(scene.draft.objects)}
 
 
 QUERIES: dict[str, type[Query]] = {"counts": Counts, **CELL_QUERIES, **OBJECT_QUERIES}

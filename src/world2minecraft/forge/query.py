@@ -1,12 +1,29 @@
 """What all questions about a scene share; ``queries`` has them by name."""
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from pydantic import BaseModel, ConfigDict
 
-if TYPE_CHECKING:
-    from world2minecraft.forge.editor import Editor
+from world2minecraft.edit.scene import SceneDraft
+from world2minecraft.forge.sources import Opened
+from world2minecraft.progress import Progress
+
+
+class QueriedScene(Protocol):
+    """What a question may look at: an open editor has all of it."""
+
+    progress: Progress
+
+    @property
+    def draft(self) -> SceneDraft:
+        """The scene as it is now."""
+        ...
+
+    @property
+    def opened(self) -> Opened:
+        """The scene as it was opened first."""
+        ...
 
 
 class Query(BaseModel):
@@ -15,7 +32,7 @@ class Query(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     @abstractmethod
-    def answer(self, editor: "Editor") -> Any:
+    def answer(self, scene: QueriedScene) -> Any:
         """Return the answer as JSON values.
 
         Raises:

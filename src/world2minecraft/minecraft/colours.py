@@ -19,6 +19,26 @@ from world2minecraft.geometry.colour import oklab_of_srgb
 
 # A shape and the endings that its material may have: oak_slab is made of oak_planks,
 # stone_brick_wall of stone_bricks, quartz_stairs of quartz_block, white_carpet of white_wool.
+WOODS = ("oak", "spruce", "birch", "jungle", "acacia", "dark_oak", "mangrove")
+# In the order of the numbers that the game gives them.
+DYES = (
+    "white",
+    "orange",
+    "magenta",
+    "light_blue",
+    "yellow",
+    "lime",
+    "pink",
+    "gray",
+    "light_gray",
+    "cyan",
+    "purple",
+    "blue",
+    "brown",
+    "green",
+    "red",
+    "black",
+)
 _SHAPES = (
     "_stairs",
     "_slab",

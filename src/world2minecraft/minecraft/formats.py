@@ -4,13 +4,11 @@ A format is one class and one line of ``FORMATS``. A reader and a writer count i
 they could not carry; ``write_blocks`` itself counts the labels, which no format of the game holds.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Literal, Protocol
 
 from world2minecraft.errors import InputError, UsageError
-from world2minecraft.minecraft.file_format import FileFormat
+from world2minecraft.minecraft.file_format import FileFormat, WriteOptions
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.registry import Registry
 from world2minecraft.types import BlockVolume
@@ -50,23 +48,9 @@ class BlockFormat(Protocol):
         """Read the blocks. Raises ``InputError`` or one of its kinds."""
         ...
 
-    def write(
-        self, volume: BlockVolume, path: Path, options: "WriteOptions", losses: Losses
-    ) -> None:
+    def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write the blocks. Raises ``OutputError`` or ``UsageError``."""
         ...
-
-
-@dataclass(frozen=True)
-class WriteOptions:
-    """What a writer may be told; a format takes what it needs."""
-
-    mc_version: str = "1.20.1"
-    name: str = "room"
-    spawn: tuple[float, float, float] | None = None
-    spawn_yaw_deg: float = 0.0
-    schem_version: int = 2
-    other: Mapping[str, Any] = field(default_factory=dict)
 
 
 def read_blocks(path: str | Path, losses: Losses | None = None) -> BlockVolume:

@@ -9,7 +9,7 @@ from world2minecraft.minecraft.losses import Losses
 from world2minecraft.types import BlockVolume
 
 if TYPE_CHECKING:
-    from world2minecraft.minecraft.formats import WriteOptions
+    from world2minecraft.minecraft.file_format import WriteOptions
 
 
 class LitematicFormat(FileFormat):

@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.archive import UNREADABLE
 from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES, class_id
 from world2minecraft.errors import DamagedFileError, InputError, LimitError, UnknownNameError
 from world2minecraft.exchange.objects import rounded
-from world2minecraft.files import UNREADABLE, read_json, read_npz, write_json, write_npz
+from world2minecraft.files import read_json, read_npz, write_json, write_npz
 from world2minecraft.rooms.room import Room
 from world2minecraft.types import Layout, LayoutObject, Opening
 

@@ -23,7 +23,8 @@ from world2minecraft.dataset.tours import PlannedView, read_views
 from world2minecraft.dataset.values import OccSample, SceneVoxels
 from world2minecraft.dataset.voxels import scene_voxels
 from world2minecraft.render import BlockScene, LookLight, prepare_scene, render_volume
-from world2minecraft.render.views import Shot, exposed
+from world2minecraft.render.views import Shot
+from world2minecraft.render.views.frames import exposed
 
 COLOUR = ("colour", "depth")
 

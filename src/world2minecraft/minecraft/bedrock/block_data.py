@@ -13,27 +13,10 @@ from world2minecraft.minecraft.bedrock.states import (
     bedrock_table,
     java_of_bedrock,
 )
+from world2minecraft.minecraft.colours import DYES
 from world2minecraft.minecraft.nbt import Byte, Float
 from world2minecraft.minecraft.states import BlockState, known_blocks, parse_state
 
-DYES = (
-    "white",
-    "orange",
-    "magenta",
-    "light_blue",
-    "yellow",
-    "lime",
-    "pink",
-    "gray",
-    "light_gray",
-    "cyan",
-    "purple",
-    "blue",
-    "brown",
-    "green",
-    "red",
-    "black",
-)
 HEADS = ("skeleton", "wither_skeleton", "zombie", "player", "creeper", "dragon", "piglin")
 POTTED = {"azalea_bush": "azalea", "flowering_azalea_bush": "flowering_azalea"}
 SIGNS = {"minecraft:sign": "Sign", "minecraft:hanging_sign": "HangingSign"}

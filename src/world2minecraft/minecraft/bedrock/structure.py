@@ -23,8 +23,7 @@ from world2minecraft.minecraft.bedrock.block_data import (
 )
 from world2minecraft.minecraft.bedrock.nbt_little import read_little, write_little
 from world2minecraft.minecraft.bedrock.states import bedrock_of_java, is_kept, java_of_bedrock
-from world2minecraft.minecraft.file_format import FileFormat
-from world2minecraft.minecraft.formats import WriteOptions
+from world2minecraft.minecraft.file_format import FileFormat, WriteOptions
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import NbtLimits
 from world2minecraft.minecraft.rules.connections import connected

@@ -12,8 +12,7 @@ from world2minecraft.minecraft.commands.writing import (
     entity_tag,
 )
 from world2minecraft.minecraft.displays import check_displays
-from world2minecraft.minecraft.file_format import FileFormat
-from world2minecraft.minecraft.formats import WriteOptions
+from world2minecraft.minecraft.file_format import FileFormat, WriteOptions
 from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.game_names import count_unknown
 from world2minecraft.minecraft.losses import Losses

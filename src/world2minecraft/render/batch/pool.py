@@ -6,6 +6,9 @@ so that memory is bounded however many poses there are. All is taken away again 
 after an error, after Ctrl-C, and when a process dies.
 """
 
+# Not by concurrent.futures: ProcessPoolExecutor sends pictures through a pipe, pickled, where these
+# are copied once, and bounds neither what waits nor the memory of pictures that nobody took yet.
+
 import pickle
 import weakref
 from collections import deque

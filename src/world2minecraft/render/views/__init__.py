@@ -1,25 +1,17 @@
-"""Where pictures are taken from: cameras, the game's poses, circles around a build, walks in it.
-
-``frames`` takes the pictures of many poses one after another.
-"""
+"""Where pictures are taken from: cameras, the game's poses, circles around a build, walks in it."""
 
 from world2minecraft.render.views.cameras import camera_of, vertical_fov_deg_of
-from world2minecraft.render.views.frames import DrawOptions, exposed, frames, frames_of
 from world2minecraft.render.views.orbit import orbit_shots
 from world2minecraft.render.views.poses import GamePose, Shot, game_pose_of
 from world2minecraft.render.views.tour import Tour, plan_tour, with_open_doors
 from world2minecraft.render.views.tour_file import TourPose, read_tour, tour_line, write_lines
 
 __all__ = [
-    "DrawOptions",
     "GamePose",
     "Shot",
     "Tour",
     "TourPose",
     "camera_of",
-    "exposed",
-    "frames",
-    "frames_of",
     "game_pose_of",
     "orbit_shots",
     "plan_tour",
