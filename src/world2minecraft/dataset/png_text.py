@@ -1,5 +1,9 @@
 """The size and the texts of a PNG, read chunk by chunk without its pixels, everything bounded."""
 
+# Not by Pillow: its PngInfo only writes texts. Its reader keeps the last of several texts with one
+# keyword, where a pose told twice must be refused, unpacks all pixels to find texts behind them,
+# and takes a text that does not unpack for an empty one.
+
 import struct
 import zlib
 from pathlib import Path

@@ -4,6 +4,9 @@ The CSV has a row a figure: step, name, value. It holds no times, so that a run 
 went on leaves the same bytes as one that was not.
 """
 
+# Not by Lightning's CSVLogger: it removes the file of an earlier try, whose rows up to the
+# checkpoint are kept here, and writes in place, so that a kill may leave half a file.
+
 import csv
 import io
 from collections.abc import Mapping

@@ -4,6 +4,10 @@ Files of a run: ``checkpoint.safetensors`` (to go on from), ``weights.safetensor
 mIoU on the validation frames), ``last.safetensors``, ``metrics.csv`` and ``tensorboard/``.
 """
 
+# Not by Lightning's ModelCheckpoint and EarlyStopping: their checkpoints are pickles, which can run
+# code when they are read, and hold no sums of losses that are not noted yet, without which a run
+# that was killed and went on would not leave the same metrics.
+
 import math
 import time
 from collections.abc import Callable

@@ -3,6 +3,9 @@
 Everything by chance in a step is drawn from the run's seed and the step's number.
 """
 
+# Not by a scheduler of torch that Lightning steps: its state would have to be kept and restored
+# with each checkpoint; here the rate, as all that is by chance, follows from the step's number.
+
 import dataclasses
 import math
 from typing import Any

@@ -5,6 +5,9 @@ written to disk is found there. Processes end with their parent, however that en
 waits for that.
 """
 
+# Not by concurrent.futures: when a process of ProcessPoolExecutor is killed, every item that waits
+# fails with BrokenProcessPool, and which one killed it cannot be told.
+
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress

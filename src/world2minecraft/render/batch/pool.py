@@ -6,8 +6,8 @@ so that memory is bounded however many poses there are. All is taken away again 
 after an error, after Ctrl-C, and when a process dies.
 """
 
-# Not by concurrent.futures: ProcessPoolExecutor sends pictures through a pipe, pickled, where these
-# are copied once, and bounds neither what waits nor the memory of pictures that nobody took yet.
+# Not by concurrent.futures: ProcessPoolExecutor sends results through a pipe, pickled, and sets no
+# bound to those that nobody has taken yet; here pictures are copied once, out of a ring of slots.
 
 import pickle
 import weakref
