@@ -25,8 +25,8 @@ endif
 comma := ,
 # Put an extra of ours, with the pinned versions, into .venv.
 define install
-$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' \
-  || { echo "Python 3.11 to 3.13 is needed: make PYTHON=python3.12 ..." >&2; exit 1; }; \
+$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 14))' \
+  || { echo "Python 3.11 to 3.14 is needed: make PYTHON=python3.12 ..." >&2; exit 1; }; \
 set -e; \
 if test -e $(HALF); then rm -rf $(VENV); fi; \
 if command -v uv >/dev/null 2>&1; then \

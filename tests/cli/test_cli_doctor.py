@@ -19,7 +19,7 @@ def test_here_the_program_can_run(capsys, monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("version", "state"), [((3, 10), "bad"), ((3, 11), "ok"), ((3, 13), "ok"), ((3, 14), "bad")]
+    ("version", "state"), [((3, 10), "bad"), ((3, 11), "ok"), ((3, 14), "ok"), ((3, 15), "bad")]
 )
 def test_python(version, state):
     check = doctor.check_python(version)

@@ -1,7 +1,7 @@
 """Try a release as a stranger gets it: ``make release-check``.
 
 A wheel and an sdist are built into ``dist/`` and looked through; a wheel built of the sdist alone
-must hold the same. Then, for each Python from 3.11 to 3.13 that is found, the wheel is installed
+must hold the same. Then, for each Python from 3.11 to 3.14 that is found, the wheel is installed
 into a fresh environment with the pinned versions, and ``w2m demo`` makes its world there, with
 neither a compiler nor Node to be found. Exit code 1: something is amiss; 0: all that could be tried
 went well. A Python that is not there is told, and is no failure.
@@ -21,7 +21,7 @@ from pathlib import Path
 from zipfile import ZipFile
 
 ROOT = Path(__file__).resolve().parents[2]
-PYTHONS = ("3.11", "3.12", "3.13")
+PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 MAX_WHEEL_MB = 40.0  # What a stranger may be asked to fetch.
 PACKAGE = "world2minecraft"
 # What the program cannot do without, one of a kind.

@@ -16,7 +16,7 @@ w2m doctor                  check this machine
 w2m doctor && w2m demo      check it, then build the demo room
 """
 
-PYTHON_RANGE = ((3, 11), (3, 13))
+PYTHON_RANGE = ((3, 11), (3, 14))
 LEAST_MEMORY_GB = 1.0  # A 40-frame capture has a budget of 1 GB.
 LEAST_DISK_GB = 0.5  # Kernels take about 50 MB, a built room less than 20 MB; the rest is room.
 CORE_PACKAGES = ("numpy", "numba", "scipy", "pillow")
