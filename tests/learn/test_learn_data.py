@@ -1,5 +1,7 @@
 """Caches, splits, mixes, batches: which frames a run sees, and when."""
 
+import pickle
+
 import numpy as np
 import pytest
 import torch
@@ -144,6 +146,13 @@ def test_a_batch_holds_what_networks_take(tmp_path):
     assert target.in_frustum.dtype == torch.bool
     assert len(batches[1].inputs.image) == 1
     np.testing.assert_array_equal(target.labels[0].numpy(), frames[2].labels)
+
+
+def test_frames_are_handed_to_processes_by_their_folder(store, tmp_path):
+    frames = open_run_data(toy_config(store, steps=2), CachePlace(root=tmp_path)).target
+    data = pickle.dumps(frames)
+    assert len(data) < 1000
+    np.testing.assert_array_equal(pickle.loads(data)[0].image, frames[0].image)
 
 
 def test_worker_processes_make_the_same_batches(store, tmp_path):

@@ -69,6 +69,7 @@ class CachedFrames:
     """Frames of a folder that ``cached_frames`` filled."""
 
     def __init__(self, folder: Path):
+        self._folder = folder
         facts = read_json(folder / READY)
         self.keys: list[str] = facts["keys"]
         self.scenes: list[str] = facts["scenes"]
@@ -77,6 +78,10 @@ class CachedFrames:
             name: np.load(folder / f"{name}.npy", mmap_mode="r", allow_pickle=False)
             for name in ARRAYS
         }
+
+    def __reduce__(self) -> tuple[type["CachedFrames"], tuple[Path]]:
+        """Let a process that is handed these open the files, where pickle would copy them."""
+        return CachedFrames, (self._folder,)
 
     def __len__(self) -> int:
         return len(self.keys)
