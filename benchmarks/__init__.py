@@ -1,1 +1,1 @@
-"""Speed and memory against the budgets: ``python -m benchmarks`` runs every ``bench_*.py``."""
+"""Benchmarks of speed (bench_*) and quality (check_*): ``python -m benchmarks --list``."""

@@ -5,8 +5,8 @@ import tracemalloc
 
 import numpy as np
 
-from benchmarks.label_views import GAME, NYU, standing_views
-from benchmarks.render_timing import time_all
+from benchmarks.check_labels import GAME, NYU, standing_views
+from benchmarks.render_scenes import time_all
 from benchmarks.rows import Row
 from world2minecraft.dataset.labels import cast_depth, label_image
 from world2minecraft.dataset.region import RegionRule, region_in

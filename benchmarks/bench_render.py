@@ -2,7 +2,7 @@
 
 ``python -m benchmarks.bench_render`` prints it as a table, with wall time and spread. Pictures
 are of a furnished room built at 4 and 2 blocks a metre, and of flats of 0.14 and 4.2 million cells;
-cameras stand at random places indoors. The rival is ``benchmarks.rivals_render``.
+cameras stand at random places indoors. The rival is ``benchmarks.rival_rasteriser``.
 """
 
 import argparse
@@ -22,10 +22,17 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.__main__ import machine
-from benchmarks.render_scenes import camera_of, large, poses, room, scene_looks, small
-from benchmarks.render_timing import Timing, time_all
-from benchmarks.rival_mesh import mesh_of
-from benchmarks.rivals_render import Rasteriser, why_not
+from benchmarks.render_scenes import (
+    Timing,
+    camera_of,
+    large,
+    poses,
+    room,
+    scene_looks,
+    small,
+    time_all,
+)
+from benchmarks.rival_rasteriser import Rasteriser, mesh_of, why_not
 from benchmarks.rows import Row
 from world2minecraft.render import BlockScene, prepare_scene, preview, render_volume
 from world2minecraft.render.light import LookLight

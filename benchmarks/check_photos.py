@@ -13,15 +13,177 @@ CPU seconds, wall seconds and peak memory. ``--json FILE`` writes them too.
 import argparse
 import json
 import resource
+import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+from PIL import Image
+from scipy.spatial import cKDTree
 
-from benchmarks.photo_inputs import kitchen_inputs, room_inputs
-from benchmarks.photo_table import best_similarity, compare, poses_of
+from world2minecraft.posing.similarity import align_similarity
+from world2minecraft.rooms.photo import prepare_photos, take_photo
+from world2minecraft.rooms.room import Room
+from world2minecraft.scan.plain import write_plain
+from world2minecraft.types import OBSERVED, Camera, View
+
+REACH_VOXELS = 3**0.5 + 0.01
+
+
+class Cells(NamedTuple):
+    """What a run found, centres [N, 3] in metres of its capture's frame."""
+
+    occupied_m: np.ndarray
+    free_m: np.ndarray
+    labels: np.ndarray
+    source: np.ndarray
+    origin_m: np.ndarray
+    voxel_m: float
+    scan_to_room: np.ndarray
+
+
+def read_cells(room_file: Path) -> Cells:
+    """Read the observed and the free cells of a ``room.npz``."""
+    with np.load(room_file) as room:
+        labels, source, origin = room["labels"], room["source"], room["origin_m"]
+        voxel, scan_to_room = float(room["voxel_m"]), room["scan_to_room"]
+    to_scan = np.linalg.inv(scan_to_room)
+
+    def centers(mask):
+        at = origin + (np.argwhere(mask) + 0.5) * voxel
+        return at @ to_scan[:3, :3].T + to_scan[:3, 3]
+
+    occupied = (labels > 0) & (labels != 255) & (source == 1)
+    return Cells(
+        centers(occupied), centers(labels == 0), labels, source, origin, voxel, scan_to_room
+    )
+
+
+def looked_up(cells: Cells, points_m: np.ndarray) -> np.ndarray:
+    """Return the labels of the cells that hold points of the capture's frame.
+
+    255 where they lie outside, and where nobody saw: what was completed is no observation.
+    """
+    at = points_m @ cells.scan_to_room[:3, :3].T + cells.scan_to_room[:3, 3]
+    index = np.floor((at - cells.origin_m) / cells.voxel_m + 1e-9).astype(int)
+    inside = ((index >= 0) & (index < cells.labels.shape)).all(axis=1)
+    found = np.full(len(points_m), 255, np.uint8)
+    at = tuple(index[inside].T)
+    found[inside] = np.where(cells.source[at] == OBSERVED, cells.labels[at], 255)
+    return found
+
+
+def moved(points_m: np.ndarray, similarity: np.ndarray) -> np.ndarray:
+    """Carry points by a 4x4 similarity."""
+    return points_m @ similarity[:3, :3].T + similarity[:3, 3]
+
+
+def compare(
+    reference: Path, result: Path, result_to_reference: np.ndarray | None = None
+) -> dict[str, float]:
+    """Return the figures of ``result / room.npz`` against ``reference / room.npz``.
+
+    ``result_to_reference`` is a similarity between the frames of their captures.
+    """
+    carry = np.eye(4) if result_to_reference is None else result_to_reference
+    true, found = read_cells(reference / "room.npz"), read_cells(result / "room.npz")
+    reach = REACH_VOXELS * true.voxel_m
+    occupied = moved(found.occupied_m, carry)
+    near_true, _ = cKDTree(true.occupied_m).query(occupied)
+    near_found, _ = cKDTree(occupied).query(true.occupied_m)
+    back = np.linalg.inv(carry)
+    true_at = looked_up(found, moved(true.occupied_m, back))
+    free_at = looked_up(found, moved(true.free_m, back))
+    known = looked_up(true, occupied) != 255
+    return {
+        "precision": float((near_true <= reach).mean()),
+        "precision where known": float((near_true[known] <= reach).mean()),
+        "recall": float((near_found <= reach).mean()),
+        "free found": float((free_at == 0).mean()),
+        "wrong free": float((true_at == 0).mean()),
+        "cells": len(occupied),
+    }
+
+
+def poses_of(capture_file: Path) -> dict[str, np.ndarray]:
+    """Return camera_to_world by frame, of a plain capture's ``capture.json``."""
+    frames = json.loads(capture_file.read_text())["frames"]
+    return {f["name"]: np.array(f["camera_to_world"]) for f in frames if "camera_to_world" in f}
+
+
+def best_similarity(found: dict[str, np.ndarray], true: dict[str, np.ndarray]) -> np.ndarray:
+    """Return the 4x4 similarity that carries found poses to the true ones best.
+
+    True poses may be those of a depth sensor beside the colour camera: where it sits and how it
+    is turned is found with the similarity.
+    """
+    names = sorted(set(found) & set(true))
+    poses = (np.array([given[name] for name in names]) for given in (found, true))
+    best = align_similarity(*poses, mounted=len(names) >= 8)
+    similarity = np.eye(4)
+    similarity[:3, :3] = best.scale * best.rotation
+    similarity[:3, 3] = best.shift_m
+    return similarity
+
+
+def kitchen_inputs(source: Path, folder: Path, every: int = 1) -> None:
+    """Link a 7-Scenes folder as ``depth``, ``posed`` and ``unposed``, and note its poses."""
+    if (folder / "poses.json").is_file():
+        return
+    frames = sorted((source / "frames").glob("*.color.*"))[::every]
+    poses = {}
+    for colour in frames:
+        stem = colour.name.split(".")[0]
+        poses[stem] = np.loadtxt(source / "frames" / f"{stem}.pose.txt").tolist()
+        for kind in ("depth", "posed"):
+            place = folder / kind / "frames"
+            place.mkdir(parents=True, exist_ok=True)
+            for path in (colour, colour.parent / f"{stem}.pose.txt"):
+                shutil.copy(path, place / path.name)
+            shutil.copy(source / "camera-intrinsics.txt", folder / kind)
+        shutil.copy(colour.parent / f"{stem}.depth.png", folder / "depth" / "frames")
+        (folder / "unposed").mkdir(exist_ok=True)
+        shutil.copy(colour, folder / "unposed" / f"{stem}{colour.suffix}")
+    (folder / "poses.json").write_text(json.dumps(poses))
+
+
+def room_inputs(seed: int, folder: Path, frames: int) -> None:
+    """Write a generated room as posed photos, as photos alone and as noise-free depth.
+
+    All three look from the same places the same way: what one cannot see none of them can.
+    """
+    from world2minecraft.rooms import generate_room, scan_room
+
+    if (folder / "poses.json").is_file():
+        return
+    room = generate_room(seed)
+    scan_room(room, folder / "posed", sensor="photo", frames=frames, seed=seed)
+    (folder / "unposed").mkdir(parents=True, exist_ok=True)
+    for photo in sorted((folder / "posed" / "colour").iterdir()):
+        shutil.copy(photo, folder / "unposed")
+    write_plain(folder / "depth", depth_views(room, folder / "posed"), depth_unit="m")
+    stated = json.loads((folder / "depth" / "capture.json").read_text())["frames"]
+    poses = {frame["name"]: frame["camera_to_world"] for frame in stated}
+    (folder / "poses.json").write_text(json.dumps(poses))
+
+
+def depth_views(room: Room, posed: Path) -> Iterator[View]:
+    """Yield a virtual phone's photos of a room with exact depth."""
+    scene = prepare_photos(room)
+    stated = json.loads((posed / "capture.json").read_text())
+    camera = Camera(**stated["colour_camera"])
+    with np.load(posed / "truth.npz") as truth:
+        places = dict(zip(truth["frame_names"].tolist(), truth["camera_to_truth"], strict=True))
+    for frame in stated["frames"]:
+        name, pose = frame["name"], np.array(frame["camera_to_world"])
+        colour = np.asarray(Image.open(posed / "colour" / f"{name}.jpg"))
+        depth_m = take_photo(scene, camera, places[name]).depth_m
+        yield View(name, pose, colour, camera, depth_m, camera)
+
 
 COLUMNS = ("precision", "precision where known", "recall", "free found", "wrong free")
 
@@ -91,7 +253,7 @@ def report(name: str, folder: Path, ways: list[str]) -> dict[str, dict[str, floa
 
 
 def json_poses(folder: Path) -> dict[str, np.ndarray]:
-    """Return the true poses by frame that ``photo_inputs`` wrote."""
+    """Return the true poses by frame that were written with the inputs."""
     rows = json.loads((folder / "poses.json").read_text())
     return {name: np.array(pose) for name, pose in rows.items()}
 
@@ -99,7 +261,8 @@ def json_poses(folder: Path) -> dict[str, np.ndarray]:
 def run(words: list[str], stereo: str) -> tuple[float, float, float] | None:
     """Run ``w2m`` in a process of its own; return CPU s, wall s and peak MB, None on failure."""
     before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    command = [sys.executable, "-m", "benchmarks.photo_runs", stereo, *words]
+    module = "benchmarks.rival_sgbm" if stereo == "sgbm" else "world2minecraft.cli"
+    command = [sys.executable, "-m", module, *words]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     wall = time.perf_counter() - begun
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -5,7 +5,7 @@
 Each room is generated, scanned with the virtual depth camera (its usual noise, 40 frames) and
 reconstructed; without ``--labels`` from depth and colour alone, with it from label images of which
 a tenth is wrong too. Then a script refines it through ``Editor``, as a person would: see
-``refine_person`` for what it may do and ``refine_truth`` for when it is done. The folder keeps the
+``refinement`` for what it may do and when it is done. The folder keeps the
 reconstructions, and the scenes with their journals, which ``w2m forge stats`` reads. Seeds 500 to
 549 are for tuning, 1000 to 1049 and 2000 to 2019 are kept for tests.
 """
@@ -22,8 +22,14 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from benchmarks.refine_person import MOST_GESTURES, next_gesture
-from benchmarks.refine_truth import Wanted, agreement, defects_of, wanted_of
+from benchmarks.refinement import (
+    MOST_GESTURES,
+    Wanted,
+    agreement,
+    defects_of,
+    next_gesture,
+    wanted_of,
+)
 from world2minecraft.exchange.objects import write_objects, write_placements
 from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.files import write_json

@@ -21,8 +21,15 @@ from rich.console import Console
 from rich.table import Table
 from tests.render.oracle import has_face, oracle_picture
 
-from benchmarks.odd_looks import OddLooks, odd_volume
-from benchmarks.render_scenes import camera_of, poses, room, scene_looks, small
+from benchmarks.render_scenes import (
+    RandomLooks,
+    camera_of,
+    poses,
+    random_models,
+    room,
+    scene_looks,
+    small,
+)
 from world2minecraft.files import write_json
 from world2minecraft.render import Picture, prepare_scene, render_volume
 from world2minecraft.render.elements import LookSource
@@ -63,8 +70,8 @@ CASES = (
          scene_looks, False),
     Case("flats 60x40x60, free cells", small, scene_looks, False),
     Case("flats 60x40x60, inside furniture", small, scene_looks, True),
-    Case("odd models, free cells", lambda: odd_volume(0), lambda: OddLooks(0), False),
-    Case("odd models, inside them", lambda: odd_volume(0), lambda: OddLooks(0), True),
+    Case("odd models, free cells", lambda: random_models(0), lambda: RandomLooks(0), False),
+    Case("odd models, inside them", lambda: random_models(0), lambda: RandomLooks(0), True),
 )  # fmt: skip
 
 

@@ -9,18 +9,234 @@ or ``benchmarks.check_faithful --split test`` wrote with ``--json``, adds it to
 import argparse
 import datetime
 import math
+import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from benchmarks.faithful_table import COLUMNS, mean
-from benchmarks.leaderboard_file import DATE, INPUTS, Entry, entry_text, read_entries
-from benchmarks.leaderboard_page import with_tables
-from world2minecraft.errors import DamagedFileError, UsageError, World2MinecraftError
+import yaml
+
+from benchmarks.check_faithful import COLUMNS, mean
+from world2minecraft.errors import (
+    DamagedFileError,
+    UnknownNameError,
+    UsageError,
+    World2MinecraftError,
+)
 from world2minecraft.exchange.occupancy import DEFAULT_VOXEL_M
 from world2minecraft.files import read_bytes, read_json, write_text
 from world2minecraft.rooms.trials import DIFFICULTIES, trials
+
+INPUTS = ("depth", "depth+labels", "photos")
+FIGURES = ("precision", "recall", "iou", "miou", "f1", "fronts", "calibration")
+DATE = "year-month-day, such as 2026-11-22"
+MAX_BYTES = 1 << 20
+MAX_TEXT = 300  # Letters.
+LINK = re.compile(r"https?://\S+|[0-9a-f]{7,40}")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A row, checked: every text can stand in a table, every figure is a share."""
+
+    method: str
+    version: str
+    input: str
+    date: str
+    link: str
+    command: str
+    figures: Mapping[str, Mapping[str, float]]
+    note: str = ""
+
+    def __post_init__(self):
+        for name in ("method", "version", "link", "command", "note"):
+            _check_text(name, getattr(self, name), may_be_empty=name == "note")
+        if self.input not in INPUTS:
+            raise ValueError(f"input must be {', '.join(INPUTS)}, not {self.input!r}")
+        if not re.fullmatch(r"\d{4}-\d{2}-\d{2}", str(self.date)) or not _is_date(self.date):
+            raise ValueError(f"date must be {DATE}, not {self.date!r}")
+        if not LINK.fullmatch(self.link):
+            raise ValueError(f"link must be an https:// address or a commit, not {self.link!r}")
+        if not isinstance(self.figures, Mapping) or set(self.figures) != set(DIFFICULTIES):
+            raise ValueError(f"figures must be of each of {', '.join(DIFFICULTIES)}")
+        for difficulty, figures in self.figures.items():
+            _check_figures(difficulty, figures)
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """What no two rows share."""
+        return self.method, self.version, self.input
+
+
+def read_entries(path: Path, text: str | None = None) -> tuple[Entry, ...]:
+    """Read the rows of a leaderboard.
+
+    Args:
+        path: the file.
+        text: what it would hold; None for what it holds.
+
+    Raises:
+        InputError: it is missing. DamagedFileError: it is no list of rows, or a row is wrong; the
+        message says which, and what was expected.
+    """
+    try:
+        raw = yaml.safe_load(read_bytes(path, MAX_BYTES) if text is None else text)
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise DamagedFileError(
+            path, f"is no YAML ({' '.join(str(error).split())[:120]})"
+        ) from error
+    if not isinstance(raw, list) or not raw:
+        raise DamagedFileError(path, "must be a list of rows, each beginning with '- method:'")
+    entries: list[Entry] = []
+    for number, row in enumerate(raw, start=1):
+        entry = _checked_entry(path, number, row)
+        if entry.key in {other.key for other in entries}:
+            named = " ".join(entry.key)
+            raise DamagedFileError(path, f"row {number}: {named} is there already; say the version")
+        entries.append(entry)
+    return tuple(entries)
+
+
+def entry_text(entry: Entry) -> str:
+    """Return the YAML of a row, as it stands in the file."""
+    words = {f.name: getattr(entry, f.name) for f in fields(entry) if f.name != "figures"}
+    lines = [f"{name}: {_quoted(value)}" for name, value in words.items() if value]
+    lines.append("figures:")
+    for difficulty in DIFFICULTIES:
+        told = entry.figures[difficulty]
+        values = ", ".join(f"{name}: {told[name]:.3f}" for name in FIGURES if name in told)
+        lines.append(f"  {difficulty}: {{{values}}}")
+    return "- " + "\n  ".join(lines) + "\n"
+
+
+def _checked_entry(path: Path, number: int, row: Any) -> Entry:
+    if not isinstance(row, dict):
+        raise DamagedFileError(path, f"row {number} must be a mapping, not {str(row)[:40]!r}")
+    known = {f.name for f in fields(Entry)}
+    try:
+        for name in row:
+            if name not in known:
+                raise UnknownNameError("field", str(name), known)
+        lacking = sorted(known - {"note"} - set(row))
+        if lacking:
+            raise ValueError(f"{', '.join(lacking)} {'is' if len(lacking) == 1 else 'are'} missing")
+        # YAML reads a bare 2026-11-22 as a date, and 1.0 as a number.
+        plain = {k: v if isinstance(v, Mapping) else str(v) for k, v in row.items()}
+        return Entry(**plain)
+    except (ValueError, UnknownNameError) as error:
+        raise DamagedFileError(path, f"row {number}: {error}") from error
+
+
+def _check_text(name: str, value: str, may_be_empty: bool) -> None:
+    if not value and not may_be_empty:
+        raise ValueError(f"{name} must not be empty")
+    if len(value) > MAX_TEXT or not value.isprintable() or set(value) & set("|<>`"):
+        raise ValueError(
+            f"{name} must be one line of at most {MAX_TEXT} letters without | < > `, "
+            f"not {value[:40]!r}"
+        )
+
+
+def _check_figures(difficulty: str, figures: Any) -> None:
+    if not isinstance(figures, Mapping) or not figures:
+        raise ValueError(f"{difficulty} must map figures to numbers, such as {{iou: 0.94}}")
+    for name, value in figures.items():
+        if name not in FIGURES:
+            raise UnknownNameError(f"figure of {difficulty}", str(name), FIGURES)
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if not is_number or not math.isfinite(value) or not 0 <= value <= 1:
+            raise ValueError(f"{name} of {difficulty} must be from 0 to 1, not {value!r}")
+
+
+def _is_date(text: str) -> bool:
+    try:
+        datetime.date.fromisoformat(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _quoted(text: str) -> str:
+    """Return a text as YAML on one line, quoted where it would be read as something else."""
+    return (
+        yaml.safe_dump(str(text), width=10_000, allow_unicode=True).removesuffix("\n...\n").strip()
+    )
+
+
+BEGIN = "<!-- Written by python -m benchmarks.leaderboard from leaderboard.yaml -->"
+END = "<!-- The end of the leaderboard -->"
+TABLES = (
+    (
+        "Where things are: precision and recall within one voxel, exact IoU",
+        ("precision", "recall", "iou"),
+    ),
+    ("What they are: mIoU, object F1, fronts right", ("miou", "f1", "fronts")),
+    ("How well confidence is meant: calibration error", ("calibration",)),
+)
+
+
+def with_tables(page: Path, entries: Sequence[Entry]) -> str:
+    """Return the page's text with the tables of some rows in place of what stands there.
+
+    Raises:
+        InputError: the page is missing. DamagedFileError: it lacks the two marks.
+    """
+    text = read_bytes(page, 1 << 20).decode("utf-8")
+    before, mark, rest = text.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not mark or not end:
+        raise DamagedFileError(page, f"must hold the lines {BEGIN} and {END}")
+    return f"{before}{BEGIN}\n\n{tables(entries)}\n{END}{after}"
+
+
+def tables(entries: Sequence[Entry]) -> str:
+    """Return the tables as Markdown: rows by input, then by exact IoU and F1, best first."""
+    ranked = sorted(entries, key=_rank)
+    parts = [_figures(title, names, ranked) for title, names in TABLES]
+    return "\n".join([*parts, _methods(ranked)])
+
+
+def _rank(entry: Entry) -> tuple:
+    def total(name: str) -> float:
+        return sum(entry.figures[difficulty].get(name, 0.0) for difficulty in DIFFICULTIES)
+
+    return INPUTS.index(entry.input), -total("iou"), -total("f1"), entry.key
+
+
+def _figures(title: str, names: Sequence[str], entries: Sequence[Entry]) -> str:
+    told = [e for e in entries if any(n in e.figures[d] for d in DIFFICULTIES for n in names)]
+    if not told:
+        return ""
+    rows = [[f"{e.method} {e.version}", e.input, *_cells(e, names)] for e in told]
+    return f"**{title}**\n\n{_table(('method', 'input', *DIFFICULTIES), rows)}"
+
+
+def _cells(entry: Entry, names: Sequence[str]) -> list[str]:
+    def said(value: float | None) -> str:
+        return "-" if value is None else f"{value:.3f}"
+
+    return [", ".join(said(entry.figures[d].get(n)) for n in names) for d in DIFFICULTIES]
+
+
+def _methods(entries: Sequence[Entry]) -> str:
+    rows = [
+        [f"{e.method} {e.version}", e.input, e.date, _link(e.link), f"`{e.command}`", e.note]
+        for e in entries
+    ]
+    heads = ("method", "input", "date", "code", "command", "note")
+    return f"**Who, when, how**\n\n{_table(heads, rows)}"
+
+
+def _link(link: str) -> str:
+    return f"[page]({link})" if link.startswith("http") else f"`{link[:10]}`"
+
+
+def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "".join(f"| {' | '.join(line)} |\n".replace("|  |", "| |") for line in lines)
+
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 FILE, PAGE = DOCS / "leaderboard.yaml", DOCS / "scan-benchmark.md"

@@ -8,26 +8,254 @@ a browser or other data is left out, with the reason, where they lack; ``--anywa
 
 ``--markdown`` puts the results of RESULTS among those that are kept (``report_results.json``) and
 writes docs/how-good.md from these alone. The table is ``benchmarks/how_good/*.yaml``; how it is
-written stands in ``report_table.py``. It leaves with 1 where a line that was run is missed.
+written is described in ``report_lines.py``. It leaves with 1 where a line that was run is missed.
 """
 
 import argparse
 import datetime
+import json
 import os
 import platform
+import re
 import resource
 import shlex
 import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
-from benchmarks.report_figures import Written, figures_of
-from benchmarks.report_page import page_of
-from benchmarks.report_results import Result, collect, keep, read_results, results_in, verdicts
-from benchmarks.report_table import Area, Run, lines_of, read_areas
+from benchmarks.report_lines import (
+    NEEDS,
+    Area,
+    Line,
+    Run,
+    Written,
+    every_run,
+    figures_of,
+    lines_of,
+    read_areas,
+)
+from world2minecraft.files import write_json
+
+KEPT = Path(__file__).resolve().parent / "report_results.json"
+FIELDS = {
+    "run", "steps", "figures", "verdicts", "unread", "exits", "seconds", "cpu_seconds", "load",
+    "cores", "python", "commit", "is_changed", "date", "last_words",
+}  # fmt: skip
+Result = dict[str, Any]
+
+
+def verdict(line: Line, result: Mapping[str, Any] | None) -> str:
+    """Return how a line stands.
+
+    met, missed, measured (nothing is asked of its figures), seen (a person has to look), broke (the
+    commands failed, or a figure could not be read), or, without a result, not run.
+    """
+    if result is None:
+        return "not run"
+    if line.look or not line.figures:
+        word = "seen" if line.look else "measured"
+        return "broke" if any(result["exits"]) else word
+    figures = result["figures"].get(line.name, {})
+    if any(figure.what not in figures for figure in line.figures):
+        return "broke"
+    said = [figure.is_met(figures[figure.what]) for figure in line.figures]
+    if False in said:
+        return "missed"
+    return "met" if True in said else "measured"
+
+
+def verdicts(result: Mapping[str, Any], areas: Sequence[Area]) -> dict[str, str]:
+    """Return the verdict of each line that a result is of."""
+    return {line.name: verdict(line, result) for line in lines_of(result["run"], areas)}
+
+
+def read_results(path: Path = KEPT) -> dict[str, Result]:
+    """Return kept results by run; none where the file is not there."""
+    if not path.is_file():
+        return {}
+    found = {result["run"]: result for result in json.loads(path.read_text("utf-8"))}
+    for name, result in found.items():
+        if set(result) != FIELDS:
+            wrong = ", ".join(sorted(set(result) ^ FIELDS))
+            raise ValueError(f"{path.name}: the result of {name} lacks or has too much: {wrong}")
+    return found
+
+
+def results_in(folder: Path) -> dict[str, Result]:
+    """Return the results that lie in a folder, one a file, by run."""
+    found: dict[str, Result] = {}
+    for path in sorted(folder.glob("*.json")):
+        found |= {result["run"]: result for result in read_results(path).values()}
+    return found
+
+
+def collect(folder: Path, areas: Sequence[Area], path: Path = KEPT) -> dict[str, Result]:
+    """Put the results of a folder among the kept ones, in place of older ones; return all.
+
+    Results of runs that the table has no more are left out, and verdicts are told anew.
+    """
+    found = read_results(path) | results_in(folder)
+    known = {name for area in areas for name in area.runs}
+    kept = {name: found[name] for name in sorted(found) if name in known}
+    for result in kept.values():
+        result["verdicts"] = verdicts(result, areas)
+    write_json(path, list(kept.values()))
+    return kept
+
+
+def keep(folder: Path, result: Result) -> Path:
+    """Write the result of one run into a folder; return the file."""
+    path = folder / f"{result['run']}.json"
+    write_json(path, [result])
+    return path
+
+
+LONG_MIN = 5.0  # From here on the page says how long a run takes.
+HEAD = """# How good it is, line by line
+
+Each part of the program was asked to be so good before it was written. This page holds every line
+of that, what was measured of it, and with which command. The numbers come from kept results
+(`benchmarks/report_results.json`), each with its date and the last commit that had changed the
+program then; the page is written by
+
+```
+python -m benchmarks.report --list                 every line, how long it takes, what it needs
+python -m benchmarks.report --out RESULTS          measure what is not in RESULTS yet
+python -m benchmarks.report --out RESULTS --markdown
+```
+
+What was not run here says why, and where earlier figures stand.
+"""
+STANDS = {
+    "met": "met",
+    "missed": "missed",
+    "broke": "whose command broke",
+    "measured": "measured, with no limit asked",
+    "seen": "to be looked at by a person",
+    "not run": "not run here",
+}
+SHOWN = {"met": "met", "missed": "**missed**", "broke": "**broke**", "seen": "to be looked at"}
+EMPTY = "Nothing that was run falls short."
+
+
+def page_of(areas: Sequence[Area], results: Mapping[str, Result]) -> str:
+    """Return the page as Markdown: what falls short first, then a table an area."""
+    runs = every_run(areas)
+    parts = [HEAD, _counts(areas, results), "## What falls short\n", _short(areas, results)]
+    parts += [_section(area, runs, results) for area in areas]
+    return "\n".join(parts).rstrip() + "\n"
+
+
+def measured_of(line: Line, result: Result | None) -> str:
+    """Return the cell that says what was measured."""
+    if result is None:
+        return ""
+    found = result["figures"].get(line.name, {})
+    cells = []
+    for figure in line.figures:
+        if figure.what not in found:
+            cells.append(f"{figure.what} not read")
+        elif not (figure.is_silent and figure.is_met(found[figure.what])):
+            value = f"{found[figure.what]:,.{figure.digits}f}"
+            cells.append(f"{figure.what} {value}{f' {figure.unit}' if figure.unit else ''}")
+    return _counted(", ".join(cells))
+
+
+def reason_of(line: Line, run: Run | None) -> str:
+    """Return why a line was not run here."""
+    if run is None:
+        return line.why
+    reasons = [f"needs {NEEDS[need]}" for need in run.needs if need != "shared"]
+    if run.minutes >= LONG_MIN:
+        reasons.append(f"takes {run.minutes:g} minutes of a free core")
+    return " and ".join(reasons) or "no time yet"
+
+
+def command_of(run: Run | None) -> str:
+    """Return the commands of a run, as one types them."""
+    return "<br>".join(f"`{_typed(step)}`" for step in (run.steps if run else ()))
+
+
+def _typed(step: str) -> str:
+    return step.replace("{work}/", "").replace("{shared}", "SHARED").replace("{root}", ".")
+
+
+def _counted(text: str) -> str:
+    """Say counts of tests the other way round: 12 tests pass, 1 is skipped."""
+    text = re.sub(r"\b(tests pass|fail|are skipped) ([\d,]*\d)", r"\2 \1", text)
+    for many, one in (("tests pass", "test passes"), ("fail", "fails"), ("are", "is")):
+        text = re.sub(rf"(?<![\d,])1 {many}\b", f"1 {one}", text)
+    return text
+
+
+def _counts(areas: Sequence[Area], results: Mapping[str, Result]) -> str:
+    words = [verdict(line, results.get(line.run)) for area in areas for line in area.lines]
+    told = ", ".join(
+        f"{words.count(name)} {said}" for name, said in STANDS.items() if words.count(name)
+    )
+    return f"Of {len(words)} lines: {told}.\n"
+
+
+def _short(areas: Sequence[Area], results: Mapping[str, Result]) -> str:
+    rows = []
+    for area in areas:
+        for line in area.lines:
+            result = results.get(line.run)
+            if verdict(line, result) in ("missed", "broke"):
+                why = f" {line.short}" if line.short else ""
+                measured = measured_of(line, result) or "the command broke"
+                rows.append(
+                    f"- **{line.name}** ({area.title}): asked is {line.asked}; measured:"
+                    f" {measured}.{why}"
+                )
+    return "\n".join([*(rows or [EMPTY]), *_known(areas, results)]) + "\n"
+
+
+def _known(areas: Sequence[Area], results: Mapping[str, Result]) -> list[str]:
+    """Name lines that fell short when they were measured before, and were not run here."""
+    rows = [
+        f"- **{line.name}** ({area.title}): {line.short}{_earlier(line)}"
+        for area in areas
+        for line in area.lines
+        if line.short and verdict(line, results.get(line.run)) == "not run"
+    ]
+    return ["", "Fell short when last measured, and was not run here:", "", *rows] if rows else []
+
+
+def _earlier(line: Line) -> str:
+    return f" Earlier figures: [{line.page}]({line.page}.md)." if line.page else ""
+
+
+def _section(area: Area, runs: Mapping[str, Run], results: Mapping[str, Result]) -> str:
+    rows = [
+        f"## {area.title}\n",
+        "| asked | measured | | command | commit, date |",
+        "|---|---|---|---|---|",
+    ]
+    rows += [_row(line, runs.get(line.run), results.get(line.run)) for line in area.lines]
+    return "\n".join(rows) + "\n"
+
+
+def _row(line: Line, run: Run | None, result: Result | None) -> str:
+    word = verdict(line, result)
+    measured, when = measured_of(line, result), ""
+    if line.look:
+        measured = f"a person looks: {line.look}" + (f"; {measured}" if measured else "")
+    if result is None:
+        why = f"not run here: {reason_of(line, run)}"
+        told = f"; earlier figures: [{line.page}]({line.page}.md)" if line.page else ""
+        measured, word = (f"{measured}; {why}" if measured else why) + told, ""
+    else:
+        changed = " with changes" if result["is_changed"] else ""
+        when = f"{result['commit']}{changed}, {result['date']}"
+    asked = f"**{line.name}**: {line.asked}"
+    cells = (asked, measured, SHOWN.get(word, ""), command_of(run), when)
+    return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
+
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "how-good.md"

@@ -1,28 +1,29 @@
 """Depth of photos by OpenCV's StereoSGBM: pairs are rectified, matched, and carried back.
 
 It takes the place of ``world2minecraft.stereo.depth_maps``, with the same neighbours and the same
-filter behind it, so that the two differ in nothing but how depth is found.
-``python -m benchmarks.rival_sgbm CAPTURE`` compares it with the depth that a posed capture has.
+filter behind it, so that the two differ only in how depth is estimated.
+``python -m benchmarks.rival_sgbm ARGUMENTS`` runs ``w2m ARGUMENTS`` with it; ``check_photos``
+compares the two.
 """
 
 import sys
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import cv2
 import numpy as np
 
-from world2minecraft.coordinates import apply, invert_rigid
-from world2minecraft.geometry.lifting import pixel_rays, project
+from world2minecraft.cli import run
+from world2minecraft.coordinates import invert_rigid
+from world2minecraft.geometry.lifting import pixel_rays
+from world2minecraft.prepare import preparing
 from world2minecraft.progress import Progress, silent
 from world2minecraft.stereo.maps import confirmed
 from world2minecraft.stereo.neighbours import DEPTH_PERCENTILES, chosen_neighbours
 from world2minecraft.stereo.parameters import StereoParameters
 from world2minecraft.stereo.small import SmallPhoto, small_photos
 from world2minecraft.stereo.sweep import depth_range
-from world2minecraft.types import Camera, DepthMap, SparseScene, View
+from world2minecraft.types import Camera, DepthMap, SparseScene
 from world2minecraft.types.photos import PhotoStream
 
 ASKED, PAIRS = 12, 6  # So many neighbours are looked at for so many pairs that can be rectified.
@@ -165,49 +166,11 @@ def carried_back(pair: Pair, found: np.ndarray, camera: Camera) -> np.ndarray:
     return np.where(inside & (depth_m > 0), depth_m, np.nan)
 
 
-def sensed_in(view: View, camera: Camera, camera_to_scan: np.ndarray) -> np.ndarray:
-    """Return float32 [h, w]: a sensor's depth as another camera sees it, 0 where it does not."""
-    rays = pixel_rays(view.depth_camera).astype(np.float64)
-    seen = view.depth_m > 0
-    depth_m = view.depth_m[seen].astype(np.float64)
-    points_m = np.concatenate([rays[seen] * depth_m[:, None], depth_m[:, None]], axis=1)
-    between = invert_rigid(camera_to_scan) @ view.camera_to_scan @ view.depth_to_colour
-    points_m = apply(between, points_m)
-    points_m = points_m[points_m[:, 2] > 0.05]
-    at = np.floor(project(points_m, camera)).astype(int)
-    inside = ((at >= 0) & (at < (camera.width_px, camera.height_px))).all(axis=1)
-    nearest = np.full((camera.height_px, camera.width_px), np.inf, np.float32)
-    np.minimum.at(nearest, (at[inside, 1], at[inside, 0]), points_m[inside, 2].astype(np.float32))
-    return np.where(np.isfinite(nearest), nearest, np.float32(0))
-
-
-def main() -> None:
-    """Print the share of pixels that have depth, and its error by the sensor's."""
-    from world2minecraft.posing import check_poses
-    from world2minecraft.scan.judged import judge_capture
-    from world2minecraft.scan.options import parse_options
-    from world2minecraft.scan.photos import judged_photos
-    from world2minecraft.scan.stream import read_view
-
-    judged = judge_capture(Path(sys.argv[1]), parse_options({}))
-    photos = judged_photos(judged)
-    scene = check_poses(photos)
-    pose_of = dict(zip(scene.names, scene.camera_to_scan, strict=True))
-    frame_of = {frame.name: frame for frame in judged.frames}
-    errors, share, begun = [], [], time.process_time()
-    for made in depth_maps(photos, scene):
-        view = read_view(frame_of[made.name], judged.encoding)
-        true_m = sensed_in(view, made.camera, pose_of[made.name])
-        both = (true_m > 0) & (made.depth_m > 0)
-        errors.append(made.depth_m[both] / true_m[both] - 1)
-        share.append((made.depth_m > 0).mean())
-    off = np.abs(np.concatenate(errors))
-    print(f"{len(share)} photos, depth in {np.mean(share):.1%} of pixels, ", end="")
-    print(
-        f"median error {np.median(off):.2%}, more than 10 % off {(off > 0.1).mean():.1%}, ", end=""
-    )
-    print(f"{time.process_time() - begun:.0f} s of CPU")
+def main(words: list[str]) -> int:
+    """Run ``w2m`` with this stereo and return its exit code."""
+    preparing.depth_maps = depth_maps
+    return run(words)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main(sys.argv[1:]))

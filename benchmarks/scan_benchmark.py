@@ -20,8 +20,7 @@ from typing import Any
 
 from rich.console import Console
 
-from benchmarks.check_faithful import CLEAN, chosen_trials
-from benchmarks.faithful_table import rows_table, stages_table
+from benchmarks.check_faithful import CLEAN, chosen_trials, rows_table, stages_table
 from world2minecraft.errors import InputError, UsageError, World2MinecraftError
 from world2minecraft.evaluate import evaluate_reconstruction
 from world2minecraft.evaluate.foreign import evaluate_foreign, foreign_file

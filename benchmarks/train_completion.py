@@ -10,14 +10,79 @@ import argparse
 import time
 from pathlib import Path
 
+import numpy as np
 import torch
+from safetensors.torch import load_file
 
-from benchmarks.completion_scores import quick_scores
-from world2minecraft.learn.completion.network import CompletionNet
+from world2minecraft.label.channels import network_input
+from world2minecraft.learn.completion.augment import cropped
+from world2minecraft.learn.completion.export import export_completion
+from world2minecraft.learn.completion.network import MULTIPLE, CompletionNet
 from world2minecraft.learn.completion.pool import SamplePool
 from world2minecraft.learn.completion.rooms import FIRST_SEED
-from world2minecraft.learn.completion.samples import read_samples
+from world2minecraft.learn.completion.samples import Sample, read_samples
 from world2minecraft.learn.completion.training import CompletionRun, Trainer
+from world2minecraft.metrics.occupancy import OccupancyCounts, count_occupancy
+
+
+def padded(sample: Sample) -> Sample:
+    """Return a sample whose sides are whole multiples of what the network takes."""
+    shape = tuple(-(-side // MULTIPLE) * MULTIPLE for side in sample.truth.shape)
+    return cropped(sample, np.zeros(3, np.int64), shape)  # type: ignore[arg-type]
+
+
+def with_observed_surface(labels: np.ndarray, logits: np.ndarray, sight) -> np.ndarray:
+    """Return labels [X, Y, Z] with the observed surface occupied, by the most likely class."""
+    surface = sight.log_odds > 0
+    result = labels.copy()
+    result[surface] = logits[1:].argmax(axis=0)[surface] + 1
+    return result
+
+
+@torch.no_grad()
+def logits_of(network: CompletionNet, sample: Sample) -> np.ndarray:
+    """Return float32 [12, X, Y, Z] of a padded sample."""
+    network.eval()
+    cells = torch.from_numpy(network_input(sample.sight))[None]
+    with torch.autocast("cpu", torch.bfloat16):
+        return network(cells)[0].float().numpy()
+
+
+def quick_scores(network: CompletionNet, samples: list[Sample]) -> str:
+    """Return IoU / mIoU of walks and singles: all cells, observed ones, and the hint's."""
+    counts: dict[str, OccupancyCounts] = {}
+
+    def add(name: str, one: OccupancyCounts) -> None:
+        counts[name] = counts.get(name, OccupancyCounts()) + one
+
+    for one in samples:
+        sample = padded(one)
+        logits = logits_of(network, sample)
+        labels = logits.argmax(axis=0).astype(np.uint8)
+        labels = with_observed_surface(labels, logits, sample.sight)
+        observed = sample.sight.log_odds != 0
+        add(f"{one.kind} all", count_occupancy(labels, sample.truth))
+        add(f"{one.kind} observed", count_occupancy(labels, sample.truth, observed))
+        if sample.sight.hint is not None:
+            hint = np.zeros(labels.size, np.uint8)
+            hint[sample.sight.at] = np.where(sample.sight.hint, sample.sight.hint, 11)
+            hint = hint.reshape(labels.shape)
+            add(f"{one.kind} hint observed", count_occupancy(hint, sample.truth, observed))
+            add(f"{one.kind} hinted observed", count_occupancy(labels, sample.truth, observed))
+    return ", ".join(
+        f"{name} {100 * c.iou:.1f}/{100 * c.miou:.1f}" for name, c in sorted(counts.items())
+    )
+
+
+def write_onnx(run: Path, out: Path) -> None:
+    """Export the averaged weights of a run and print the largest difference from torch."""
+    network = CompletionNet()
+    network.load_state_dict(load_file(str(run / "mean.safetensors")))
+    steps = (run / "step.txt").read_text().strip()
+    about = {"steps": steps, "run": (run / "run.txt").read_text().strip()}
+    off = export_completion(network, out, about)
+    print(f"{out}: {out.stat().st_size / 1e6:.2f} MB after {steps} steps; {off:.1e}")
+
 
 HELD_OUT_FILES = 6
 
@@ -32,6 +97,7 @@ def main() -> None:
     parser.add_argument("--every", type=int, default=100)
     parser.add_argument("--score-every", type=int, default=400)
     parser.add_argument("--batch", type=int, default=4)
+    parser.add_argument("--export", type=Path, help="write the trained network as ONNX")
     parser.add_argument("--threads", type=int, default=1)
     chosen = parser.parse_args()
     torch.set_num_threads(chosen.threads)
@@ -55,6 +121,8 @@ def main() -> None:
 
     trainer.train(chosen.until or chosen.steps, report, chosen.every)
     trainer.save(chosen.run)
+    if chosen.export:
+        write_onnx(chosen.run, chosen.export)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
-"""Does a block world help where photos are few? ``python -m benchmarks.train_joint``.
+"""Joint training on photos and block worlds: is it better than training on few photos alone?
 
-::
+``python -m benchmarks.train_joint``::
 
     w2m dataset rooms PHOTO --rooms 12 --images 240 --test-share 0.5
     w2m dataset build BLOCKS --houses 40 --images 1000
@@ -8,9 +8,9 @@
 
 Three ways, the same steps, the same test scenes of the target: ``alone`` trains on the target,
 ``joint`` on target and others, ``others`` on the others alone. Each is trained with every seed, and
-its last weights are scored. ``no picture`` is the average of the target's training boxes
-(``box_average``). The gain of ``joint`` over ``alone`` is judged by a bootstrap that draws test
-scenes and seeds: win where all of its middle 95 % is above 0, loss where below, else undecided.
+the weights of its last step are scored. ``no picture`` is the average of the target's training
+boxes. The gain of ``joint`` over ``alone`` is assessed by a bootstrap over test scenes and seeds:
+a win if its whole 95 % interval is above 0, a loss if below, otherwise undecided.
 """
 
 import argparse
@@ -22,9 +22,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from benchmarks.box_average import average_scenes
-from benchmarks.train_runs import done_run, done_scenes, figure_of
-from benchmarks.train_table import BLIND, markdown
+from benchmarks.train_table import BLIND, average_scenes, done_run, done_scenes, figure_of, markdown
 from world2minecraft.cli.progress import shown
 from world2minecraft.files import write_text
 from world2minecraft.learn.config import PRESETS, DataSource, RunConfig

@@ -7,29 +7,133 @@ the same command; each run stays in RUNS/NET. ``--markdown FILE`` writes the tab
 scores with the paper's rows beside them, classes, and mIoU of the scenes held out of training as
 it went on. ``--preset 8k`` is the papers' grid and size, for a GPU. ``NET+depth`` is shown measured
 depth, as Symphonies was published; the others do without. ``no picture`` is the average of all
-training boxes (``box_average``): a network that is no better has not learned to look.
+training boxes: a network that is no better has not learned to look.
 """
 
 import argparse
 import sys
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 from tests.metrics.paper_occupancy import MINECRAFTOCC, row
 
-from benchmarks.box_average import averaged
-from benchmarks.train_runs import done_run
 from world2minecraft.classes import CLASS_NAMES
 from world2minecraft.cli.progress import shown
-from world2minecraft.files import write_text
+from world2minecraft.dataset.importers import open_occupancy
+from world2minecraft.files import read_json, write_json, write_text
 from world2minecraft.learn.config import PRESETS, DataSource, RunConfig
-from world2minecraft.learn.data.opening import CachePlace
+from world2minecraft.learn.data.cache import Frames
+from world2minecraft.learn.data.opening import CachePlace, open_frames, open_run_data, rule_of
+from world2minecraft.learn.data.splits import split_rows
 from world2minecraft.learn.journal import METRICS, read_rows
 from world2minecraft.learn.networks import NETWORKS
-from world2minecraft.learn.scoring import protocol_scores, said_by_network
+from world2minecraft.learn.scoring import SaidOfFrame, protocol_scores, said_by_network
+from world2minecraft.learn.training import (
+    FACTS,
+    LAST_SCORES,
+    score_run,
+    train_run,
+    trained_network,
+)
+from world2minecraft.learn.validation import said_labels
+from world2minecraft.metrics.intervals import micro_figures
+from world2minecraft.metrics.occupancy import OccupancyCounts
+from world2minecraft.metrics.protocols import PROTOCOLS, ProtocolCounts, count_frame
+from world2minecraft.progress import Progress
+
+SCENE_COUNTS = "scene_counts.json"
+
+
+def done_run(
+    config: RunConfig, folder: Path, device: str, cache: CachePlace, progress: Progress
+) -> dict[str, Any]:
+    """Train and score where that is not done yet; return run.json and scores_last.json as one."""
+    trained = train_run(config, folder, device=device, cache=cache, progress=progress)
+    if not (folder / LAST_SCORES).is_file():
+        score_run(trained, config, device, progress, last=True)
+    return {"facts": read_json(folder / FACTS), "scores": read_json(folder / LAST_SCORES)}
+
+
+def done_scenes(
+    config: RunConfig, folder: Path, target: str, device: str, cache: CachePlace, progress: Progress
+) -> dict[str, np.ndarray]:
+    """Return the monoscene counts of each test scene of a target, int64 [12, 12] by name."""
+    path = folder / SCENE_COUNTS
+    if not path.is_file():
+        on_target = replace(config, data=(DataSource(target),))
+        found = open_occupancy(target)
+        frames = open_frames(found, rule_of(on_target), cache, progress)
+        splits = [found.splits[key] for key in frames.keys]
+        rows = split_rows(frames.scenes, splits, config.val_share, target).scored
+        network = trained_network(folder, config, device, last=True)
+        said = said_labels(network, frames, rows, config, progress=progress)
+        tables = scene_tables(said_by_network(frames, rows, said))
+        write_json(path, {name: table.tolist() for name, table in tables.items()})
+    return {name: np.array(table) for name, table in read_json(path).items()}
+
+
+def scene_tables(frames: Iterable[SaidOfFrame]) -> dict[str, np.ndarray]:
+    """Return the monoscene counts of each scene, int64 [12, 12] by name."""
+    counts: dict[str, ProtocolCounts] = {}
+    for one in frames:
+        scored = count_frame(PROTOCOLS["monoscene"], one.said, one.known)
+        counts[one.scene_id] = counts.get(one.scene_id, ProtocolCounts()) + scored
+    return {name: one.classes.table for name, one in counts.items()}
+
+
+def figure_of(table: np.ndarray, name: str) -> float:
+    """Return ``iou`` or ``miou`` of summed counts."""
+    one = OccupancyCounts(table)
+    return micro_figures(ProtocolCounts(one, one))[name]
+
+
+SHARES = np.arange(0.1, 0.95, 0.05)
+
+
+def class_times(labels: Iterable[np.ndarray]) -> np.ndarray:
+    """Return how often each cell is each class, int64 [12, X, Y, Z]; 255 counts for none."""
+    kinds = np.arange(len(CLASS_NAMES))[:, None, None, None]
+    return sum((one == kinds).astype(np.int64) for one in labels)  # type: ignore[return-value]
+
+
+def iou_of(times: np.ndarray, said: np.ndarray) -> float:
+    """Return the IoU of saying the same labels uint8 [X, Y, Z] of all frames that were counted."""
+    occupied, known, there = times[1:].sum(axis=0), times.sum(axis=0), said > 0
+    return occupied[there].sum() / max(known[there].sum() + occupied[~there].sum(), 1)
+
+
+def average_labels(times: np.ndarray) -> np.ndarray:
+    """Return the labels uint8 [X, Y, Z] that all frames are said to have."""
+    occupied, known = times[1:].sum(axis=0), times.sum(axis=0)
+    kinds = 1 + times[1:].argmax(axis=0)
+    found = [
+        np.where((known > 0) & (occupied >= share * known), kinds, 0).astype(np.uint8)
+        for share in SHARES
+    ]
+    return max(found, key=lambda said: iou_of(times, said))
+
+
+def averaged(
+    config: RunConfig, cache: CachePlace, progress: Progress
+) -> tuple[np.ndarray, Frames, list[int]]:
+    """Return what the average of a run's target says, its frames, and the rows that are scored."""
+    data = open_run_data(config, cache, progress)
+    rows = data.split.train + (data.split.val if data.split.test else [])
+    return average_labels(class_times(data.target.labels(rows))), data.target, data.split.scored
+
+
+def average_scenes(
+    config: RunConfig, cache: CachePlace, progress: Progress
+) -> dict[str, np.ndarray]:
+    """Return the monoscene counts of each scored scene, int64 [12, 12] by name."""
+    said, frames, rows = averaged(config, cache, progress)
+    return scene_tables(said_by_network(frames, rows, iter([said] * len(rows))))
+
 
 PAPER_ROWS = {
     "monoscene": "monoscene",

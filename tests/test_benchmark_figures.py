@@ -5,9 +5,8 @@ import io
 import numpy as np
 import pytest
 from benchmarks import check_completion, check_fitting, check_forge_view
-from benchmarks.faithful_figures import figures_of, name_of
-from benchmarks.faithful_table import TARGETS
-from benchmarks.fitting_rooms import Score
+from benchmarks.check_faithful import TARGETS, figures_of, name_of
+from benchmarks.check_fitting import Score
 from rich.console import Console
 
 from world2minecraft.label.channels import Sight

@@ -34,7 +34,7 @@ def test_the_table_shows_verdict_rival_and_peak():
 def test_a_benchmark_that_breaks_fails_the_run(monkeypatch, capsys):
     monkeypatch.setattr(bench, "measure", lambda name: None)
     assert bench.main(["--only", "cli"]) == 1
-    assert "bench_cli.py broke" in capsys.readouterr().out
+    assert "bench_cli.py failed" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(("value", "code"), [(1.0, 0), (3.0, 1)])
@@ -42,3 +42,21 @@ def test_a_missed_budget_fails_the_run(monkeypatch, tmp_path, value, code):
     monkeypatch.setattr(bench, "measure", lambda name: [Row("x", value, "s", 2.0)])
     assert bench.main(["--only", "cli", "--json", str(tmp_path / "rows.json")]) == code
     assert '"value"' in (tmp_path / "rows.json").read_text()
+
+
+def test_the_list_has_a_line_for_every_benchmark_and_check(capsys):
+    assert bench.main(["--list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    for name in (*bench.names(), *bench.checks()):
+        (line,) = [line for line in lines if line.split()[:1] == [name]]
+        assert len(line.split()) > 3, "the summary of its docstring"
+
+
+def test_every_check_can_be_run_by_its_name(monkeypatch, capsys):
+    asked = []
+    monkeypatch.setattr(bench, "check", lambda name: asked.append(name) or name != "check_render")
+    assert bench.main(["--only", "check_scale"]) == 0
+    assert bench.main(["--checks"]) == 1
+    assert asked == ["check_scale", *bench.ready_checks()]
+    assert "check_render.py failed" in capsys.readouterr().out
+    assert set(bench.INPUTS) <= set(bench.checks())

@@ -5,7 +5,7 @@ import math
 
 import pytest
 from benchmarks import check_faithful as bench
-from benchmarks.faithful_table import COLUMNS, mean, rows_table, stages_table, verdicts
+from benchmarks.check_faithful import COLUMNS, mean, rows_table, stages_table, verdicts
 from rich.console import Console
 
 

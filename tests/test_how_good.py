@@ -10,10 +10,19 @@ import pytest
 import yaml
 from benchmarks import __main__ as bench
 from benchmarks import report
-from benchmarks.report_figures import Written, read_figure, taken, walked
-from benchmarks.report_page import page_of
-from benchmarks.report_results import collect, read_results, results_in, verdict, verdicts
-from benchmarks.report_table import Figure, Line, Read, areas_of, every_run, read_areas
+from benchmarks.report import collect, page_of, read_results, results_in, verdict, verdicts
+from benchmarks.report_lines import (
+    Figure,
+    Line,
+    Read,
+    Written,
+    areas_of,
+    every_run,
+    read_areas,
+    read_figure,
+    taken,
+    walked,
+)
 
 from world2minecraft.cli.verbs import VERBS
 
@@ -305,7 +314,8 @@ def test_runs_are_kept_and_gone_on_with(few, tmp_path, capsys):
 
 
 def test_the_list_tells_minutes_by_area_and_what_is_kept(few, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(report, "read_results", dict)
+    none_of_the_repository = lambda *path: read_results(*path) if path else {}  # noqa: E731
+    monkeypatch.setattr(report, "read_results", none_of_the_repository)
     report.keep(tmp_path, result("large", date="2030-01-02"))
     assert report.main(["--list", "--out", str(tmp_path)]) == 0
     lines = capsys.readouterr().out.splitlines()

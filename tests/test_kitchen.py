@@ -6,9 +6,9 @@ import shutil
 
 import numpy as np
 import pytest
+from benchmarks.check_photos import best_similarity, poses_of
+from benchmarks.check_photos import compare as compare_rooms
 from benchmarks.check_tsdf import compare, read_frames
-from benchmarks.photo_table import best_similarity, poses_of
-from benchmarks.photo_table import compare as compare_rooms
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.minecraft.colours import colours_of

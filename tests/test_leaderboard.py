@@ -6,8 +6,7 @@ from dataclasses import replace
 import pytest
 import yaml
 from benchmarks import leaderboard
-from benchmarks.leaderboard_file import entry_text, read_entries
-from benchmarks.leaderboard_page import BEGIN, END, tables, with_tables
+from benchmarks.leaderboard import BEGIN, END, entry_text, read_entries, tables, with_tables
 
 from test_faithful_table import row as scores_row
 from world2minecraft.errors import DamagedFileError

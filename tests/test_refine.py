@@ -2,8 +2,14 @@
 
 import numpy as np
 import pytest
-from benchmarks.refine_person import next_gesture
-from benchmarks.refine_truth import TruePlane, Wanted, agreement, defects_of, hole_share
+from benchmarks.refinement import (
+    TruePlane,
+    Wanted,
+    agreement,
+    defects_of,
+    hole_share,
+    next_gesture,
+)
 
 from world2minecraft.edit.scene import SceneDraft, objects_of, parse_command
 from world2minecraft.find import find_objects

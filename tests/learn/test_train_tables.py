@@ -1,10 +1,8 @@
 """The benchmark's tables: made of runs that are done once, and a verdict that can go either way."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
-from benchmarks import box_average, draw_networks, train_joint, train_table
+from benchmarks import train_joint, train_table
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -55,16 +53,16 @@ def test_the_average_box_says_what_most_training_frames_hold():
     for frame in frames[:3]:
         frame[0] = 3
     frames[3][0], frames[0][1] = 2, 255
-    times = box_average.class_times(frames)
+    times = train_table.class_times(frames)
     assert times[:, 0, 0, 0].tolist() == [0, 0, 1, 3] + [0] * 8 and times[:, 1].sum() == 3
-    assert box_average.average_labels(times).ravel().tolist() == [3, 0]
+    assert train_table.average_labels(times).ravel().tolist() == [3, 0]
 
 
 @given(arrays(np.uint8, (5, 3, 2, 2), elements=st.sampled_from([0, 1, 4, 255])),
        arrays(np.uint8, (3, 2, 2), elements=st.sampled_from([0, 1, 4])))  # fmt: skip
 def test_the_iou_of_saying_one_box_of_all_frames_is_that_of_their_counts(frames, said):
     expected = sum((count_occupancy(said, one) for one in frames), OccupancyCounts()).iou
-    assert box_average.iou_of(box_average.class_times(frames), said) == pytest.approx(expected)
+    assert train_table.iou_of(train_table.class_times(frames), said) == pytest.approx(expected)
 
 
 def test_a_table_tells_what_was_learned_when(tmp_path):
@@ -74,26 +72,6 @@ def test_a_table_tells_what_was_learned_when(tmp_path):
     head, rows = train_table.learning_rows({name: tmp_path / name for name in "ab"})
     assert head[1:] == ("2", "4")
     assert rows == [["a", "10.00", "25.00"], ["b", "-", "50.00"]]
-
-
-def test_the_pictures_drawn_are_best_middle_and_worst_of_all_networks_together():
-    scores = np.array([[0.1, 0.9, 0.5, 0.2, 0.6], [0.3, 0.9, 0.5, 0.1, 0.6]])
-    assert draw_networks.picked(scores) == [1, 2, 3]
-
-
-def test_a_sheet_has_a_row_for_the_picture_the_truth_and_each_network():
-    labels = np.full((4, 4, 3), 255, np.uint8)
-    labels[:, :, 0], labels[1, 1, 1] = 2, 5
-    frame = SimpleNamespace(image=np.full((6, 8, 3), 99, np.uint8), labels=labels)
-    empty = np.zeros_like(labels)
-    said = {"right": [labels, labels, labels], "nothing": [empty, empty, empty]}
-    lines = draw_networks.lines_of([frame] * 3, [0, 1, 2], said, 0.16)
-    told, pictures = zip(*lines, strict=True)
-    assert told[:2] == ("the picture", "the truth")
-    assert told[2].endswith("100 / 100  100 / 100  100 / 100") and told[3].count("0 / 0") == 3
-    assert all(len(row) == 3 for row in pictures)
-    truth, right, nothing = (np.asarray(pictures[row][0]) for row in (1, 2, 3))
-    assert (truth == right).all() and (truth != nothing).any()
 
 
 def test_joint_runs_share_their_test_scenes(stores, tmp_path, capsys):

@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.odd_looks import OddLooks, odd_volume
+from benchmarks.render_scenes import RandomLooks, random_models, storeys
 from benchmarks.render_scenes import poses as poses_in
-from benchmarks.render_scenes import storeys
 from gpu_for_tests import CAMERA, EVERYTHING, adapter_name, assert_alike
 from looks_for_tests import FewLooks
 from scenes import random_pose, random_volume, volume_of
@@ -53,8 +52,8 @@ def test_every_output_equals_the_kernels(light, looks):
 @pytest.mark.parametrize("seed", range(3))
 def test_models_that_nobody_would_make_equal_the_kernels(seed):
     rng = np.random.default_rng(seed)
-    volume = odd_volume(seed)
-    scene = prepare_scene(volume, OddLooks(seed))
+    volume = random_models(seed)
+    scene = prepare_scene(volume, RandomLooks(seed))
     gpu = gpu_of(scene)
     for _ in range(2):
         pose = random_pose(rng, volume)

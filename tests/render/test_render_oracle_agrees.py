@@ -5,9 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from benchmarks.check_render import LEAST_EQUAL, MOST_MEDIAN_M, compare, differences
-from benchmarks.odd_looks import OddLooks, odd_volume
-from benchmarks.render_scenes import camera_of, poses, scene_looks, storeys
-from benchmarks.rival_mesh import mesh_of
+from benchmarks.render_scenes import (
+    RandomLooks,
+    camera_of,
+    poses,
+    random_models,
+    scene_looks,
+    storeys,
+)
+from benchmarks.rival_rasteriser import mesh_of
 from oracle import Hits, WithoutGlass, has_face, oracle_picture
 from scenes import CAMERA
 
@@ -31,7 +37,7 @@ def test_flats_are_seen_as_the_oracle_sees_them(inside):
 @pytest.mark.parametrize("inside", [False, True])
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_odd_models_are_seen_as_the_oracle_sees_them(seed, inside):
-    volume, looks = odd_volume(seed), OddLooks(seed)
+    volume, looks = random_models(seed), RandomLooks(seed)
     row = compare(volume, looks, CAMERA, poses(volume, 5, seed, looks=looks, inside=inside))
     assert row.equal >= LEAST_EQUAL
     assert row.median_m < MOST_MEDIAN_M
@@ -44,14 +50,14 @@ def test_a_camera_a_millimetre_off_is_noticed():
 
 
 def test_an_element_a_sixteenth_off_is_noticed():
-    volume, looks = odd_volume(0), OddLooks(0)
+    volume, looks = random_models(0), RandomLooks(0)
     (pose,) = poses(volume, 1, 0, looks=looks)
     picture = render_volume(prepare_scene(volume, Moved()), CAMERA, pose, outputs=())
     same, _ = differences(picture, volume, looks, CAMERA, pose)
     assert same.mean() < 0.999
 
 
-class Moved(OddLooks):
+class Moved(RandomLooks):
     """The odd models with every box a sixteenth lower."""
 
     def model(self, state: str) -> BlockModel | None:
@@ -70,7 +76,7 @@ def lowered(element: Element) -> Element:
 
 @pytest.mark.parametrize("seed", [0, 5])
 def test_what_lies_behind_glass_is_what_is_there_without_it(seed):
-    volume, looks = odd_volume(seed), OddLooks(seed)
+    volume, looks = random_models(seed), RandomLooks(seed)
     scene = prepare_scene(volume, looks)
     equal, errors = [], []
     for pose in poses(volume, 4, seed, looks=looks):
@@ -84,7 +90,7 @@ def test_what_lies_behind_glass_is_what_is_there_without_it(seed):
 
 
 def test_normals_are_those_of_the_oracle():
-    volume, looks = odd_volume(4), OddLooks(4)
+    volume, looks = random_models(4), RandomLooks(4)
     scene = prepare_scene(volume, looks)
     for pose in poses(volume, 3, 5, looks=looks):
         picture = render_volume(scene, CAMERA, pose, outputs=("normal",))

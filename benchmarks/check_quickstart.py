@@ -1,6 +1,6 @@
-"""A newcomer's first hour, timed: from a scan to a film of an agent that finds the table.
+"""The navigation quick start, timed: from a scan to a video of an agent that finds the table.
 
-``python -m benchmarks.check_newcomer [CAPTURE] [--out FOLDER]`` runs the commands of the docs in
+``python -m benchmarks.check_quickstart [CAPTURE] [--out FOLDER]`` runs the commands of the docs in
 turn, without a network. Without a capture a generated room is scanned in place of a real one. It
 leaves with 1 where a command fails, the agent does not stop at the table, or all of it takes over
 five minutes of one core.

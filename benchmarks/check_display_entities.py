@@ -1,12 +1,11 @@
-"""How many display entities does furniture take, and is it exact?
+"""Number and accuracy of the display entities that represent furniture.
 
-``python -m benchmarks.check_display [--picture display.png] [--json FILE]``
+``python -m benchmarks.check_display_entities [--json FILE]``
 
-Each design of the library is made at its smallest, usual and largest size, turned by 20 degrees,
-and written as entities. ``wrong`` is, at the usual size, the share of 2 cm cells of its own frame
-whose middle lies in a part and in no entity, or the other way round, both by more than a
-millimetre; the entities are read back from their NBT. It is 0 but where ``limit`` asks for coarser
-boxes. Below stand shapes of 2 cm cells, cut into boxes that share no cell and that may.
+Each design of the library is made at its smallest, usual and largest size, rotated by 20 degrees,
+and written as display entities. ``wrong`` is the share of 2 cm cells, at the usual size, whose
+centre lies in a part but in no entity or vice versa, by more than a millimetre; the entities are
+read back from their NBT. It is 0 except where ``limit`` requires coarser boxes.
 """
 
 import argparse
@@ -20,20 +19,15 @@ from rich.table import Table
 from world2minecraft.build.display.builder import most_pieces
 from world2minecraft.build.display.frame import Frame, entities_of
 from world2minecraft.build.display.pieces import pieces_of
-from world2minecraft.coordinates import apply, block_to_room, invert, look_at
-from world2minecraft.files import write_bytes, write_json
-from world2minecraft.furniture import TEMPLATES, Template, cells_of, template
-from world2minecraft.geometry.boxes import partition
-from world2minecraft.geometry.covers import few_boxes
+from world2minecraft.coordinates import apply, block_to_room, invert
+from world2minecraft.files import write_json
+from world2minecraft.furniture import TEMPLATES, Template, template
 from world2minecraft.minecraft.displays import display_cubes
-from world2minecraft.render import render_volume
-from world2minecraft.report.pictures import as_png
-from world2minecraft.types import BlockVolume, Camera, Entity
+from world2minecraft.types import Entity
 
 CELL_M, SCALE, YAW_DEG = 0.02, 4.0, 20.0
 SLACK_M = 0.001
 CORNER_M = np.zeros(2)
-SHAPES = ("chair", "dining_table", "round_table", "sofa", "double_bed", "bookcase", "lamp", "plant")
 
 
 class Row(NamedTuple):
@@ -108,67 +102,17 @@ def design_table(rows: list[Row]) -> Table:
     return table
 
 
-def shape_table() -> Table:
-    """Return shapes of cells in a table."""
-    head = ("shape of 2 cm cells", "partition", "with overlaps")
-    table = Table(*head, title="Boxes for cells")
-    solids = {name: _solid(template(name)) for name in SHAPES}
-    across = np.indices((50, 50)) - 24.5
-    solids["disc of 1 m"] = ((across**2).sum(axis=0) <= 625)[:, :, None]
-    for name, solid in solids.items():
-        whole = (len(partition(solid.astype(np.int32))), len(few_boxes(solid.astype(np.int32))))
-        table.add_row(name, *(str(count) for count in whole))
-    return table
-
-
-def _solid(one: Template) -> np.ndarray:
-    cells = cells_of(one, one.typical_m, voxel_m=CELL_M)
-    solid = np.zeros(cells.max(axis=0) + 1, bool)
-    solid[tuple(cells.T)] = True
-    return solid
-
-
-def picture(names: list[str]) -> np.ndarray:
-    """Return a picture, uint8 [H, W, 3], of designs in rows, each turned by 20 degrees."""
-    across, apart, entities = 10, 10, []
-    for number, name in enumerate(names):
-        one = template(name)
-        found, _ = entities_at(one, np.array(one.typical_m))
-        east, south = apart * (number % across), apart * (number // across)
-        for each in found:
-            x, y, z = each.position
-            entities.append(Entity((x + east, y, z + south), each.id, each.nbt))
-    rows = -(-len(names) // across)
-    shape = (apart * across, 12, apart * rows)
-    states = np.zeros(shape, np.uint16)
-    states[:, 0] = 1
-    volume = BlockVolume(
-        states, ("minecraft:air", "minecraft:light_gray_concrete"), np.zeros(shape, np.uint8),
-        np.zeros(shape, np.uint16), (0, 63, 0), block_to_room(CORNER_M, SCALE),
-        entities=tuple(entities),
-    )  # fmt: skip
-    middle = apply(volume.block_to_room, np.array([shape[0] / 2, 64.0, shape[2] / 2]))
-    eye = middle + np.array([0.0, -0.62 * shape[2] / SCALE, 0.75 * shape[0] / SCALE])
-    camera = Camera(1920, 1400, 1500.0, 1500.0, 960.0, 700.0)
-    colour = render_volume(volume, camera, look_at(eye, middle), outputs=("colour",)).colour
-    return np.zeros((1, 1, 3), np.uint8) if colour is None else colour
-
-
 def main() -> None:
-    """Print the tables, and draw the picture."""
+    """Print the table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--picture", type=Path)
     parser.add_argument("--json", type=Path, help="write the figures to this file")
     chosen = parser.parse_args()
     names = list(TEMPLATES.names())
     console = Console(width=110)
     rows = [row_of(name) for name in names]
     console.print(design_table(rows))
-    console.print(shape_table())
     if chosen.json is not None:
         write_json(chosen.json, [row._asdict() for row in rows])
-    if chosen.picture is not None:
-        write_bytes(chosen.picture, as_png(picture(names)))
 
 
 if __name__ == "__main__":
