@@ -1,5 +1,8 @@
 """Rotations by their vector: about it, by its length in radians."""
 
+# Not by scipy's Rotation: its last bits differ, and with them the poses that generated captures
+# state, which are the same bytes for the same seed from one version to the next.
+
 import numpy as np
 
 LEAST_RAD = 1e-15  # Under it an axis has no direction.
