@@ -63,12 +63,17 @@ def run(
 
     Raises:
         InputError: it is no data set, or damaged. UsageError: there is no such split.
+        MissingExtraError: plots are asked for, and matplotlib is not installed.
     """
     from world2minecraft.cli.progress import shown
     from world2minecraft.dataset.statistics import statistics_text
     from world2minecraft.dataset.statistics.reading import statistics_of
     from world2minecraft.machine import usable_cores
 
+    if plots is not None:
+        from world2minecraft.dataset.statistics.plots import need_matplotlib
+
+        need_matplotlib()
     with shown() as progress:
         statistics = statistics_of(
             path, split, format=format, jobs=jobs or usable_cores(), progress=progress

@@ -34,10 +34,9 @@ def write_plots(statistics: DatasetStatistics, folder: str | Path) -> list[Path]
     Raises:
         MissingExtraError: matplotlib is not installed. OutputError: the folder cannot be written.
     """
-    try:
-        import matplotlib.style  # noqa: PLC0415  # An extra, and slow to import.
-    except ImportError as error:
-        raise MissingExtraError("drawing plots", "data") from error
+    need_matplotlib()
+    import matplotlib.style  # noqa: PLC0415  # An extra, and slow to import.
+
     plain = ["default", {"text.parse_math": False}]  # A name may hold a dollar sign.
     with matplotlib.style.context(plain):
         drawn = {"classes.png": class_plot(statistics), "scenes.png": scene_plot(statistics)}
@@ -48,6 +47,14 @@ def write_plots(statistics: DatasetStatistics, folder: str | Path) -> list[Path]
             figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
             write_bytes(Path(folder) / name, stream.getvalue())
     return [Path(folder) / name for name in sorted(drawn)]
+
+
+def need_matplotlib() -> None:
+    """Check that plots can be drawn, before a set is counted for them. Raises MissingExtraError."""
+    try:
+        import matplotlib.style  # noqa: F401, PLC0415
+    except ImportError as error:
+        raise MissingExtraError("drawing plots", "data") from error
 
 
 def class_plot(statistics: DatasetStatistics) -> "Figure":
