@@ -1,9 +1,10 @@
-"""Batches, pools and a data set's images: milliseconds of CPU an image, memory, and hours in all.
+"""Batches, pools and the images of a data set: CPU time per image, memory and total hours.
 
-``python -m benchmarks --only batch``. Small pictures are taken in one call and in a loop of
-``render_volume``, in turn. Then a slice of a data set is drawn and written as JPEG by as many
-processes as there are cores: CPU is counted in the processes themselves, drawing and encoding
-apart, and extrapolated to 100,000 images on two cores. A slice of more images: W2M_SLICE=500.
+``python -m benchmarks --only batch``. Small images are rendered in one call and in a loop of
+``render_volume``, alternately. Then a slice of a data set is rendered and written as JPEG by as
+many processes as there are cores: CPU time is counted in the processes themselves, rendering and
+encoding separately, and extrapolated to 100,000 images on two cores. ``W2M_SLICE=500`` sets a
+larger slice.
 """
 
 import io

@@ -1,4 +1,4 @@
-"""How long ``w2m --help`` takes: the median of nine fresh processes."""
+"""Time of ``w2m --help``: the median of nine fresh processes."""
 
 import statistics
 import subprocess

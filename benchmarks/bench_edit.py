@@ -1,4 +1,4 @@
-"""Building into a world that exists, undoing it, and the clean-up: seconds, and peak memory."""
+"""Building into an existing world, undoing it and cleaning up: CPU time and peak memory."""
 
 import resource
 import sys
@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.bench_render import volume_of_room
+from benchmarks.render_scenes import room
 from benchmarks.rows import Row
 from world2minecraft.edit.backups import steps_of, take_back
 from world2minecraft.edit.cleanup import mended
 from world2minecraft.edit.into_world import build_into, take_blocks_out
 from world2minecraft.minecraft.worlds.world import write_world
-from world2minecraft.rooms import generate_room
 from world2minecraft.types import AIR, BlockVolume
 
 SIZE = (256, 64, 256)
@@ -44,9 +43,9 @@ def run() -> list[Row]:
         ]
         build_into(world, build)
         rows.append(_row("undo, byte by byte", lambda: take_back(steps_of(world)[-1])))
-    room = volume_of_room(generate_room(1, kind="living"), 4.0)
-    mended(room)
-    rows.append(_row("clean-up, a room at 4 blocks a metre", lambda: mended(room)))
+    built = room(4.0)
+    mended(built)
+    rows.append(_row("clean-up, a room at 4 blocks a metre", lambda: mended(built)))
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     peak_mb = peak / (1 << 20 if sys.platform == "darwin" else 1 << 10)
     return [*rows[:-1], Row(rows[-1].what, rows[-1].value, "s", peak_mb=round(peak_mb, 1))]

@@ -1,8 +1,8 @@
-"""SceneForge's server: an edit on its way to a second tab, and loading scenes of three sizes.
+"""The server of SceneForge: latency of an edit to a second tab, and loading of three scene sizes.
 
-The server is ``w2m forge`` itself, in a process of its own, with its journal on the disk. The
-rival is the form in which tools drawn with D3 load voxels, as the paper's does: a JSON list of
-the occupied cells, [x, y, z, label] each, made and read in this run.
+The server is ``w2m forge`` in a process of its own, with its journal on disk. The rival is the
+format in which tools based on D3, such as the paper's, load voxels: a JSON list of the occupied
+cells, [x, y, z, label] each, written and read in the same run.
 """
 
 import gzip

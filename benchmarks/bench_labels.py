@@ -1,4 +1,4 @@
-"""What labels cost: the cells of a house of twelve rooms, and labels and masks of an image."""
+"""Occupancy labels: the cells of a house of twelve rooms, and the labels and masks of an image."""
 
 import time
 import tracemalloc

@@ -1,7 +1,7 @@
-"""Every block format, written and read, beside the public packages in the same run.
+"""Block formats, written and read, compared with the public packages in the same run.
 
 The region has 4.2 million cells, of which 1.75 million are not air. mcschematic and anvil-parser2
-do the whole of it. nbtlib holds an object for each block: it does a part, and rates are compared.
+process all of it. nbtlib holds one object per block and processes a part; rates are compared.
 """
 
 import tempfile

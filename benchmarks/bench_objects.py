@@ -1,6 +1,6 @@
-"""Commands and questions on objects of the demo room, as SceneForge asks them.
+"""Commands and queries on the objects of the demo room, as SceneForge sends them.
 
-CPU time of this process, so that a busy machine says the same; each once warm, the median of nine.
+CPU time of this process, which does not depend on the load; the median of nine, after a warm-up.
 """
 
 import time

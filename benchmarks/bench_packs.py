@@ -1,7 +1,7 @@
-"""A resource pack: opening a zip as large as a client jar, and 200 block states read from it.
+"""A resource pack: opening a zip as large as a client jar and reading 200 block states from it.
 
-The pack is made here, of noise: 1,500 blocks of four boxes each, one of them turned freely, with a
-parent and a grandparent, each in four directions with locked textures.
+The pack is generated from noise: 1,500 blocks of four boxes each, one of them rotated freely,
+with a parent and a grandparent, each in four directions with locked textures.
 """
 
 import io

@@ -1,4 +1,4 @@
-"""The main job against its budgets: fusion, building, the whole way warm, and the first run."""
+"""The main job against its budgets: fusion, building, the warm pipeline and the first run."""
 
 import os
 import subprocess

@@ -1,8 +1,8 @@
-"""The ray caster and the virtual scan: milliseconds of CPU a picture, seconds a capture.
+"""The renderer and the virtual scanner: CPU time per image, seconds per capture.
 
-``python -m benchmarks.bench_render`` prints it as a table, with wall time and spread. Pictures
-are of a furnished room built at 4 and 2 blocks a metre, and of flats of 0.14 and 4.2 million cells;
-cameras stand at random places indoors. The rival is ``benchmarks.rival_rasteriser``.
+``python -m benchmarks.bench_render`` prints a table with wall time and spread. The scenes are a
+furnished room built at 4 and 2 blocks per metre, and blocks of flats of 0.14 and 4.2 million cells;
+cameras stand at random positions indoors. The rival is ``benchmarks.rival_rasteriser``.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""Connections, stability and light of a room of blocks, as the builder asks for them."""
+"""Connections, stability and light of a room of blocks, as the builder computes them."""
 
 import time
 from collections.abc import Callable

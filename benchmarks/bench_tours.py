@@ -1,4 +1,4 @@
-"""Views of a generated house, planned: milliseconds of CPU each; and its walkable graph."""
+"""Planning the views of a generated house, and its walkable graph: CPU time."""
 
 import time
 from collections.abc import Callable

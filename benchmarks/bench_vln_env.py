@@ -1,8 +1,8 @@
-"""What a step of the navigation environment costs, and of its physics alone.
+"""A step of the navigation environment, and of its physics alone.
 
-The rival's figure is what MineStudio documents of its own environment: 38 to 45 frames a second.
-Rates are of CPU time of one process, the median of ``RUNS`` runs of ``STEPS`` random moves through
-a house of six rooms; the row "slowest" tells the spread.
+The rival's figure is the one MineStudio documents for its environment: 38 to 45 frames per
+second. Rates are per CPU second of one process, the median of ``RUNS`` runs of ``STEPS`` random
+moves through a house of six rooms; the row "slowest" shows the spread.
 """
 
 import tempfile

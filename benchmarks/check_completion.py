@@ -1,15 +1,15 @@
-"""The completion network against the truth of virtual scans it has never seen.
+"""IoU and mIoU of the completion network on unseen virtual scans.
 
 ``python -m benchmarks.check_completion [--seeds 3 --rooms 6] [--weights FILE] [--keep FOLDER]
 [--json FILE]``
 
-Each seed is a set of rooms of its own (from 8,000 on, which training never takes), scanned with
-the noise that the samples have: the share of fused surface cells that are empty in the truth is
-printed. In the same table: ``surface`` (what was fused, of no class), ``geometric`` (its labels
-on that surface; single views beside the room's axes have none and are left out of its row),
-``votes`` (where a scan has label images, what that labeller says of the surface) and ``ceiling``
-(observed surface kept, all else as the truth says). Figures are IoU / mIoU of 11 classes in
-percent, micro over the rooms of a seed, mean and spread over seeds. ``near`` forgives one cell.
+Each seed is a separate set of rooms (from 8,000 on, which training never uses), scanned with the
+noise of the training samples; the share of fused surface cells that are empty in the truth is
+printed. Baselines in the same table: ``surface`` (the fused surface, without classes),
+``geometric`` (its labels on that surface; not defined for single views outside the room's axes),
+``votes`` (label images, where a scan has them) and ``ceiling`` (the observed surface, and the
+truth everywhere else). Figures are IoU / mIoU of 11 classes in percent, micro-averaged over the
+rooms of a seed, with mean and spread over the seeds. ``near`` allows an error of one cell.
 """
 
 import argparse

@@ -1,14 +1,14 @@
-"""How fast data sets are made: ``python -m benchmarks.check_dataset_build``.
+"""Throughput of data set generation.
 
-- ``small``: the issue's command, 2,000 images of 640x480 of 40 generated houses on all cores.
-- ``large``: a slice at the paper's 1920x1129, told for its 100,165 images.
-- ``labels``: the same slice, labels and masks alone.
-- ``views``: worlds and views alone, house by house in one process; only where it is named.
+``python -m benchmarks.check_dataset_build [--only NAME] [--json FILE]``
 
-``--only NAME`` takes one of them, ``--json FILE`` writes the figures too.
+- ``small``: 2,000 images of 640x480 of 40 generated houses, on all cores.
+- ``large``: a slice at the paper's 1920x1129, extrapolated to its 100,165 images.
+- ``labels``: the same slice, labels and masks only.
+- ``views``: worlds and views only, house by house in one process; runs only if named.
 
-CPU times are of all processes together, by stage; hours are those of two cores. Houses and views
-of the large slices are told apart, since the paper's sets have many more images a house.
+CPU times are sums over all processes, by stage; hours are for two cores. Houses and views of the
+large slices are listed separately, since the paper's sets have many more images per house.
 """
 
 import argparse

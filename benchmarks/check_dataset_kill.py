@@ -1,11 +1,13 @@
-"""kill -9 while a data set is built: ``python -m benchmarks.check_dataset_kill [--kills 50]``.
+"""Crash safety of data set builds: SIGKILL at random moments, then resume.
 
-A small data set of generated houses is built whole once. Then it is built again and again: each
-time the build is killed at a random moment, from the first look at a scene to the index, and begun
-anew by the same command. After each kill every image that was there before or told to be done must
-be there, and at most one more a process. Each set that comes to its end must be the first one, file
-by file, with no file more. A part of the kills (``--pools``) hits builds by a pool of two
-processes: the parent, a worker, or all at once.
+``python -m benchmarks.check_dataset_kill [--kills 50]``
+
+A small data set of generated houses is built once without interruption. Then it is built again:
+each build is killed at a random moment, between the first scene and the index, and resumed by the
+same command. After each kill every image that existed before or was reported as done must exist,
+and at most one more per process. Each finished set must equal the first one, file by file. Some
+of the kills (``--pools``) hit builds by a pool of two processes: the parent, a worker, or all of
+them.
 """
 
 import argparse

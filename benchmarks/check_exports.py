@@ -1,14 +1,14 @@
-"""Do trainers' own loaders find our labels?
+"""Exports to NYUv2 and OccScanNet, read back by independent loaders.
 
 ``python -m benchmarks.check_exports [DATA] [--json FILE]``
 
-A data set (40 views of four generated houses where none is named) is exported as NYUv2 and as
-OccScanNet, and read again by a loader that is written from the description of those formats alone
-(``tests/dataset/exchange/page_loader.py``): their orders of axes, their ``vox2pix``, their
-intrinsics. Told are the cells whose label or place in the picture differs from the store's (NYUv2's
-box is the region; OccScanNet's lies along the room's axes), and the share of the region's pixels
-whose depth leads, by the loader's arithmetic, to the label that the store's own geometry gives. The
-command leaves with 1 where one label differs.
+A data set (by default 40 views of four generated houses) is exported and read again by a loader
+written only from the published description of the formats
+(``tests/dataset/exchange/page_loader.py``): their axis orders, their ``vox2pix``, their
+intrinsics. Reported are the cells whose label or projection differs from the store's (the box of
+NYUv2 is the region; that of OccScanNet follows the room's axes), and the share of the region's
+pixels whose depth leads, by the loader's arithmetic, to the label given by the store's own
+geometry. The exit code is 1 if any label differs.
 """
 
 import argparse

@@ -1,14 +1,15 @@
-"""The benchmark of fidelity: trials are scanned, reconstructed twice and scored.
+"""Fidelity of reconstructions: generated rooms are scanned, reconstructed twice and scored.
 
 ``python -m benchmarks.check_faithful [--split tune] [--difficulty noise ...] [--trials N]
-[--labels both] [--stages] [--keep DIR] [--json FILE] [--verbose]``
+[--labels both] [--stages] [--keep DIR] [--json FILE] [--figures FILE] [--verbose]``
 
-One table with the trials' label images (``labels``, a tenth of them wrong) and one without
-(``none``), with a row for each difficulty (means over its trials) and the targets under it;
-``--labels votes`` and ``geometric`` take these labellers in place of the usual one. ``clean`` are
-the trials of ``noise`` without noise and jitter. With ``--keep`` what is there already is not made
-again, so that a run that was cut off goes on; begin a new folder once rooms or stages have changed.
-Seeds of ``--split test`` are for the last word alone: nobody tunes on them.
+One table with the label images of the trials (``labels``, a tenth of the pixels wrong) and one
+without (``none``), with a row per difficulty (means over its trials) and the targets below;
+``--labels votes`` and ``geometric`` select these labellers instead of the default. ``clean`` are
+the trials of ``noise`` without noise and jitter. ``--figures`` writes one figure per target: the
+mean of its worst difficulty. With ``--keep`` finished trials are not repeated, so that an
+interrupted run continues; use a new folder after rooms or stages have changed. Seeds of ``--split
+test`` are for final results only: nothing is tuned on them.
 """
 
 import argparse

@@ -1,10 +1,11 @@
-"""kill -9 while a scene is edited: ``python -m benchmarks.check_forge_kill [--kills 50]``.
+"""Crash safety of the editor: SIGKILL while a scene is edited, then recovery.
 
-A process edits the demo room: paints, undoes, redoes, and now and then saves, with a snapshot
-after each fifth step, so that kills fall into those too. It tells each step that was acknowledged,
-and is killed at a random moment. Then the scene is opened: it must open to be edited, hold every
-step that was acknowledged, and be, bit for bit, what those steps make of the first scene. The
-next process goes on from there.
+``python -m benchmarks.check_forge_kill [--kills 50]``
+
+A process edits the demo room: it paints, undoes, redoes and sometimes saves, with a snapshot after
+every fifth step, so that kills hit those too. It reports each acknowledged step and is killed at a
+random moment. The scene must then open for editing, contain every acknowledged step and be, bit for
+bit, the result of those steps on the first scene. The next process continues from there.
 """
 
 import argparse

@@ -1,16 +1,16 @@
-"""How soon, and how smoothly, does SceneForge draw a scene on software GL?
+"""Frame times of SceneForge's 3D view on software GL, compared with SVG and instanced cubes.
 
 ``python -m benchmarks.check_forge_view [--pictures FOLDER] [--scenes demo room house building]
 [--json FILE]``
 
-Needs node (the page is built for this), playwright and a chromium. ``demo`` is the demo room in the
-whole editor, by the bundle that is committed. The other scenes are made here and drawn alone:
-rooms with furniture, three cells in a hundred missing and a crust of wrong ones, as a raw
-reconstruction has. ``first`` is the time from the start of the navigation to the first frame, in a
-browser that runs, ``whole`` until all is drawn as fine as it will be. ``moving`` and ``inside``
-are the medians of frames while the camera orbits, from outside and from within a room; ``scale``
-is the share of the screen's pixels along a side that they had, which falls where the machine is
-slow. Beside stand an SVG square a voxel, as D3 draws them, and an instanced cube a voxel.
+Requires Node (the page is built for it), Playwright and Chromium. ``demo`` is the demo room in
+the whole editor, with the committed bundle. The other scenes are generated and drawn alone:
+furnished rooms with 3 % of the cells missing and a crust of wrong ones, as in a raw
+reconstruction. ``first`` is the time from the start of the navigation to the first frame, in a
+running browser, ``whole`` until everything is drawn at full detail. ``moving`` and ``inside`` are
+median frame times while the camera orbits, from outside and inside a room; ``scale`` is the share
+of the screen's pixels along a side that they had, which decreases on slow machines. Rivals: an
+SVG square per voxel, as D3 draws them, and an instanced cube per voxel.
 """
 
 import argparse

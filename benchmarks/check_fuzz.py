@@ -1,11 +1,11 @@
-"""Broken block files, read in a process of their own: each is a result or a plain error.
+"""Corrupted block files, read in a separate process: each gives a result or a typed error.
 
-    python -m benchmarks.check_fuzz FILE... --count 200
+``python -m benchmarks.check_fuzz FILE... --count 200``
 
-Each FILE (.schem, .litematic, .nbt, .schematic, .mcstructure, or a world's folder) is broken
-``count`` times over: bytes are flipped, cut off, put in, doubled, or made the largest number, in
-the packed file or within. Bombs are added that ask for far more memory than they take. No file
-may take over 10 seconds of the processor, and the process no more than 512 MB.
+Each FILE (.schem, .litematic, .nbt, .schematic, .mcstructure, or the folder of a world) is
+corrupted ``count`` times: bytes are flipped, cut, inserted, doubled or set to the largest number,
+in the packed file or inside it. Bombs that request far more memory than their size are added. No
+file may take more than 10 seconds of CPU time, and the process no more than 512 MB.
 """
 
 import argparse

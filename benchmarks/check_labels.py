@@ -1,18 +1,16 @@
-"""Are labels and masks what slow references say, and do they say what the id buffer says?
+"""Occupancy labels and masks against slow references and the id buffer.
 
 ``python -m benchmarks.check_labels [--frames 200 --size 160 120] [--spoil] [--json FILE]``
 
-People stand in generated houses. Each frame is drawn by the renderer and labelled; then a caster in
-float64 that knows nothing of the kernels (``tests/render/oracle.py``) casts each pixel anew, and
-``tests/dataset/label_reference.py`` tells from its depth, cell by cell, what is hit and what is in
-the frustum, and of some cells whether a ray crossed them. The command leaves with 1 where one cell
-of any frame differs; ``--spoil`` labels from a millimetre beside, so that one sees it fail.
+Cameras are at the eyes of people standing in generated houses. Each frame is rendered and
+labelled; a float64 ray caster independent of the kernels (``tests/render/oracle.py``) casts each
+pixel again, and ``tests/dataset/label_reference.py`` derives from its depth, cell by cell, what
+is hit, what lies in the frustum and, for a sample, which cells are crossed by a ray. The exit
+code is 1 if any cell of any frame differs; ``--spoil`` shifts the labels by a millimetre to show
+that the check can fail.
 
-Then what the id buffer says: of the pixels of all visible cells, and of the cells, how many have
-the cell's class. All but those that look along an edge do, since a block of a generated house is
-three cells wide; where blocks' borders cross cells, some pixels of a cell show the other block.
-
-``bench_labels.py`` tells what they cost.
+The second table compares with the id buffer: how many pixels of the visible cells, and how many
+cells, have the cell's class. ``bench_labels.py`` measures the time.
 """
 
 import argparse

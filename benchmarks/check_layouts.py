@@ -1,11 +1,13 @@
-"""Layouts of other methods and our own runs by one rule: ``python -m benchmarks.check_layouts``.
+"""Layout scores of other methods and of our runs by the same rules.
 
-``--layoutgpt FILE`` scores what LayoutGPT publishes and says whether the figures of an independent
-reading are met, by its script's rule at 7.3 pixels and with boxes turned as its script turns them:
-bedrooms 0.138 (object OOB), 0.511 (scenes) and 1.57 (overlapping pairs a scene), living rooms
-0.203, 0.660 and 4.13. ``--runs DIR`` scores finished trials, as ``python -m
-benchmarks.check_faithful --keep DIR`` leaves them, held to their true rooms. It leaves with 1 where
-a figure of LayoutGPT is missed or an aim of ours is.
+``python -m benchmarks.check_layouts [--layoutgpt FILE] [--runs DIR] [--json FILE]``
+
+``--layoutgpt`` scores LayoutGPT's published layouts and compares them with an independent
+reading, by the rule of its script at 7.3 pixels and with boxes rotated as the script does:
+bedrooms 0.138 (object OOB), 0.511 (scenes) and 1.57 (overlapping pairs per scene), living rooms
+0.203, 0.660 and 4.13. ``--runs`` scores finished trials of ``python -m benchmarks.check_faithful
+--keep DIR`` against their true rooms. The exit code is 1 if a figure of LayoutGPT is not
+reproduced or a target of ours is missed.
 """
 
 import argparse

@@ -1,13 +1,16 @@
-"""Rooms from colour alone, against the same rooms from depth.
+"""Reconstruction from colour images, compared with depth and with OpenCV's stereo.
 
 ``python -m benchmarks.check_photos KITCHEN``       a 7-Scenes folder that has depth too
 ``python -m benchmarks.check_photos --seeds 10``    generated rooms, photographed with texture
 
 Each capture is reconstructed from depth (the reference; for generated rooms noise-free depth and
 exact poses), from colour with the stated poses, from colour alone, and with OpenCV's StereoSGBM
-in place of our stereo. Printed are, within one voxel: precision, recall over all occupied cells,
-the share of free cells found free, the share of occupied cells called free, the scale's error,
-CPU seconds, wall seconds and peak memory. ``--json FILE`` writes them too.
+(``rival_sgbm``) instead of our stereo. Printed, within one voxel: precision, recall over all
+occupied cells, the share of free cells found free, the share of occupied cells called free, the
+scale's error, CPU seconds, wall seconds and peak memory. ``--json FILE`` writes them too.
+
+Two runs of the same room are compared in the frame of the reference's capture. Within one voxel
+means that centres are at most the diagonal of a voxel apart.
 """
 
 import argparse

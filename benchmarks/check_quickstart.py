@@ -1,9 +1,8 @@
 """The navigation quick start, timed: from a scan to a video of an agent that finds the table.
 
 ``python -m benchmarks.check_quickstart [CAPTURE] [--out FOLDER]`` runs the commands of the docs in
-turn, without a network. Without a capture a generated room is scanned in place of a real one. It
-leaves with 1 where a command fails, the agent does not stop at the table, or all of it takes over
-five minutes of one core.
+order, without a network; without a capture a generated room is scanned. The exit code is 1 if a
+command fails, the agent does not stop at the table, or the total exceeds five minutes of one core.
 """
 
 import argparse

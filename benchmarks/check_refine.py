@@ -1,13 +1,13 @@
-"""How many gestures bring raw reconstructions to their truth, and how many an empty grid.
+"""Number of editing operations from a raw reconstruction, and from an empty grid, to the truth.
 
 ``python -m benchmarks.check_refine [--seeds 550-564] [--labels] [--only raw] [--work FOLDER]``
 
-Each room is generated, scanned with the virtual depth camera (its usual noise, 40 frames) and
-reconstructed; without ``--labels`` from depth and colour alone, with it from label images of which
-a tenth is wrong too. Then a script refines it through ``Editor``, as a person would: see
-``refinement`` for what it may do and when it is done. The folder keeps the
-reconstructions, and the scenes with their journals, which ``w2m forge stats`` reads. Seeds 500 to
-549 are for tuning, 1000 to 1049 and 2000 to 2019 are kept for tests.
+Each room is generated, scanned with the virtual depth camera (default noise, 40 frames) and
+reconstructed, from depth and colour alone or, with ``--labels``, from label images of which a tenth
+is wrong too. Then a script refines it through ``Editor`` (``refinement`` defines its operations and
+when a scene is done). The folder contains the reconstructions and the scenes with their journals,
+which ``w2m forge stats`` reads. Seeds 500 to 549 are for tuning, 1000 to 1049 and 2000 to 2019 are
+reserved for tests.
 """
 
 import argparse

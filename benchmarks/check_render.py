@@ -1,13 +1,12 @@
-"""Does the ray caster see what a slow float64 caster sees? Ids, faces and depth, pixel by pixel.
+"""The renderer against a slow float64 ray caster: ids, faces and depth, pixel by pixel.
 
 ``python -m benchmarks.check_render [--poses 6 --size 320 240] [--spoil] [--json FILE]``
 
-Scenes: a generated room built at 4 and 2 blocks a metre and as display entities, flats full of
-furniture, and a heap of odd models (turned, flat, hollow, perforated boxes, glass). Cameras stand
-in free cells and inside furniture. The slow caster is ``tests/render/oracle.py``. The command
-leaves with 1 where less than 99.99 % of a row's pixels are equal or the median depth error is not
-under 1e-4 of a metre; ``--spoil`` moves the cameras of a row by a millimetre, so that one sees it
-fail.
+Scenes: a generated room built at 4 and 2 blocks per metre and as display entities, furnished
+flats, and random models (rotated, flat, hollow, perforated boxes, glass). Cameras stand in free
+cells and inside furniture. The reference is ``tests/render/oracle.py``. The exit code is 1 if
+less than 99.99 % of the pixels of a row are equal or the median depth error is 0.1 mm or more;
+``--spoil`` moves the cameras of a row by a millimetre to show that the check can fail.
 """
 
 import argparse

@@ -1,7 +1,7 @@
-"""How far the scale of rooms in an unknown unit is off, from habits alone.
+"""Error of the scale estimated for captures of unknown unit.
 
-``python -m benchmarks.check_scale`` scans the trials on which nothing was tuned, hides their unit
-and prints, a difficulty a row, the median and the worst error and how many are over 15 %.
+``python -m benchmarks.check_scale [tune]`` takes the trials on which nothing was tuned, hides their
+unit and prints, by difficulty, the median and the worst error and how many exceed 15 %.
 """
 
 import sys

@@ -1,12 +1,12 @@
-"""A reconstruction against an independent TSDF of the same room.
+"""A reconstruction against an independent TSDF of the same frames.
 
 ``python -m benchmarks.check_tsdf FRAMES OUT [--every N --first K] [--json FILE]``
 
-FRAMES is a folder of 7-Scenes frames, read here by plain numpy and Pillow, with nothing of the
-program but ``scan_to_room`` of OUT/room.npz. The TSDF (4 cm cells, 12 cm truncation, equal
-weights) gives surface points where it changes sign; they mark reference voxels of 8 cm in the
-room frame. Printed are, within one voxel: precision of the observed cells and recall over all
-reference voxels; and of the reference's free cells the share found free.
+FRAMES is a folder of 7-Scenes frames, read here by plain numpy and Pillow; only ``scan_to_room``
+of OUT/room.npz comes from the program. The TSDF (4 cm cells, 12 cm truncation, equal weights)
+gives surface points at its sign changes; they mark reference voxels of 8 cm in the room frame.
+Printed, within one voxel: precision of the observed cells, recall over all reference voxels, and
+the share of the reference's free cells found free.
 """
 
 import argparse

@@ -1,7 +1,9 @@
-"""How well the oracle does in worlds: ``python -m benchmarks.check_vln_oracle WORLD...``.
+"""Success rate and SPL of the navigation oracle in given worlds.
 
-Episodes are drawn as the environment draws them, walked move by move, and scored. It leaves with 1
-where the oracle misses a goal, or its ways are longer than the aim lets them be.
+``python -m benchmarks.check_vln_oracle WORLD...``
+
+Episodes are drawn as in the environment, executed move by move and scored. The exit code is 1 if
+the oracle misses a goal or its SPL is below the target.
 """
 
 import argparse

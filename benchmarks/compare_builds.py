@@ -1,9 +1,9 @@
-"""Two reconstructions of one capture side by side: which looks more like the room?
+"""Two reconstructions of one capture side by side, as one picture.
 
 ``python -m benchmarks.compare_builds BEFORE_OUT AFTER_OUT --out pair.png [--views 6]``
 
-The first row holds both previews, and under each of them its figures. Each further row holds a
-photo and both worlds from where it was taken, as far as both reports show that view.
+The first row has both previews, each with its figures below. Each further row has a photo and both
+worlds from the pose of the photo, for views that both reports contain.
 """
 
 import argparse

@@ -1,13 +1,13 @@
-"""Fit what a confidence means, on tuning scans only.
+"""Calibrate the confidence of labels on tuning scans.
 
 ``python -m benchmarks.fit_confidence [--each 2 --keep FOLDER --check N]``
 
-The first scans of each difficulty of the tuning split are reconstructed. Each is labelled by its 2D
-label images, a tenth of them wrong, by geometry alone, and by the completion network with and
-without the images; the cells that rays could reach say which labels are right. A logistic fit for
-each labeller goes to ``fuse/data/confidence.json``. Scans weigh alike whatever their size, so that
-a house does not speak for all rooms. ``--check N`` keeps every N-th scan out of the fit and prints
-the expected calibration error of those alone.
+The first scans of each difficulty of the tuning split are reconstructed. Each is labelled by its
+2D label images, a tenth of them wrong, by geometry alone, and by the completion network with and
+without the images; the truth of the cells that rays could reach decides which labels are correct.
+A logistic fit for each labeller is written to ``fuse/data/confidence.json``. Scans have equal
+weight regardless of their size. ``--check N`` excludes every N-th scan from the fit and prints
+the expected calibration error on those.
 """
 
 import argparse

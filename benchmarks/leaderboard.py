@@ -1,9 +1,13 @@
-"""The leaderboard of the scan benchmark: its file, checked row by row, and its tables in the docs.
+"""The leaderboard of the scan benchmark: its file, validated by row, and its tables in the docs.
 
 ``python -m benchmarks.leaderboard add SCORES.json --method NAME --version V --input depth
---link URL --command WORDS [--note TEXT]`` makes a row of what ``benchmarks.scan_benchmark score``
-or ``benchmarks.check_faithful --split test`` wrote with ``--json``, adds it to
-``docs/leaderboard.yaml`` and writes the tables anew. Without words the tables alone are written.
+--link URL --command WORDS [--note TEXT]`` makes a row from the ``--json`` file of
+``benchmarks.scan_benchmark score`` or ``benchmarks.check_faithful --split test``, adds it to
+``docs/leaderboard.yaml`` and updates the tables. Without arguments only the tables are updated.
+
+A row has ``method``, ``version``, ``input``, ``date``, ``link``, ``command``, an optional
+``note`` and ``figures``: for each difficulty a mapping of ``FIGURES``. Figures that were not
+measured are omitted.
 """
 
 import argparse

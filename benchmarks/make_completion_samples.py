@@ -1,9 +1,9 @@
-"""Make the virtual scans that the completion network learns from, five samples a room.
+"""Make the virtual scans on which the completion network is trained, five samples per room.
 
 ``python -m benchmarks.make_completion_samples --out FOLDER [--first 10000 --rooms 500]``
 
-Each room is one file named by its seed; files that are there are left alone, so that a broken run
-goes on where it ended.
+Each room is one file named by its seed; existing files are skipped, so that an interrupted run
+continues.
 """
 
 import argparse

@@ -1,14 +1,20 @@
-"""What a refined scene is held to: true objects, no floaters, planes without holes.
+"""Scripted refinement of a scene: what is wrong with it, and the next operation of the script.
 
-Everything is carried into the run's own room frame. A scene is done when nothing is left of:
+Everything is expressed in the run's own room frame. A scene is done when none of these remains:
 
-- objects that match no true one, and true ones that none matches: a match has the same class and
-  a centre within 0.3 m (``metrics.objects``), all true objects asked for, also unseen ones;
-- matched chairs, sofas and beds that look another quarter, be it the object or its furniture;
-- floaters: parts of the occupancy, joined by corners, without structure, or of 30 cells and less;
-- planes (the floor, the ceiling, each wall of the true room) of which 2 % and more are holes: no
+- objects that match no true one, and true ones without a match: a match has the same class and a
+  centre within 0.3 m (``metrics.objects``), for all true objects including unseen ones;
+- matched chairs, sofas and beds with a wrong orientation, of the object or of its furniture;
+- floaters: parts of the occupancy, connected by corners, without structure or of at most 30 cells;
+- planes (the floor, the ceiling, each wall of the true room) of which 2 % or more are holes: no
   floor, ceiling, wall or window within two cells of the true face, where the truth has some.
-  Places that nobody could see count: the wall behind a wardrobe, the floor under a bed.
+  Places that cannot be seen count: the wall behind a wardrobe, the floor under a bed.
+
+The script knows the truth, as a person knows the room, and uses only the editor's commands: each is
+one operation on one object, one plane or one connected region. It tries each operation that the
+defects suggest, on the draft and back again, and takes the one that leaves the fewest defects; of
+equal ones the one that leaves most cells correct. If no single operation helps, a split is tried
+together with the operation that follows it.
 """
 
 from collections.abc import Iterator

@@ -1,8 +1,11 @@
-"""The scenes and the poses that the renderer is checked and measured on; all are made from seeds.
+"""Scenes, poses and timing for the checks and benchmarks of the renderer.
 
-``room(scale)`` is a furnished living room that went through find, furnish and build;
+``room(scale)`` is a furnished living room that was processed by find, furnish and build;
 ``storeys(...)`` is a block of flats of any size, filled with furniture of many boxes: ``small()``
-has 60 x 40 x 60 cells, ``large()`` 256 x 64 x 256.
+has 60 x 40 x 60 cells, ``large()`` 256 x 64 x 256. ``random_models(seed)`` is a volume of random
+models, rotated, flat, hollow or perforated, with the looks ``RandomLooks(seed)``. ``time_all``
+measures several renderers alternately, so that the load of the machine affects all of them equally;
+the fastest round counts, and the slowest shows the spread.
 """
 
 import time

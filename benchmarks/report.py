@@ -1,14 +1,15 @@
-"""Every line of "How good" measured again: ``python -m benchmarks.report --out RESULTS``.
+"""The report of all targets, ``docs/how-good.md``: measure, store and write it.
 
-``--list`` tells what would run, how long, and what it needs, by area; ``--only NAME ...`` takes
-areas, lines or runs of these names (or a part of one), ``--max-minutes N`` the runs that take no
-longer. One runs after another, and each leaves a JSON in RESULTS: what is there is not run again
-but with ``--again``, so that it can be stopped and gone on with. What needs an idle machine, node,
-a browser or other data is left out, with the reason, where they lack; ``--anyway`` runs it.
+``python -m benchmarks.report --out RESULTS`` measures. ``--list`` prints what would run, how long
+it takes and what it requires, by area; ``--only NAME ...`` selects areas, lines or runs by name
+(or a part of one), ``--max-minutes N`` the runs that take no longer. Runs are sequential, and
+each writes a JSON to RESULTS; existing ones are repeated only with ``--again``, so that an
+interrupted report continues. Runs that require an idle machine, Node, a browser or other data are
+skipped, with the reason, where these are missing; ``--anyway`` runs them.
 
-``--markdown`` puts the results of RESULTS among those that are kept (``report_results.json``) and
-writes docs/how-good.md from these alone. The table is ``benchmarks/how_good/*.yaml``; how it is
-written is described in ``report_lines.py``. It leaves with 1 where a line that was run is missed.
+``--markdown`` merges the results of RESULTS into the stored ones (``report_results.json``) and
+writes the page from these alone. The targets are in ``benchmarks/how_good/*.yaml``;
+``report_lines.py`` describes the format. The exit code is 1 if a line that was run is missed.
 """
 
 import argparse

@@ -1,8 +1,10 @@
-"""The mesh that a rasteriser draws of a scene: quads with light at their corners, chunk by chunk.
+"""The rival of the renderer: a rasteriser on the CPU, Mesa's llvmpipe, through moderngl.
 
-In: ``SceneTables``. Between two full cubes there are no faces; of all other elements every face
-that has a texture is there. Corners carry the light of the same lattice that the ray caster reads.
-Quads are sorted by chunks of 16 x 16 x 16 cells, for culling.
+It draws the culled mesh of the same scene into three targets, colour, id and depth, with the same
+textures and the same light at the corners, and reads all three back to numpy. The mesh has no faces
+between full cubes and every textured face of all other elements, sorted by chunks of 16 x 16 x 16
+cells. Back faces are culled; chunks outside the view are skipped on request. Glass is drawn as
+opaque with holes cut out: the sorting that blending requires is not counted against the rival.
 """
 
 from collections.abc import Iterator

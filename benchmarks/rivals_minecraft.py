@@ -1,6 +1,6 @@
-"""How the public Python packages write and read blocks: what the program is measured beside.
+"""The public Python packages that write and read blocks, as rivals of ``bench_minecraft``.
 
-Each goes block by block, as its own documentation shows; none of them has another way.
+Each is used block by block, as its documentation shows; none of them has another interface.
 """
 
 from pathlib import Path

@@ -1,7 +1,7 @@
-"""One measured line: what a benchmark hands to the table of ``python -m benchmarks``.
+"""One measured figure of a benchmark, for the table of ``python -m benchmarks``.
 
-A benchmark is a file ``bench_NAME.py`` with a function ``run() -> list[Row]``. It runs in a
-process of its own, so that peak memory is its own too.
+A benchmark is a file ``bench_NAME.py`` with a function ``run() -> list[Row]``. It runs in a process
+of its own, so that its peak memory is measured separately.
 """
 
 from dataclasses import dataclass

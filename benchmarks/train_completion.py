@@ -1,9 +1,11 @@
-"""Train the completion network on samples that ``make_completion_samples`` made.
+"""Train the completion network on the samples of ``make_completion_samples``.
 
-``python -m benchmarks.train_completion --samples FOLDER --run FOLDER [--steps 4000]``
+``python -m benchmarks.train_completion --samples FOLDER --run FOLDER [--steps 4000]
+[--export completion.onnx]``
 
-A run that was broken off goes on from its folder. Every 100 steps the losses are printed, with IoU
-and mIoU on held-out rooms (seeds below 10,000) now and then.
+An interrupted run continues from its folder. Every 100 steps the losses are printed, and at
+intervals IoU and mIoU on held-out rooms (seeds below 10,000). ``--export`` writes the averaged
+weights as ONNX.
 """
 
 import argparse

@@ -1,13 +1,15 @@
-"""All occupancy networks on one set: ``python -m benchmarks.train_table --set DATA --out RUNS``.
+"""All occupancy networks trained and scored on one data set.
 
-DATA is any set with a test split, as ``w2m dataset build DATA --houses 40 --images 1000`` makes
-one: no test scene is trained on. Each network is trained for the same steps by ``w2m train``; its
-last weights are scored by ``monoscene`` on all test frames. A table that was stopped goes on with
-the same command; each run stays in RUNS/NET. ``--markdown FILE`` writes the tables for the docs:
-scores with the paper's rows beside them, classes, and mIoU of the scenes held out of training as
-it went on. ``--preset 8k`` is the papers' grid and size, for a GPU. ``NET+depth`` is shown measured
-depth, as Symphonies was published; the others do without. ``no picture`` is the average of all
-training boxes: a network that is no better has not learned to look.
+``python -m benchmarks.train_table --set DATA --out RUNS``
+
+DATA is any set with a test split, such as one of ``w2m dataset build DATA --houses 40 --images
+1000``; test scenes are not used for training. Each network is trained for the same steps by ``w2m
+train``; the weights of its last step are scored by ``monoscene`` on all test frames. An
+interrupted table continues with the same command; each run is stored in RUNS/NET. ``--markdown
+FILE`` writes the tables of the docs: scores with the paper's rows, classes, and mIoU of held-out
+scenes during training. ``--preset 8k`` is the papers' grid and size, for a GPU. ``NET+depth`` is
+given measured depth, as Symphonies was published; the others are not. ``no picture`` is the
+average of all training boxes: a network that is not better has learned nothing from the pictures.
 """
 
 import argparse

@@ -1,5 +1,6 @@
 """The table of benchmarks: verdicts, and a benchmark that breaks. What they measure is not here."""
 
+import ast
 import io
 
 import pytest
@@ -60,3 +61,22 @@ def test_every_check_can_be_run_by_its_name(monkeypatch, capsys):
     assert asked == ["check_scale", *bench.ready_checks()]
     assert "check_render.py failed" in capsys.readouterr().out
     assert set(bench.INPUTS) <= set(bench.checks())
+
+
+def names_of(tree):
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            yield node.name
+        elif isinstance(node, ast.Assign):
+            inside = [one for target in node.targets for one in ast.walk(target)]
+            yield from (one.id for one in inside if isinstance(one, ast.Name))
+
+
+def test_what_benchmarks_import_from_each_other_exists():
+    trees = {path.stem: ast.parse(path.read_text("utf-8")) for path in bench.FOLDER.glob("*.py")}
+    defined = {name: set(names_of(tree)) for name, tree in trees.items()}
+    for name, tree in trees.items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("benchmarks."):
+                source = node.module.removeprefix("benchmarks.")
+                assert {alias.name for alias in node.names} <= defined[source], name
