@@ -69,8 +69,8 @@ CASES = (
          scene_looks, False),
     Case("flats 60x40x60, free cells", small, scene_looks, False),
     Case("flats 60x40x60, inside furniture", small, scene_looks, True),
-    Case("odd models, free cells", lambda: random_models(0), lambda: RandomLooks(0), False),
-    Case("odd models, inside them", lambda: random_models(0), lambda: RandomLooks(0), True),
+    Case("random models, free cells", lambda: random_models(0), lambda: RandomLooks(0), False),
+    Case("random models, inside them", lambda: random_models(0), lambda: RandomLooks(0), True),
 )  # fmt: skip
 
 
