@@ -21,7 +21,7 @@ from PIL import Image
 
 from benchmarks.render_scenes import camera_of, poses, room, small
 from benchmarks.rows import Row
-from world2minecraft.machine import usable_cores
+from world2minecraft.core.machine import usable_cores
 from world2minecraft.render import BlockScene, Picture, prepare_scene, render_volume
 from world2minecraft.render.batch import RenderPool, batch_arrays, render_batch
 from world2minecraft.render.output import colour_bytes

@@ -13,11 +13,11 @@ import numpy as np
 from benchmarks.check_tsdf import integrate
 from benchmarks.rows import Row
 from world2minecraft.build import build_volume, write_build
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.fuse import EvidenceMap
 from world2minecraft.minecraft.schematics.schem import write_schem
 from world2minecraft.occupy.depth import DepthPredictor
 from world2minecraft.rooms import generate_room, room_views, scan_room
-from world2minecraft.types import OccupancyGrid
 
 FRAMES = 40
 REPEATS = 3

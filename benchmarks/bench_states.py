@@ -6,10 +6,10 @@ from collections.abc import Callable
 import numpy as np
 
 from benchmarks.rows import Row
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.light import block_light
 from world2minecraft.minecraft.rules.stability import unstable_cells
-from world2minecraft.types import BlockVolume
 
 SHAPE = (120, 80, 80)  # A room of 30 x 20 x 20 m at 4 blocks a metre: far more than most.
 FILLED = 0.03

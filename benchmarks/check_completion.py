@@ -23,8 +23,8 @@ from rich.console import Console
 from rich.table import Table
 from scipy import ndimage
 
-from world2minecraft.classes import CLASS_NAMES, UNKNOWN
-from world2minecraft.files import write_json
+from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN
+from world2minecraft.core.files import write_json
 from world2minecraft.label.channels import Sight
 from world2minecraft.label.completion_net import CompletionModel, likeliest
 from world2minecraft.learn.completion.samples import (

@@ -19,11 +19,11 @@ from rich.table import Table
 from world2minecraft.build.display.builder import most_pieces
 from world2minecraft.build.display.frame import Frame, entities_of
 from world2minecraft.build.display.pieces import pieces_of
-from world2minecraft.coordinates import apply, block_to_room, invert
-from world2minecraft.files import write_json
+from world2minecraft.core.coordinates import apply, block_to_room, invert
+from world2minecraft.core.files import write_json
+from world2minecraft.core.types import Entity
 from world2minecraft.furniture import TEMPLATES, Template, template
 from world2minecraft.minecraft.displays import display_cubes
-from world2minecraft.types import Entity
 
 CELL_M, SCALE, YAW_DEG = 0.02, 4.0, 20.0
 SLACK_M = 0.001

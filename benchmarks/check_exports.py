@@ -23,6 +23,7 @@ from rich.console import Console
 from rich.table import Table
 from tests.dataset.exchange import page_loader
 
+from world2minecraft.core.files import read_json, write_json
 from world2minecraft.dataset.building import build_dataset
 from world2minecraft.dataset.engine import opened_engine
 from world2minecraft.dataset.exporters import export_samples
@@ -30,7 +31,6 @@ from world2minecraft.dataset.plan import house_scenes, plan_dataset
 from world2minecraft.dataset.showing import cells_behind
 from world2minecraft.dataset.store import open_store
 from world2minecraft.dataset.values import OccSample
-from world2minecraft.files import read_json, write_json
 
 HOUSES, IMAGES = 4, 40
 NUDGE_M = 0.02  # Behind a surface, as far as ``cells_behind`` looks.

@@ -19,8 +19,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from world2minecraft.coordinates import block_axes_to_grid, grid_to_block_axes
-from world2minecraft.files import write_json
+from world2minecraft.core.coordinates import block_axes_to_grid, grid_to_block_axes
+from world2minecraft.core.files import write_json
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.fit import (
     CALM,
     Rules,
@@ -40,7 +41,6 @@ from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.rooms import Room, generate_room
 from world2minecraft.rooms.voxels import SHELL
-from world2minecraft.types import AIR, BlockVolume
 
 VOXEL_M = 0.02
 COARSE = 4  # Voxels along a cell of 8 cm,

@@ -24,12 +24,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from world2minecraft.core.types import GridCells, Operation
 from world2minecraft.edit.scene import SceneDraft
 from world2minecraft.edit.scene.objects_of import facts
 from world2minecraft.forge import document as document_module
 from world2minecraft.forge.demo import demo_room
 from world2minecraft.forge.editor import Editor
-from world2minecraft.types import GridCells, Operation
 
 MOST_S = 0.4  # From the first acknowledged step to the kill: tens of steps.
 

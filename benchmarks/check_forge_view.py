@@ -33,7 +33,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from world2minecraft.classes import CLASS_COLOURS, CLASS_NAMES
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
 
 WEB = Path(__file__).parents[1] / "src/world2minecraft/forge/web"
 CHROMIUM = shutil.which("chromium") or "/usr/bin/chromium"

@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import World2MinecraftError
+from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.minecraft.formats import read_blocks
 from world2minecraft.minecraft.nbt import Byte, Short, pack_gzip, unpack, write_nbt
 from world2minecraft.minecraft.worlds.anvil import pack_region, read_region

@@ -27,8 +27,10 @@ from scipy.ndimage import minimum_filter
 from tests.dataset import label_reference as reference
 from tests.render.oracle import oracle_picture
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.files import write_json
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.dataset.labels import (
     cells_of_pixels,
     label_image,
@@ -38,11 +40,9 @@ from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.tours import nyu_camera
 from world2minecraft.dataset.values import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.dataset.voxels import scene_voxels
-from world2minecraft.files import write_json
 from world2minecraft.render import BlockScene, Picture, prepare_scene, render_volume
 from world2minecraft.render.looks import OwnLooks
 from world2minecraft.rooms.worlds import generate_world
-from world2minecraft.types import BlockVolume, Camera
 
 EYE_M, TALL_M, ASIDE_M = 1.62, 1.8, 0.3  # The last: as near as one stands to a wall.
 NYU = nyu_camera()

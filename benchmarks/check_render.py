@@ -29,10 +29,10 @@ from benchmarks.render_scenes import (
     scene_looks,
     small,
 )
-from world2minecraft.files import write_json
+from world2minecraft.core.files import write_json
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.render import Picture, prepare_scene, render_volume
 from world2minecraft.render.elements import LookSource
-from world2minecraft.types import BlockVolume, Camera
 
 LEAST_EQUAL, MOST_MEDIAN_M = 0.9999, 1e-4
 SPOIL_M = 1e-3

@@ -19,12 +19,13 @@ from typing import Any
 import numpy as np
 from sklearn.linear_model import LogisticRegression
 
-from world2minecraft.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.files import write_json
+from world2minecraft.core.types import COMPLETED, OBSERVED, FusedEvidence, OccupancyGrid
 from world2minecraft.evaluate.frames import used_frames
 from world2minecraft.evaluate.score import TrueRoom, see_truth
 from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.exchange.evidence import read_evidence
-from world2minecraft.files import write_json
 from world2minecraft.fuse import CleanParameters, close_structure, read_out, remove_floaters
 from world2minecraft.fuse.confidence import (
     FREE_FEATURES,
@@ -40,7 +41,6 @@ from world2minecraft.metrics.calibration import CalibrationCounts, count_calibra
 from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct
 from world2minecraft.rooms.trials import DIFFICULTIES, trials, write_trial
-from world2minecraft.types import COMPLETED, OBSERVED, FusedEvidence, OccupancyGrid
 
 # Whether their evidence keeps its votes. A network's own confidence counts beside the evidence.
 LABELLERS = {"geometric": (True,), "votes": (True,), "completion": (True, False)}

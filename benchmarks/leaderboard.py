@@ -23,14 +23,14 @@ from typing import Any
 import yaml
 
 from benchmarks.check_faithful import COLUMNS, mean
-from world2minecraft.errors import (
+from world2minecraft.core.errors import (
     DamagedFileError,
     UnknownNameError,
     UsageError,
     World2MinecraftError,
 )
+from world2minecraft.core.files import read_bytes, read_json, write_text
 from world2minecraft.exchange.occupancy import DEFAULT_VOXEL_M
-from world2minecraft.files import read_bytes, read_json, write_text
 from world2minecraft.rooms.trials import DIFFICULTIES, trials
 
 INPUTS = ("depth", "depth+labels", "photos")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import World2MinecraftError
+from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.learn.completion.rooms import FIRST_SEED
 from world2minecraft.learn.completion.samples import make_samples, write_samples
 

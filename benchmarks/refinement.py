@@ -24,10 +24,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, invert_rigid
+from world2minecraft.core.coordinates import apply, invert_rigid
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Layout, LayoutObject, OccupancyGrid, SceneObject
 from world2minecraft.edit.scene import SceneDraft, Tools, parse_command, runs_of_cells
 from world2minecraft.edit.scene.planes import find_planes
-from world2minecraft.errors import UsageError
 from world2minecraft.evaluate.frames import truth_of_run, used_frames
 from world2minecraft.evaluate.layout import in_room
 from world2minecraft.evaluate.score import see_truth
@@ -41,7 +42,6 @@ from world2minecraft.metrics.objects import (
     match_objects,
     turn_between_deg,
 )
-from world2minecraft.types import Layout, LayoutObject, OccupancyGrid, SceneObject
 
 HOLE_SHARE = 0.02
 NEAR_CELLS = 2  # A wall is found to a cell, and a cell of it lies half before its face.

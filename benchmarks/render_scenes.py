@@ -16,14 +16,14 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.build import build_volume
-from world2minecraft.coordinates import apply, block_to_room, look_at
+from world2minecraft.core.coordinates import apply, block_to_room, look_at
+from world2minecraft.core.types import BlockVolume, Camera, OccupancyGrid
 from world2minecraft.find import FindParameters, find_objects
 from world2minecraft.furnish import FurnishParameters, furnish
 from world2minecraft.render.elements import BlockModel, Element, FaceLook, LookSource, face_uv
 from world2minecraft.render.looks.own import OwnLooks
 from world2minecraft.render.texture import Texture
 from world2minecraft.rooms import generate_room
-from world2minecraft.types import BlockVolume, Camera, OccupancyGrid
 
 KINDS = 24
 NAMES = ("solid", "holes", "glass", "frame")

@@ -39,7 +39,7 @@ from benchmarks.report_lines import (
     lines_of,
     read_areas,
 )
-from world2minecraft.files import write_json
+from world2minecraft.core.files import write_json
 
 KEPT = Path(__file__).resolve().parent / "report_results.json"
 FIELDS = {

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.core.types import Camera
 from world2minecraft.render.light import LitParameters
 from world2minecraft.render.tables import (
     ABSOLUTE,
@@ -24,7 +25,6 @@ from world2minecraft.render.tables import (
     UNSHADED,
     SceneTables,
 )
-from world2minecraft.types import Camera
 
 CHUNK = 16
 HOLE = 64  # Alpha under which the rival draws nothing; glass is drawn as if opaque.

@@ -14,17 +14,17 @@ import cv2
 import numpy as np
 
 from world2minecraft.cli import run
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Camera, DepthMap, SparseScene
+from world2minecraft.core.types.photos import PhotoStream
 from world2minecraft.geometry.lifting import pixel_rays
 from world2minecraft.prepare import preparing
-from world2minecraft.progress import Progress, silent
 from world2minecraft.stereo.maps import confirmed
 from world2minecraft.stereo.neighbours import DEPTH_PERCENTILES, chosen_neighbours
 from world2minecraft.stereo.parameters import StereoParameters
 from world2minecraft.stereo.small import SmallPhoto, small_photos
 from world2minecraft.stereo.sweep import depth_range
-from world2minecraft.types import Camera, DepthMap, SparseScene
-from world2minecraft.types.photos import PhotoStream
 
 ASKED, PAIRS = 12, 6  # So many neighbours are looked at for so many pairs that can be rectified.
 MOST_ALONG = 0.6  # Share of a motion that may go along the view: rectified, more turns too far.

@@ -11,8 +11,8 @@ import nbtlib
 import numpy as np
 from nbtlib import tag
 
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.states import parse_state
-from world2minecraft.types import BlockVolume
 
 
 def blocks_of(volume: BlockVolume) -> list[tuple[tuple[int, int, int], str]]:

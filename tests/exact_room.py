@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from world2minecraft.coordinates import look_at
-from world2minecraft.types import Camera, View
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.types import Camera, View
 
 CAMERA = Camera(160, 120, 130.0, 130.0, 80.0, 60.0)
 

@@ -160,7 +160,7 @@ def test_a_wrong_import_is_seen(importer, name, reason):
         ("cli", "world2minecraft.forge"),
         ("build", "world2minecraft.minecraft.states"),
         ("rooms", "world2minecraft.render"),
-        ("types", "world2minecraft.classes"),
+        ("types", "world2minecraft.core.classes"),
         ("learn", "torch.nn"),
         ("scan", "world2minecraft.__version__"),
     ],

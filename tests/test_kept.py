@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import pytest
 
-from world2minecraft.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.kept import READ_FIRST_BY, Kept, kept_before, with_kept_files
 from world2minecraft.parameters import Parameters, with_settings
 from world2minecraft.pipeline import STAGES

@@ -2,7 +2,7 @@
 
 import pytest
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.parameters import Parameters, parameter_keys, with_method, with_settings
 
 

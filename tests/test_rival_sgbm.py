@@ -7,8 +7,8 @@ import pytest
 from benchmarks import rival_sgbm
 from tests.stereo.plane_photos import row_of_photos, scene_of
 
-from world2minecraft.types import Camera
-from world2minecraft.types.photos import Photo
+from world2minecraft.core.types import Camera
+from world2minecraft.core.types.photos import Photo
 
 # A camera on its side: x is what was -y, y what was x.
 ON_ITS_SIDE = np.array([[0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])

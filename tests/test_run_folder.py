@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from world2minecraft.errors import InputError, OutputError, UnknownNameError
+from world2minecraft.core.errors import InputError, OutputError, UnknownNameError
 from world2minecraft.parameters import Parameters, with_settings
 from world2minecraft.pipeline import manifest
 from world2minecraft.run_folder import (

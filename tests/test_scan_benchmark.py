@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from benchmarks import scan_benchmark
 
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.files import read_json
 from world2minecraft.evaluate import read_truth
-from world2minecraft.files import read_json
 from world2minecraft.metrics.truth import carry_truth
 from world2minecraft.rooms.trials import trial_named
 from world2minecraft.scan.sources import find_capture

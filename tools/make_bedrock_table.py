@@ -18,7 +18,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.blocks import BlockType, block_table
 from world2minecraft.minecraft.states import parse_state
 

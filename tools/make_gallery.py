@@ -18,7 +18,7 @@ from typing import NamedTuple
 from PIL import Image
 
 from world2minecraft import cli
-from world2minecraft.files import write_bytes, write_text
+from world2minecraft.core.files import write_bytes, write_text
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 GALLERY, TUTORIALS = "images/gallery", "images/tutorials"

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import DamagedFileError, InputError, UsageError
-from world2minecraft.files import read_json
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.files import read_json
 from world2minecraft.parameters import Parameters
 
 # The first stage that reads a parameter, or a whole group of them.

@@ -17,14 +17,15 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.build import build_volume
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.files import read_json, write_bytes, write_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import FusedEvidence, Scan, View
 from world2minecraft.exchange.room import write_room
-from world2minecraft.files import read_json, write_bytes, write_json
 from world2minecraft.fuse import EvidenceMap, read_out, remove_floaters
 from world2minecraft.occupy import predictor
 from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct
-from world2minecraft.progress import Progress, silent
 from world2minecraft.register import corrected, register
 from world2minecraft.render.preview import preview
 from world2minecraft.run_folder import check_writable
@@ -34,7 +35,6 @@ from world2minecraft.scan.options import parse_options
 from world2minecraft.scan.sources import find_capture
 from world2minecraft.scan.stream import read_view
 from world2minecraft.steps import labelled
-from world2minecraft.types import FusedEvidence, Scan, View
 
 FIRST_PLACING = 4  # Fewer frames rarely show two walls and a floor.
 POLL_S = 1.0

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 from world2minecraft.build import BuildParameters
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.exchange.forms import form_named
 from world2minecraft.find import FindParameters
 from world2minecraft.furnish import FurnishParameters

@@ -18,6 +18,8 @@ from importlib.metadata import version
 from pathlib import Path
 
 from world2minecraft import __version__
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Scan
 from world2minecraft.exchange.evidence import write_evidence
 from world2minecraft.exchange.poses import read_poses, write_poses
 from world2minecraft.exchange.scan import placed_as_written, read_registration, write_scan
@@ -28,12 +30,10 @@ from world2minecraft.occupy import notes_of, predictor
 from world2minecraft.parameters import Parameters
 from world2minecraft.plans import add_plan_openings, voted_by_plan
 from world2minecraft.prepare import open_prepared
-from world2minecraft.progress import Progress, silent
 from world2minecraft.register import corrected, register, told
 from world2minecraft.run_folder import RunFolder, hash_capture
 from world2minecraft.scan import realigned, settled
 from world2minecraft.steps import LATER_STEPS
-from world2minecraft.types import Scan
 
 STAGES = ("scan", "register", "fuse", *LATER_STEPS)
 

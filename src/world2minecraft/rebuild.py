@@ -5,16 +5,16 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.exchange.occupancy import read_occupancy
 from world2minecraft.exchange.room import write_room
-from world2minecraft.files import write_bytes
 from world2minecraft.minecraft.formats import FORMATS, read_blocks
 from world2minecraft.parameters import Parameters
-from world2minecraft.progress import Progress, silent
 from world2minecraft.run_folder import BUILT_FROM, check_finished, check_writable
 from world2minecraft.steps import LATER_STEPS, built_volume
-from world2minecraft.types import BlockVolume
 
 # Runs from a grid alone have no scan, those of the first versions no rooms.
 MORE_FILES = ("scan.json", "layout.json")

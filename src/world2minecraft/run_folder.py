@@ -21,9 +21,9 @@ try:
 except ImportError:  # Windows has none.
     resource = None
 
-from world2minecraft.errors import DamagedFileError, InputError, OutputError, UnknownNameError
-from world2minecraft.files import read_json, write_json
-from world2minecraft.machine import usable_cores
+from world2minecraft.core.errors import DamagedFileError, InputError, OutputError, UnknownNameError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.machine import usable_cores
 
 FREE_BYTES = 64 << 20  # A reconstruction of one room writes 1 to 20 MB.
 BUILT_FROM = ("room.npz", "objects.json", "placements.json")  # What a world is built from.

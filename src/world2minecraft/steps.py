@@ -10,9 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.build import WORLD_NAME, build_volume, write_build
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
 from world2minecraft.edit.cleanup import mended
 from world2minecraft.edit.journal import write_edits
-from world2minecraft.errors import UsageError
 from world2minecraft.exchange.centers import write_centers
 from world2minecraft.exchange.evidence import read_evidence
 from world2minecraft.exchange.forms import form_named, templates_of_run, write_forms
@@ -28,7 +30,6 @@ from world2minecraft.exchange.paper import write_centers_json, write_occ_json
 from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.exchange.rooms import read_rooms
 from world2minecraft.exchange.scan import read_depth_kind, read_room_size, read_scene_name
-from world2minecraft.files import read_json, write_json
 from world2minecraft.find import find_objects
 from world2minecraft.furnish import furnish
 from world2minecraft.fuse import (
@@ -47,7 +48,6 @@ from world2minecraft.label import (
 from world2minecraft.label.completion_net import LEARNT_VOXEL_M, VOXEL_TOLERANCE
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.parameters import Parameters
-from world2minecraft.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
 
 
 def label_stage(folder: Path, chosen: Parameters) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.types import OccupancyGrid, Placement
+from world2minecraft.core.types import OccupancyGrid, Placement
 
 VOXEL_M = 0.08
 PAD = 2

@@ -4,11 +4,11 @@ from functools import cache
 
 import numpy as np
 
+from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.find import find_objects
 from world2minecraft.find.parameters import FindParameters
 from world2minecraft.furnish import FurnishParameters, furnish
 from world2minecraft.rooms import Room, generate_room
-from world2minecraft.types import OccupancyGrid, Placement
 
 STEP = 4  # Fine cells of 2 cm a cell.
 FILLED = 0.125  # Of a cell, to count as occupied.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.core.types import OccupancyGrid
 
 VOXEL_M = 0.08
 CEILING, FLOOR, WALL, OBJS = 1, 2, 3, 11

@@ -12,13 +12,13 @@ from world2minecraft.build.canvas import BARRIER
 from world2minecraft.build.display.builder import MOST_PIECES, MOST_PIECES_ELSE
 from world2minecraft.build.display.frame import Frame, Piece, boxes_in_room, entities_of
 from world2minecraft.build.display.pieces import pieces_of
-from world2minecraft.coordinates import apply, block_to_room, invert
-from world2minecraft.errors import UsageError
+from world2minecraft.core.coordinates import apply, block_to_room, invert
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import ObjectInstance, Placement
 from world2minecraft.furniture import template
 from world2minecraft.minecraft.displays import display_cubes
 from world2minecraft.minecraft.worlds.world import read_world
 from world2minecraft.render import preview
-from world2minecraft.types import ObjectInstance, Placement
 
 CORNER_M = np.array([-1.0, 3.0])
 DISPLAY = BuildParameters(style="display")

@@ -17,9 +17,9 @@ from world2minecraft.build.lattice import lattice_over
 from world2minecraft.build.palettes import load_palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.worktops import Worktop
+from world2minecraft.core.types import Placement
 from world2minecraft.furniture import template
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.types import Placement
 
 BLOCKS = 4.0
 

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.build import build_volume
-from world2minecraft.coordinates import apply, cell_centers_m, invert
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.core.coordinates import apply, cell_centers_m, invert
+from world2minecraft.core.types import OccupancyGrid
 
 
 def blocks_of_cells(grid, volume):

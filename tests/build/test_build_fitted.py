@@ -16,8 +16,8 @@ from world2minecraft.build.fitted import design_of_parts
 from world2minecraft.build.lattice import lattice_over
 from world2minecraft.build.materials import materials_of
 from world2minecraft.build.palettes import load_palette
-from world2minecraft.classes import SemanticClass
-from world2minecraft.errors import UsageError
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.errors import UsageError
 from world2minecraft.fit import CALM, Shape, shape_set
 from world2minecraft.furniture import template
 from world2minecraft.geometry.colour import oklab_of_srgb

@@ -14,7 +14,7 @@ from world2minecraft.build.lattice import lattice_over
 from world2minecraft.build.lights import LEAST
 from world2minecraft.build.spawn import find_spawn
 from world2minecraft.build.storeys import upper_floors_m, with_storeys
-from world2minecraft.coordinates import apply, invert
+from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.minecraft.rules.light import block_light
 
 CEILING, FLOOR, WALL = 1, 2, 3

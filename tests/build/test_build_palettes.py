@@ -18,14 +18,14 @@ from world2minecraft.build.palette_files import palette_of
 from world2minecraft.build.palettes import PALETTE_FILES, load_palette
 from world2minecraft.build.pieces import piece_of
 from world2minecraft.build.restricting import UNSEEN, nearest_allowed
-from world2minecraft.classes import CLASS_NAMES, SemanticClass
-from world2minecraft.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.classes import CLASS_NAMES, SemanticClass
+from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.types import BlockVolume, Placement
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colour_of
 from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.minecraft.states import check_state, parse_state
-from world2minecraft.types import BlockVolume, Placement
 
 FEW = """
 name: nordic

@@ -6,9 +6,9 @@ from world2minecraft.build.halves import LOWER
 from world2minecraft.build.lattice import lattice_over
 from world2minecraft.build.parts import design_of
 from world2minecraft.build.seats import chair_paints, lit_colour
+from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import template
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.types import OccupancyGrid, Placement
 
 BROWN, SHADE, RED = (120, 80, 45), (35, 24, 14), (190, 30, 30)
 

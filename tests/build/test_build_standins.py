@@ -7,9 +7,9 @@ import pytest
 from build_samples import placement
 
 from world2minecraft.build.standins import is_green, stand_in
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Alternative
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.types import Alternative
 
 GREEN, BROWN, RED = ((70, 110, 40), (110, 80, 50), (160, 36, 33))
 

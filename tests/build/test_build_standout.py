@@ -4,7 +4,7 @@ from build_samples import WALL, WHITE, Sketch
 
 from world2minecraft.build import build_volume
 from world2minecraft.build.standout import PICTURE, RUG, standing_out
-from world2minecraft.coordinates import apply
+from world2minecraft.core.coordinates import apply
 from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
 from world2minecraft.minecraft.colours import colour_of
 

@@ -9,10 +9,10 @@ from world2minecraft.build.idioms import filled_by
 from world2minecraft.build.palettes import load_palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.tinting import Hue, tinted
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Placement
 from world2minecraft.furniture import idiom, template
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.types import Placement
 
 RED, BLUE, WHITE, OAK, DARK = (
     (160, 36, 33),

@@ -24,8 +24,8 @@ from build_samples import (
 )
 
 from world2minecraft.build import BuildParameters, build_volume
-from world2minecraft.coordinates import apply, invert, turn_grid
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.coordinates import apply, invert, turn_grid
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraft.states import check_state, complete, parse_state
 from world2minecraft.minecraft.turn import turn_volume
 

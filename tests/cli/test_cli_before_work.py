@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from world2minecraft import cli
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 
 WORDS = [
     ("demo --seed -1", 2, "--seed must be 0 or more, not -1"),

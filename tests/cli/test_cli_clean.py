@@ -5,7 +5,8 @@ import pytest
 
 from world2minecraft import cli
 from world2minecraft.build import write_build
-from world2minecraft.coordinates import block_to_room
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.edit.journal import write_edits
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
 from world2minecraft.minecraft.signs import sign_entity
@@ -13,7 +14,6 @@ from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.level import level_data
 from world2minecraft.minecraft.worlds.reading import read_level, read_world
 from world2minecraft.report.scene import read_built
-from world2minecraft.types import AIR, BlockVolume
 
 SIGN = "minecraft:oak_sign[rotation=0,waterlogged=false]"
 PALETTE = (AIR, SIGN, "minecraft:oak_planks", "minecraft:red_concrete", "minecraft:white_concrete")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.minecraft.formats import read_blocks
 from world2minecraft.parameters import Parameters
 

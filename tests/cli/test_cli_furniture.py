@@ -5,9 +5,9 @@ import pytest
 from PIL import Image
 
 from world2minecraft import cli
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.furniture.library import TEMPLATES, template, templates_of, variants_of
 from world2minecraft.minecraft.formats import write_blocks
-from world2minecraft.types import AIR, BlockVolume
 
 
 @pytest.fixture

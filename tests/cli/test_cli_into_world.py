@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from world2minecraft import cli
-from world2minecraft.coordinates import block_to_room
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.types import AIR, BlockVolume, OccupancyGrid
 from world2minecraft.exchange.room import write_room
 from world2minecraft.minecraft.formats import write_blocks
 from world2minecraft.minecraft.worlds.reading import read_world
 from world2minecraft.minecraft.worlds.world import write_world
-from world2minecraft.types import AIR, BlockVolume, OccupancyGrid
 
 
 def filled(shape, corner, state):

@@ -3,9 +3,9 @@
 import numpy as np
 
 from world2minecraft import cli
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.exchange.glb import read_glb
 from world2minecraft.minecraft.formats import write_blocks
-from world2minecraft.types import AIR, BlockVolume
 
 
 def test_the_palettes_are_listed(capsys):

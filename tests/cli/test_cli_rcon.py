@@ -5,7 +5,7 @@ import pytest
 
 from world2minecraft.cli import run
 from world2minecraft.cli.on_server import parse_address
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 
 @pytest.mark.parametrize(

@@ -8,11 +8,11 @@ import pytest
 from PIL import Image
 
 from world2minecraft import cli
-from world2minecraft.coordinates import block_to_room
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.exchange.scene import scene_of, write_scene
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import write_blocks
-from world2minecraft.types import AIR, BlockVolume
 
 PALETTE = (AIR, "minecraft:stone", "minecraft:red_concrete")
 

@@ -3,7 +3,7 @@
 import pytest
 
 from world2minecraft import cli
-from world2minecraft.files import read_json
+from world2minecraft.core.files import read_json
 from world2minecraft.rooms import read_generated
 
 

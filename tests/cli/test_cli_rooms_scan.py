@@ -5,7 +5,7 @@ import json
 import pytest
 
 from world2minecraft.cli import run as w2m
-from world2minecraft.files import read_npz
+from world2minecraft.core.files import read_npz
 from world2minecraft.rooms import capture, generate_room, trials, write_generated
 
 

@@ -7,9 +7,9 @@ import pytest
 from PIL import Image
 
 from world2minecraft.cli import run as w2m
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.types import Camera, View
 from world2minecraft.scan import write_plain
-from world2minecraft.types import Camera, View
 
 CAMERA = Camera(80, 60, 60.0, 60.0, 40.0, 30.0)
 

@@ -8,7 +8,7 @@ import pytest
 
 from world2minecraft import __version__, cli
 from world2minecraft.cli import failures, verbs
-from world2minecraft.errors import CaptureError, UsageError
+from world2minecraft.core.errors import CaptureError, UsageError
 
 
 @pytest.fixture

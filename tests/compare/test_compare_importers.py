@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from made_layouts import gpt_record, placed, shell, vlm_task, write
 
-from world2minecraft.classes import SemanticClass
 from world2minecraft.compare.importers import How, read_layouts_of
 from world2minecraft.compare.values import SCENE_FILE, read_scene, write_scene
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UnknownNameError
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
 
 # A bed with its head at the south wall, looking north; a chair at the east wall, looking west.
 BED = ((1.2, 1.0, 0.25), (2.0, 1.6, 0.5), 90.0)
@@ -279,6 +279,6 @@ def test_another_package_adds_a_format(tmp_path, monkeypatch):
         groups.append(group)
         return [SimpleNamespace(name="mine", load=Ours)]
 
-    monkeypatch.setattr("world2minecraft.registry.entry_points", entry_points)
+    monkeypatch.setattr("world2minecraft.core.registry.entry_points", entry_points)
     assert read_layouts_of(write(tmp_path / "x.json", ["mine"])) == [bedroom]
     assert set(groups) == {"world2minecraft.layout_format"}

@@ -8,7 +8,6 @@ import pytest
 from PIL import Image
 from tests.models.scripted_server import scripted
 
-from world2minecraft.classes import SemanticClass
 from world2minecraft.compare import ComparedScene
 from world2minecraft.compare.describing import (
     describe_photos,
@@ -18,10 +17,11 @@ from world2minecraft.compare.describing import (
     room_kind,
 )
 from world2minecraft.compare.importers.reading import Box, object_of
-from world2minecraft.errors import ServerError, UnknownNameError
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.errors import ServerError, UnknownNameError
+from world2minecraft.core.types import Layout, Opening, Placement
 from world2minecraft.models.chat import open_chat
 from world2minecraft.models.chat_messages import Picture
-from world2minecraft.types import Layout, Opening, Placement
 
 ROOM = Layout(
     [[0, 0], [4, 0], [4, 3], [0, 3]], 2.6, (Opening("window", [1, 3], [2.5, 3], 0.9, 2.0),)

@@ -13,7 +13,7 @@ from world2minecraft.compare.judge import (
     read_grades,
 )
 from world2minecraft.compare.table import grade_table
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.models.chat import open_chat
 from world2minecraft.models.chat_forms import UnreadableError
 from world2minecraft.models.chat_messages import Picture

@@ -4,21 +4,21 @@ import numpy as np
 import pytest
 from made_layouts import write
 
-from world2minecraft.classes import SemanticClass
 from world2minecraft.compare import ComparedScene, score_scene
 from world2minecraft.compare.building import plan_of
 from world2minecraft.compare.importers import How, read_layouts_of
 from world2minecraft.compare.importers.reading import Box, object_of
 from world2minecraft.compare.truths import is_truth, true_scene
-from world2minecraft.coordinates import rotation_about_z
-from world2minecraft.errors import InputError
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.files import write_npz
+from world2minecraft.core.types import Layout, Opening
 from world2minecraft.exchange.layout import layout_row, write_layouts
 from world2minecraft.exchange.objects import write_placements
 from world2minecraft.exchange.room import write_room
-from world2minecraft.files import write_npz
 from world2minecraft.plans import layouts_of
 from world2minecraft.plans.cells import cells_of_plan
-from world2minecraft.types import Layout, Opening
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.6, (Opening("window", [1, 3], [2, 3], 0.9, 2),))
 THINGS = (

@@ -5,7 +5,7 @@ import signal
 import time
 from pathlib import Path
 
-from world2minecraft.errors import OutputError
+from world2minecraft.core.errors import OutputError
 
 
 def square(number, tick):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.types import AIR, BlockVolume
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.types import AIR, BlockVolume
 
 PLANKS, GLASS = "minecraft:oak_planks", "minecraft:glass"
 DOOR = "minecraft:oak_door[facing=north,half={},hinge=left,open=false,powered=false]"

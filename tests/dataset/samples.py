@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.values import FineClass, LabelRegion, OccLabels, OccSample
-from world2minecraft.types import Camera
 
 FINE = (
     FineClass("minecraft:air"),

@@ -8,7 +8,9 @@ import pytest
 import yaml
 from house_of_blocks import PLANKS, STAIR, Blocks, cottage
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import InputError, LimitError, UnknownNameError, UsageError
+from world2minecraft.core.types import Entity
 from world2minecraft.dataset.blockmap import (
     block_map_json,
     block_map_of,
@@ -23,9 +25,7 @@ from world2minecraft.dataset.blockmap.pieces import columns, joined_parts
 from world2minecraft.dataset.blockmap.rules import Rule
 from world2minecraft.dataset.blockmap.storeys import NONE, next_above
 from world2minecraft.dataset.values import FineClass
-from world2minecraft.errors import InputError, LimitError, UnknownNameError, UsageError
 from world2minecraft.minecraft.states import known_blocks
-from world2minecraft.types import Entity
 
 NYU, PAPER = load_block_map("nyu"), load_block_map("paper")
 # Table "Semantic Class Mapping" of the paper's appendix; "..." stands for any end of a name.

@@ -18,6 +18,8 @@ from house_of_blocks import cottage
 from PIL import Image
 
 from world2minecraft import cli
+from world2minecraft.core.errors import ConflictError, OutputError, UsageError
+from world2minecraft.core.locks import Lock
 from world2minecraft.dataset.building import build as build_module
 from world2minecraft.dataset.building import build_dataset
 from world2minecraft.dataset.building import scenes as scenes_module
@@ -38,8 +40,6 @@ from world2minecraft.dataset.store import open_store, verify_store
 from world2minecraft.dataset.store.sample_files import SampleFiles
 from world2minecraft.dataset.store.tar import member_at
 from world2minecraft.dataset.voxels import scene_voxels
-from world2minecraft.errors import ConflictError, OutputError, UsageError
-from world2minecraft.lock import Lock
 from world2minecraft.minecraft.formats import write_blocks
 from world2minecraft.render import LookLight, prepare_scene, render_volume
 from world2minecraft.render.views import Shot, camera_of

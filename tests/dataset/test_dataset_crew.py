@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import pytest
 
+from world2minecraft.core.errors import ConflictError, OutputError
 from world2minecraft.dataset.building.crew import at_work, of_the_crew, wait_for_others
 from world2minecraft.dataset.engine import worker
-from world2minecraft.errors import ConflictError, OutputError
 
 AT_WORK = """
 import sys

@@ -9,8 +9,8 @@ from pathlib import Path
 import engine_tasks as tasks
 import pytest
 
+from world2minecraft.core.errors import OutputError, UnknownNameError, UsageError, WorkerError
 from world2minecraft.dataset.engine import opened_engine
-from world2minecraft.errors import OutputError, UnknownNameError, UsageError, WorkerError
 
 HERE = str(Path(__file__).parent)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from house_of_blocks import Blocks, cottage
 
-from world2minecraft.classes import CLASS_NAMES, class_id
+from world2minecraft.core.classes import CLASS_NAMES, class_id
 from world2minecraft.dataset.source import open_scene_source
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.minecraft.file_format import WriteOptions

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from label_worlds import CAMERA, poses_in, room_of_things
 
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.labels import (
     cast_depth,
     cells_of_pixels,
@@ -22,7 +23,6 @@ from world2minecraft.dataset.showing import label_image_of
 from world2minecraft.dataset.values import OccSample
 from world2minecraft.dataset.voxels import scene_voxels
 from world2minecraft.render import prepare_scene, render_volume
-from world2minecraft.types import Camera
 
 RULE = RegionRule(shape=(24, 22, 20))
 

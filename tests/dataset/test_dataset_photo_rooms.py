@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run as w2m
+from world2minecraft.core.errors import UsageError, World2MinecraftError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset import photo_rooms
 from world2minecraft.dataset.photo_rooms import PhotoRooms, photo_samples, room_voxels
 from world2minecraft.dataset.showing import seen_in_cells
 from world2minecraft.dataset.store import open_store
-from world2minecraft.errors import UsageError, World2MinecraftError
 from world2minecraft.rooms import generate_room
-from world2minecraft.types import Camera
 
 CAMERA = Camera(160, 120, 129.7, 129.7, 80.0, 60.0)
 

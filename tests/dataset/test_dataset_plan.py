@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.dataset.building.recorded import LONGEST_NAME as LONGEST_TOUR
 from world2minecraft.dataset.building.shards import units_of
 from world2minecraft.dataset.building.shares import shared_views
@@ -21,7 +22,6 @@ from world2minecraft.dataset.plan import (
     source_scenes,
 )
 from world2minecraft.dataset.store.tar import LONGEST_KEY
-from world2minecraft.errors import UnknownNameError, UsageError
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,8 @@ import pytest
 from PIL import Image
 from tests.dataset.samples import occ_labels, sample
 
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.picture_sources import pictures_at
 from world2minecraft.dataset.quality import (
     CAVEATS,
@@ -17,9 +19,7 @@ from world2minecraft.dataset.quality import (
     size_of,
 )
 from world2minecraft.dataset.store import SampleFiles, write_store
-from world2minecraft.errors import InputError, UsageError
 from world2minecraft.metrics.image_quality import laplacian_variance, niqe, niqe_model, piqe
-from world2minecraft.types import Camera
 
 OWN = niqe_model("own")
 

@@ -6,12 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from label_worlds import poses_in, room_of_things
 
-from world2minecraft.coordinates import apply, invert, look_at, rotation_about_z
+from world2minecraft.core.coordinates import apply, invert, look_at, rotation_about_z
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.dataset.labels import gathered, is_on_cells
 from world2minecraft.dataset.region import RegionRule, floor_under, region_in, region_of
 from world2minecraft.dataset.values import FineClass, SceneVoxels
 from world2minecraft.dataset.voxels import scene_voxels
-from world2minecraft.errors import UnknownNameError, UsageError
 
 PLAIN = RegionRule(axis_offset_cells=0, diagonal_offset_cells=0)
 EYE = np.array([1.23, -0.71, 1.6])

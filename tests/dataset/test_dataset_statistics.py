@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from tests.dataset.samples import FINE, occ_labels, random_labels, sample
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.dataset.importers.labelled import CLASS_KINDS
 from world2minecraft.dataset.statistics import (
     StatisticsCounter,

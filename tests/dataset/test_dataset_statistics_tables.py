@@ -8,8 +8,9 @@ from PIL import Image
 from tests.dataset.exchange import synthetic
 from tests.dataset.samples import occ_labels, random_labels, sample
 
-from world2minecraft.classes import CLASS_COLOURS, CLASS_NAMES
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.errors import InputError, MissingExtraError, UsageError
 from world2minecraft.dataset.exporters import export_samples
 from world2minecraft.dataset.formats.boxes import cells_in_image
 from world2minecraft.dataset.statistics import (
@@ -25,7 +26,6 @@ from world2minecraft.dataset.statistics.reading import rooms_of, statistics_of, 
 from world2minecraft.dataset.statistics.tables import class_shares, columns, escape, short
 from world2minecraft.dataset.statistics.values import FineCount, SceneCount
 from world2minecraft.dataset.store import write_store
-from world2minecraft.errors import InputError, MissingExtraError, UsageError
 
 SMALL = DatasetStatistics(
     "houses & more",

@@ -6,7 +6,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from world2minecraft.coordinates import block_to_room
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.types import AIR, BlockVolume, Camera, Layout
 from world2minecraft.dataset.tours import (
     TourRule,
     kind_of_yaw,
@@ -18,12 +20,10 @@ from world2minecraft.dataset.tours import (
 )
 from world2minecraft.dataset.tours.rooms import find_rooms, shared
 from world2minecraft.dataset.tours.tourist import GAP_DEG, GAP_M
-from world2minecraft.errors import DamagedFileError, UsageError
 from world2minecraft.render import prepare_scene
 from world2minecraft.render.batch import render_batch
 from world2minecraft.render.views.cameras import camera_of
 from world2minecraft.rooms.worlds import generate_world
-from world2minecraft.types import AIR, BlockVolume, Camera, Layout
 from world2minecraft.walk.fits import bodies_fit
 from world2minecraft.walk.graph import solid_of, walk_graph
 

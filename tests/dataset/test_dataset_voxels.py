@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from label_worlds import PALETTE, designs_of, room_of_things
 
-from world2minecraft.coordinates import block_axes_to_grid, block_to_room
+from world2minecraft.core.coordinates import block_axes_to_grid, block_to_room
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.dataset import voxels as module
 from world2minecraft.dataset.values import FineClass
 from world2minecraft.dataset.voxels import scene_voxels
-from world2minecraft.errors import UsageError
 from world2minecraft.render.looks import OwnLooks
-from world2minecraft.types import BlockVolume
 
 MARGIN = 2e-4
 

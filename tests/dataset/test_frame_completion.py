@@ -5,6 +5,8 @@ import pytest
 from PIL import Image
 
 from world2minecraft.cli import run as w2m
+from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
+from world2minecraft.core.types import View
 from world2minecraft.dataset.formats.cameras import NYU_CAMERA
 from world2minecraft.dataset.formats.depth_codes import depth_png
 from world2minecraft.dataset.frame_completion import (
@@ -15,11 +17,9 @@ from world2minecraft.dataset.frame_completion import (
     floor_of,
     read_grid_place,
 )
-from world2minecraft.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
 from world2minecraft.label.channels import Sight
 from world2minecraft.label.completion_net import CompletionModel
 from world2minecraft.occupy.depth import DepthPredictor
-from world2minecraft.types import View
 
 EYE_M, WALL_M = 1.2, 4.0
 # x right, y forward, z up: the camera looks along +y, level, over a floor at z = 0.

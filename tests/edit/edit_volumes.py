@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from world2minecraft.core.types import AIR, BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
 from world2minecraft.edit.draft import Draft
-from world2minecraft.types import AIR, BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
 
 PALETTE = (
     AIR,

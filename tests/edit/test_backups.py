@@ -11,6 +11,7 @@ import time
 import pytest
 from worlds import room, tree, write_ground
 
+from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputError
 from world2minecraft.edit import backups
 from world2minecraft.edit.backups import (
     changed_since,
@@ -20,7 +21,6 @@ from world2minecraft.edit.backups import (
     take_back,
 )
 from world2minecraft.edit.into_world import build_into
-from world2minecraft.errors import ConflictError, DamagedFileError, OutputError
 
 FILES = {
     "region/r.0.0.mca": b"new ground",

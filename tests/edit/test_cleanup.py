@@ -8,13 +8,13 @@ from edit_volumes import seen
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import block_to_room
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
 from world2minecraft.edit.cleanup import RULES, mended
 from world2minecraft.edit.draft import Draft, applied
 from world2minecraft.edit.floating import floating_cells
-from world2minecraft.errors import UnknownNameError
 from world2minecraft.minecraft.rules.stability import unstable
-from world2minecraft.types import AIR, BlockEntity, BlockVolume
 
 FLOOR, WALL, PANE = "minecraft:oak_planks", "minecraft:white_concrete", "minecraft:glass"
 WOOD, RED = "minecraft:spruce_planks", "minecraft:red_concrete"

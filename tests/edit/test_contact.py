@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from world2minecraft.core.types import AIR
 from world2minecraft.edit.contact import GAP, STEPS, touches, touching_parts
 from world2minecraft.minecraft.visual import visual_boxes_of
-from world2minecraft.types import AIR
 
 STONE = "minecraft:stone"
 LOWER, UPPER = (f"minecraft:oak_slab[type={kind},waterlogged=false]" for kind in ("bottom", "top"))

@@ -8,10 +8,10 @@ from edit_volumes import random_edits, seen, small_volume
 from hypothesis import given
 from hypothesis import strategies as st
 
+from world2minecraft.core.errors import ConflictError, DamagedFileError, LimitError
+from world2minecraft.core.types import AIR
 from world2minecraft.edit.draft import Draft, applied
 from world2minecraft.edit.packing import pack_edit, unpack_edit
-from world2minecraft.errors import ConflictError, DamagedFileError, LimitError
-from world2minecraft.types import AIR
 
 seeds = st.integers(0, 10_000)
 

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from worlds import room, tree, write_ground
 
+from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.edit.backups import steps_of, take_back
 from world2minecraft.edit.into_world import build_into
-from world2minecraft.errors import World2MinecraftError
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
 from world2minecraft.minecraft.worlds.anvil import pack_region
 from world2minecraft.minecraft.worlds.region_edit import read_region_file

@@ -11,11 +11,11 @@ from edit_volumes import random_edits, seen, small_volume
 from hypothesis import given
 from hypothesis import strategies as st
 
+from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputError, UsageError
 from world2minecraft.edit.draft import applied
 from world2minecraft.edit.history import History
 from world2minecraft.edit.journal import Journal, write_journal
 from world2minecraft.edit.packing import pack_edit
-from world2minecraft.errors import ConflictError, DamagedFileError, OutputError, UsageError
 
 
 def filled(path, count=4):

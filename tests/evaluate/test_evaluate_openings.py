@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.types import Layout, Opening
 from world2minecraft.evaluate.openings import opening_facts
 from world2minecraft.evaluate.reach import Reached
-from world2minecraft.types import Layout, Opening
 
 OUTLINE = np.array([[0, 0], [4, 0], [4, 3], [0, 3]], np.float64)
 LEFT = np.array([[-4, 0], [0, 0], [0, 3], [-4, 3]], np.float64)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import look_at, rotation_about_z
+from world2minecraft.core.coordinates import look_at, rotation_about_z
 from world2minecraft.evaluate.poses import pose_error, scale_error
 
 EYES = np.array([[1.0, 2, 1.5], [3, 1, 1.4], [2, 3, 1.6], [0.5, 0.5, 1.2]])

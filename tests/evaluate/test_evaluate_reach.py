@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from true_rooms import CAMERA, FINE_M, SHELL, VOXEL_M, cameras, fine_room, slow_reach
 
-from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.evaluate.frames import UsedFrame
 from world2minecraft.evaluate.reach import CROSSED, reached_cells
 from world2minecraft.evaluate.truth import Truth

@@ -10,8 +10,10 @@ import scannet_scenes as scenes
 from scipy import ndimage
 from true_rooms import FINE_M, fine_room, write_capture
 
-from world2minecraft.classes import CLASS_COUNT, STRUCTURE_CLASSES
 from world2minecraft.cli import run as w2m
+from world2minecraft.core.classes import CLASS_COUNT, STRUCTURE_CLASSES
+from world2minecraft.core.files import write_json
+from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
 from world2minecraft.evaluate import Truth, evaluate_reconstruction, read_truth
 from world2minecraft.evaluate.frames import all_frames
 from world2minecraft.evaluate.reach import reached_cells
@@ -21,9 +23,7 @@ from world2minecraft.evaluate.scannet.surface import surface_voxels
 from world2minecraft.evaluate.truth import read_instances
 from world2minecraft.exchange.objects import write_objects
 from world2minecraft.exchange.room import write_room
-from world2minecraft.files import write_json
 from world2minecraft.metrics.truth import carry_truth
-from world2minecraft.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
 
 VOXEL_M = 0.08
 NAME, CUBE = scenes.NAME, np.ones((3, 3, 3), bool)

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from true_rooms import OBJECTS, VOXEL_M, write_capture, write_perfect
 
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
 from world2minecraft.evaluate import evaluate_reconstruction
 from world2minecraft.exchange.objects import read_objects, write_objects
 from world2minecraft.exchange.room import read_room, write_room
-from world2minecraft.files import read_json, read_npz, write_json, write_npz
 
 
 def copied(run, tmp_path):

@@ -88,7 +88,7 @@ def test_true_views_undo_poses_and_scales(capture):
 
 
 def test_parameters_of_a_run_are_read_back(tmp_path, run):
-    from world2minecraft.files import write_json
+    from world2minecraft.core.files import write_json
 
     chosen = with_settings(Parameters(labeller="votes"), ["find.cluster_radius=3", "voxel_m=0.1"])
     write_json(tmp_path / "manifest.json", {"parameters": chosen.as_json()})

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from world2minecraft.coordinates import rotation_about_z
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.evaluate import read_truth
 from world2minecraft.evaluate.frame_error import frame_error
 

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, invert_rigid, look_at, rotation_about_z
+from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotation_about_z
+from world2minecraft.core.files import write_json, write_npz
+from world2minecraft.core.types import OBSERVED, UNSEEN, Camera, OccupancyGrid, Scan, View
 from world2minecraft.evaluate import read_truth
 from world2minecraft.evaluate.frames import used_frames
 from world2minecraft.evaluate.score import see_truth
@@ -12,11 +14,9 @@ from world2minecraft.evaluate.true_objects import put_true_objects
 from world2minecraft.exchange.objects import write_objects
 from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.exchange.scan import write_scan
-from world2minecraft.files import write_json, write_npz
 from world2minecraft.parameters import Parameters
 from world2minecraft.render.voxels import cast_voxels, prepare_voxels
 from world2minecraft.scan.plain import write_plain
-from world2minecraft.types import OBSERVED, UNSEEN, Camera, OccupancyGrid, Scan, View
 
 FINE_M, VOXEL_M = 0.02, 0.08
 SIZE_M = (3.2, 2.4, 2.08)

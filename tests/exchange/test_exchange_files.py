@@ -8,7 +8,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.types import (
+    Alternative,
+    FusedEvidence,
+    ObjectInstance,
+    OccupancyGrid,
+    Placement,
+    Scan,
+)
 from world2minecraft.exchange.centers import write_centers
 from world2minecraft.exchange.evidence import EVIDENCE_ARRAYS, read_evidence, write_evidence
 from world2minecraft.exchange.objects import (
@@ -21,14 +29,6 @@ from world2minecraft.exchange.occupancy import inner_corner_m, read_occupancy
 from world2minecraft.exchange.paper import read_occ_json, write_centers_json, write_occ_json
 from world2minecraft.exchange.room import GRID_ARRAYS, read_room, write_room
 from world2minecraft.exchange.scan import read_depth_kind, read_room_size, write_scan
-from world2minecraft.types import (
-    Alternative,
-    FusedEvidence,
-    ObjectInstance,
-    OccupancyGrid,
-    Placement,
-    Scan,
-)
 
 
 def some_grid(seed: int = 0, shape=(6, 5, 4)) -> OccupancyGrid:

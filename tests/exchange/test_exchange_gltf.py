@@ -13,8 +13,9 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
 from world2minecraft.exchange.blob import pack_volume, unpack_volume
 from world2minecraft.exchange.bodies import bodies_of
 from world2minecraft.exchange.forms import form_named, form_names, write_forms
@@ -29,7 +30,6 @@ from world2minecraft.geometry.colour import srgb_of_linear
 from world2minecraft.minecraft.colours import colour_of
 from world2minecraft.minecraft.displays import block_display
 from world2minecraft.minecraft.visual import visual_boxes_of
-from world2minecraft.types import AIR, BlockEntity, BlockVolume
 
 PALETTE = (
     AIR,

@@ -17,7 +17,7 @@ pytest.importorskip("resource")  # Windows has none.
 LIMIT_MB = 512
 READ = """
 import resource, sys
-from world2minecraft.errors import InputError
+from world2minecraft.core.errors import InputError
 from world2minecraft.exchange.forms import read_form
 for path in sys.argv[1:]:
     try:

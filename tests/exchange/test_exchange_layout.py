@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.types import Layout, Opening
 from world2minecraft.exchange.layout import read_layouts, write_layouts
-from world2minecraft.types import Layout, Opening
 
 ROOM = Layout(
     np.array([[0, 0], [3.2, 0], [3.2, 4.12345], [0, 4.12345]]),

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import write_npz
+from world2minecraft.core.types import Corrections
 from world2minecraft.exchange.poses import read_poses, write_poses
-from world2minecraft.files import write_npz
-from world2minecraft.types import Corrections
 
 
 def test_corrections_come_back_as_they_were(tmp_path):

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import DamagedFileError, LimitError
 from world2minecraft.exchange.paper import _lines, write_occ_json
 from world2minecraft.exchange.paper_forms import CELLS, METRES, read_any_centers, read_any_occ
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.find.askew import askew_rectangle
 from world2minecraft.furniture import cells_of, template
 

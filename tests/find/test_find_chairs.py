@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import turn_grid
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find.chairs import join_backs, part_chairs
 from world2minecraft.furniture import cells_of, template
-from world2minecraft.types import OccupancyGrid
 
 SHAPE = (44, 40, 20)
 

@@ -4,10 +4,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find.hosts import part_by_hosts
 from world2minecraft.find.posts import join_posts
-from world2minecraft.types import OccupancyGrid
 
 SHAPE = (30, 30, 34)
 GREEN, BEIGE = (40, 120, 40), (220, 200, 150)

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import turn_grid
-from world2minecraft.errors import UsageError
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import turn_grid
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find import FindParameters, find_objects
 from world2minecraft.find.growth import grow
 from world2minecraft.find.specks import without_specks
 from world2minecraft.furniture import cells_of, surface, template
-from world2minecraft.types import OccupancyGrid
 
 
 def grid_of(labels: np.ndarray) -> OccupancyGrid:

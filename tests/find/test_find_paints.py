@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find.paints import part_by_paint
-from world2minecraft.types import OccupancyGrid
 
 SHAPE = (24, 20, 14)
 RED, BLUE = (200, 40, 40), (40, 60, 200)

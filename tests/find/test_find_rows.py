@@ -4,10 +4,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find.rows import part_rows
 from world2minecraft.furniture import surface
-from world2minecraft.types import OccupancyGrid
 
 
 def _room(*boxes):

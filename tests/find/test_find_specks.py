@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.find.test_find_objects import grid_of
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.find import FindParameters, find_objects
 from world2minecraft.find.specks import without_specks
 

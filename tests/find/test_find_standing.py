@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find import FindParameters, find_objects
 from world2minecraft.find.reach import layers_reached
-from world2minecraft.types import OccupancyGrid
 
 TOP = (slice(10, 26), slice(8, 20), slice(9, 11))
 

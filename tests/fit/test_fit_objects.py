@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import grid_to_block_axes
+from world2minecraft.core.coordinates import grid_to_block_axes
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.fit import (
     CALM,
     Fit,
@@ -24,7 +25,6 @@ from world2minecraft.fit.finish import without_crumbs
 from world2minecraft.fit.joins import parts_of_shapes
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.stability import unstable
-from world2minecraft.types import BlockVolume
 
 ALL = shape_set(CALM | {"carpet", "post"})
 STANDS = Rules()

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 from starlette.testclient import TestClient
 
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.forge.annotation.app import PAGE, annotation_server, build_app
 from world2minecraft.forge.annotation.desk import AnnotationDesk
 from world2minecraft.vln.language.humans import read_annotations, with_annotations

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as some
 
 from world2minecraft.build import build_volume
-from world2minecraft.coordinates import apply
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.edit.cleanup import mended
-from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.exchange.occupancy import inner_corner_m
 from world2minecraft.forge import blocks, build_routes
 from world2minecraft.forge.arrays import packed_arrays

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from forge_documents import SHAPE, Clock, edit, held, same_files, write_run
 
-from world2minecraft.errors import ConflictError, OutputError, UsageError
+from world2minecraft.core.errors import ConflictError, OutputError, UsageError
 from world2minecraft.forge import document as document_module
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.snapshots import read_state

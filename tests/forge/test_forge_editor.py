@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
 from world2minecraft.edit.scene import runs_of_cells
 from world2minecraft.edit.scene.voxels import SetCells
-from world2minecraft.errors import ConflictError, UnknownNameError, UsageError
 from world2minecraft.forge.editor import Editor
 
 

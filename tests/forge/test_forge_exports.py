@@ -11,10 +11,10 @@ import pytest
 from forge_serving import client, served
 from PIL import Image
 
+from world2minecraft.core.files import read_json
 from world2minecraft.exchange.forms import form_names, read_form
 from world2minecraft.exchange.paper import read_occ_json
 from world2minecraft.exchange.room import read_room
-from world2minecraft.files import read_json
 from world2minecraft.forge import export_routes
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.exports import forms, snapshot, stats_csv, write_data

@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.errors import ConflictError, InputError, UnknownNameError
+from world2minecraft.core.errors import ConflictError, InputError, UnknownNameError
+from world2minecraft.core.progress import silent
 from world2minecraft.forge.apart import run_apart
 from world2minecraft.forge.jobs import MOST_AT_ONCE, CancelledError, Jobs
 from world2minecraft.forge.time_left import TimeLeft
 from world2minecraft.forge.worker import outcome
-from world2minecraft.progress import silent
 
 
 class Clock:

@@ -22,7 +22,7 @@ from forge_serving import (
 )
 from websockets.exceptions import ConnectionClosed
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.forge.limits import MAX_JSON_BYTES, MAX_JSON_DEPTH, json_of
 
 GIGABYTE = 1 << 30

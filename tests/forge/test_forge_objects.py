@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.forge.editor import Editor
 from world2minecraft.furniture import cells_of, template
 from world2minecraft.metrics.layout import floaters

@@ -8,7 +8,7 @@ import pytest
 from forge_documents import Clock, edit, held, same_files, write_run
 
 from world2minecraft.cli import run as w2m
-from world2minecraft.errors import ConflictError, OutputError
+from world2minecraft.core.errors import ConflictError, OutputError
 from world2minecraft.exchange.occupancy import read_occupancy
 from world2minecraft.exchange.scene import read_scene
 from world2minecraft.forge import saving

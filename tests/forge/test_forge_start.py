@@ -12,7 +12,7 @@ import pytest
 from forge_serving import bearer, client, heard, raw, served, small_editor, tab
 from PIL import Image
 
-from world2minecraft.errors import ConflictError
+from world2minecraft.core.errors import ConflictError
 from world2minecraft.forge.apart import run_apart
 from world2minecraft.forge.captures import Captures, is_capture
 from world2minecraft.forge.editor import Editor

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.errors import LimitError, UsageError
+from world2minecraft.core.errors import LimitError, UsageError
 from world2minecraft.forge.upload_names import (
     MOST_FILES,
     UploadFile,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.core.types import OccupancyGrid
 
 
 def grid_of(labels: np.ndarray) -> OccupancyGrid:

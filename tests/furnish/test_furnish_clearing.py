@@ -4,12 +4,12 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Placement
 from world2minecraft.furnish.clearing import clear_overlaps
 from world2minecraft.furnish.crumbs import tidied
 from world2minecraft.furniture import template
 from world2minecraft.metrics.layout import collisions
-from world2minecraft.types import Placement
 
 CLOSE = 1e-6
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from label_grids import grid_of
 
-from world2minecraft.coordinates import turn_grid
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.coordinates import turn_grid
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.types import Layout, ObjectInstance
 from world2minecraft.find import find_objects, measured
 from world2minecraft.furnish import fit_template, furnish, ranked_matches
 from world2minecraft.furniture import cells_of, template
-from world2minecraft.types import Layout, ObjectInstance
 
 NAMES = ["chair", "sofa", "double_bed", "desk", "bookcase"]
 

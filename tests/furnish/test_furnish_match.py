@@ -6,9 +6,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from label_grids import grid_of
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import turn_grid
-from world2minecraft.errors import UsageError
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import turn_grid
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Layout
 from world2minecraft.find import find_objects
 from world2minecraft.furnish import (
     FurnishParameters,
@@ -19,7 +20,6 @@ from world2minecraft.furnish import (
 from world2minecraft.furnish.bounds import floor_under_m
 from world2minecraft.furniture import TEMPLATES, cells_of, surface, template
 from world2minecraft.furniture.overlap import overlaps
-from world2minecraft.types import Layout
 
 NAMES = [name for name in TEMPLATES.names() if template(name).matched]
 FULL_IOU = 0.9

@@ -8,13 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from label_grids import grid_of
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import ObjectInstance
 from world2minecraft.find import FindParameters, find_objects
 from world2minecraft.furnish import FurnishParameters, furnish
 from world2minecraft.furnish.evidence import evidence_of
 from world2minecraft.furnish.runs import cut_into_runs, largest_rectangle
 from world2minecraft.furniture import surface
-from world2minecraft.types import ObjectInstance
 
 FURN, WALL = int(SemanticClass.FURN), int(SemanticClass.WALL)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from label_grids import grid_of
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.find import find_objects
 from world2minecraft.furnish import FurnishParameters, furnish
 

@@ -8,13 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from label_grids import grid_of
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Placement
 from world2minecraft.find import find_objects
 from world2minecraft.furnish import FurnishParameters, furnish
 from world2minecraft.furnish.variants import Choice, Offer, choose
 from world2minecraft.furniture import cells_of, template
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.types import Placement
 
 BROWN, WHITE, RED = (90, 58, 34), (242, 241, 236), (160, 36, 33)
 

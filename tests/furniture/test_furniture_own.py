@@ -8,15 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.errors import DamagedFileError, LimitError, UnknownNameError, UsageError
-from world2minecraft.files import write_json
+from world2minecraft.core.errors import DamagedFileError, LimitError, UnknownNameError, UsageError
+from world2minecraft.core.files import write_json
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture import raster
 from world2minecraft.furniture.adopting import Wish, adopt, front_of
 from world2minecraft.furniture.idiom import block_size, laid
 from world2minecraft.furniture.library import template, templates_of, variants_of
 from world2minecraft.furniture.own import own_files, own_folder, own_template, read_own
 from world2minecraft.minecraft.turn import turn_volume
-from world2minecraft.types import BlockVolume
 
 AIR = "minecraft:air"
 STAIR = "minecraft:oak_stairs[facing=north,half=bottom]"

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.furniture import TEMPLATES, cells_of, raster, size_in_cells, surface, template
 
 NAMES = TEMPLATES.names()

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.errors import InputError, World2MinecraftError
+from world2minecraft.core.errors import InputError, World2MinecraftError
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.furniture.library import design_files
 from world2minecraft.furniture.reading import design_of, read_design

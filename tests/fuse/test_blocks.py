@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from world2minecraft.classes import CLASS_COUNT
-from world2minecraft.errors import CaptureError
-from world2minecraft.files import MAX_ARRAY_BYTES
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.files import MAX_ARRAY_BYTES
+from world2minecraft.core.types import PointEvidence
 from world2minecraft.fuse import EvidenceMap
 from world2minecraft.fuse.blocks import BLOCK_CELLS, MAX_CELLS, SIDE, Blocks
 from world2minecraft.fuse.kernels import place_of
-from world2minecraft.types import PointEvidence
 
 
 def test_a_cell_keeps_its_place_while_the_table_grows():

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 from world2minecraft.fuse import CleanParameters, close_structure, read_out, remove_floaters
 from world2minecraft.fuse.clean import structure_layers
-from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 
 def grid_of(labels: np.ndarray) -> OccupancyGrid:

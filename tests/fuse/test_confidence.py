@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 from world2minecraft.fuse import ConfidenceTable, calibrate, confidence, confidence_table
 from world2minecraft.fuse.confidence import _neighbours, free_features, occupied_features
-from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 TABLE = ConfidenceTable(
     occupied=(2.0, 1.0, 0.5, 1.0, 1.0, 2.0, 0.0, 0.7),

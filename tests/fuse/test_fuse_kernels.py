@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.types import PointEvidence, Scan
 from world2minecraft.fuse import EvidenceMap, FuseParameters, fuse_views
 from world2minecraft.fuse.kernels import face_normals, to_cells
-from world2minecraft.types import PointEvidence, Scan
 
 PARAMETERS = FuseParameters(min_share=0.2)
 

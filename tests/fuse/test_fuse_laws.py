@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera, GridEvidence, OccupancyGrid, PointEvidence, View
 from world2minecraft.fuse import (
     CleanParameters,
     EvidenceMap,
@@ -13,7 +14,6 @@ from world2minecraft.fuse import (
     remove_floaters,
 )
 from world2minecraft.occupy.depth import DepthPredictor
-from world2minecraft.types import Camera, GridEvidence, OccupancyGrid, PointEvidence, View
 
 CAMERA = Camera(80, 60, 70.0, 70.0, 40.0, 30.0)
 

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.types import GridEvidence, PointEvidence
 from world2minecraft.fuse import EvidenceMap, FuseParameters, read_out
 from world2minecraft.fuse.grids import EDGE, grid_gains
-from world2minecraft.types import GridEvidence, PointEvidence
 
 SURE = float(np.log((1 - EDGE) / EDGE))
 

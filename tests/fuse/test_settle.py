@@ -4,10 +4,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from world2minecraft.core.types import Camera, PointEvidence, View
 from world2minecraft.fuse import EvidenceMap, FuseParameters
 from world2minecraft.fuse.settle import _depth_of_solid
 from world2minecraft.occupy.depth import DepthPredictor
-from world2minecraft.types import Camera, PointEvidence, View
 
 CELL_M = 0.08
 CAMERA = Camera(160, 120, 140.0, 140.0, 80.0, 60.0)

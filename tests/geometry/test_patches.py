@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from world2minecraft.core.types import Camera, View
 from world2minecraft.geometry.lifting import pixel_rays
 from world2minecraft.geometry.patches import patches_of_depth
 from world2minecraft.geometry.surface import collect_surface
-from world2minecraft.types import Camera, View
 
 CAMERA = Camera(320, 240, 260.0, 260.0, 160.0, 120.0)
 

@@ -8,7 +8,7 @@ import pytest
 from homes import BED, KITCHEN, bedroom, hall, kitchen, room, run_of, table
 
 from world2minecraft.cli import run as w2m
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.exchange.layout import read_layouts, write_layouts
 from world2minecraft.exchange.objects import read_objects, write_objects, write_placements
 from world2minecraft.exchange.room import read_room, write_room

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 from world2minecraft.fuse import read_out
-from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 VOXEL_M = 0.08
 MARGIN = 2  # Cells around the inner box.

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import COMPLETED, OBSERVED, UNSEEN, Layout, OccupancyGrid, Opening
 from world2minecraft.label import with_whole_walls, without_wall_guesses
 from world2minecraft.label.bare_walls import BEFORE_M, wall_edges
-from world2minecraft.types import COMPLETED, OBSERVED, UNSEEN, Layout, OccupancyGrid, Opening
 
 VOXEL_M = 0.08
 MARGIN = 10  # Cells around the room.

@@ -6,7 +6,8 @@ import label_rooms as rooms
 import numpy as np
 import pytest
 
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.types import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.label import labeller
 from world2minecraft.label.channels import Sight
 from world2minecraft.label.completion import (
@@ -17,7 +18,6 @@ from world2minecraft.label.completion import (
 from world2minecraft.label.completion_net import WEIGHTS, CompletionModel, likeliest
 from world2minecraft.label.geometric import GeometricLabeller
 from world2minecraft.steps import usual_labeller
-from world2minecraft.types import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
 
 
 class Saying:

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import ndimage
 
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.coordinates import turn_grid
+from world2minecraft.core.types import COMPLETED, OBSERVED
 from world2minecraft.label import LABELLERS, labeller
 from world2minecraft.label.geometric import GeometricLabeller
-from world2minecraft.types import COMPLETED, OBSERVED
 
 
 def labelled(room, **options):

@@ -5,11 +5,11 @@ from functools import lru_cache
 import numpy as np
 import torch
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.types import Camera
 from world2minecraft.learn.batch import OccInput, OccTarget
 from world2minecraft.rooms import generate_room
 from world2minecraft.rooms.photo import prepare_photos, take_photo
-from world2minecraft.types import Camera
 
 SHAPE, VOXEL_M = (30, 30, 18), 0.16
 CAMERA = Camera(96, 72, 78.0, 78.0, 48.0, 36.0)

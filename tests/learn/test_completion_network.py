@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from world2minecraft.errors import InputError
+from world2minecraft.core.errors import InputError
 from world2minecraft.label.channels import CHANNELS, Sight
 from world2minecraft.label.completion_net import CompletionModel, spans
 from world2minecraft.learn.completion.export import export_completion, halved

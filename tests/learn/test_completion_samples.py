@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import write_npz
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import write_npz
 from world2minecraft.label.channels import network_input
 from world2minecraft.learn.completion.augment import augmented, cropped, turned
 from world2minecraft.learn.completion.noise import draw_noise, lost_pixels, wrong_labels

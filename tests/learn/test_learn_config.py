@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from world2minecraft.errors import DamagedFileError, UnknownNameError, UsageError
+from world2minecraft.core.errors import DamagedFileError, UnknownNameError, UsageError
 from world2minecraft.learn.config import (
     PRESETS,
     DataSource,

@@ -7,7 +7,7 @@ import pytest
 import torch
 from tests.learn.toy_sets import toy_config, toy_set, write_toy_store
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.learn.config import GRIDS, DataSource
 from world2minecraft.learn.data.batches import TrainingPart, drawn_batches, ordered_batches
 from world2minecraft.learn.data.cache import StreamedFrames, cached_frames, frames_bytes

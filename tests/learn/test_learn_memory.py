@@ -8,7 +8,7 @@ import pytest
 import torch
 from tests.learn.toy_sets import toy_config, toy_set, write_toy_store
 
-from world2minecraft.coordinates import apply, invert_rigid
+from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.dataset.formats.sscnet import downsampled
 from world2minecraft.learn import memory
 from world2minecraft.learn.config import GRIDS

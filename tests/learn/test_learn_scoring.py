@@ -10,9 +10,9 @@ from tests.learn.toy_sets import toy_samples, toy_set, write_toy_store
 from tests.occupy.tiny_network import write_network
 
 from world2minecraft.cli import run as w2m
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.files import write_npz
 from world2minecraft.dataset.formats.sscnet import bin_bytes
-from world2minecraft.errors import DamagedFileError, InputError, UsageError
-from world2minecraft.files import write_npz
 from world2minecraft.learn import training
 from world2minecraft.learn.config import GRIDS
 from world2minecraft.learn.data.frames import known_cells

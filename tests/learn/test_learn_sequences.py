@@ -8,8 +8,8 @@ import pytest
 import torch
 from tests.learn.toy_sets import toy_config, toy_set, write_toy_store
 
-from world2minecraft.coordinates import apply, invert_rigid, look_at, rotation_about_z
-from world2minecraft.errors import UsageError
+from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotation_about_z
+from world2minecraft.core.errors import UsageError
 from world2minecraft.learn.config import GRIDS, read_config
 from world2minecraft.learn.data.augment import augmented, augmented_together
 from world2minecraft.learn.data.batches import DrawnFrames, Stacked, TrainingPart

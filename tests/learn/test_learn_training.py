@@ -12,7 +12,7 @@ from safetensors.torch import load_file
 from tests.learn import toy_network
 from tests.learn.toy_sets import toy_config, write_toy_store
 
-from world2minecraft.errors import ConflictError, DamagedFileError, InputError, UsageError
+from world2minecraft.core.errors import ConflictError, DamagedFileError, InputError, UsageError
 from world2minecraft.learn import training
 from world2minecraft.learn.batch import OccOutput
 from world2minecraft.learn.checkpoints import (
@@ -218,7 +218,7 @@ def test_best_weights_make_the_network_again(whole, store):
 
 def test_two_processes_do_not_train_in_one_folder(store, cache, tmp_path):
     code = (
-        "import sys, time; from pathlib import Path; from world2minecraft.lock import Lock\n"
+        "import sys, time; from pathlib import Path; from world2minecraft.core.locks import Lock\n"
         "Lock(Path(sys.argv[1]) / '.lock', 'trained').take(); print('held', flush=True)\n"
         "time.sleep(60)"
     )

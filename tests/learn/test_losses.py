@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import torch
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.learn.batch import OccInput, OccOutput, OccTarget
 from world2minecraft.learn.losses import LossWeights, occupancy_losses
 from world2minecraft.learn.losses.depth import depth_loss

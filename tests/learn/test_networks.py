@@ -4,7 +4,7 @@ import pytest
 import torch
 from room_frames import SHAPE, VOXEL_M, room_batch
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.learn.losses import LossWeights, occupancy_losses
 from world2minecraft.learn.networks import NETWORKS, make_network
 

@@ -5,7 +5,7 @@ import pytest
 import torch
 from room_frames import SHAPE, VOXEL_M, room_batch
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
 from world2minecraft.learn.batch import OccInput
 from world2minecraft.learn.networks import make_network
 from world2minecraft.learn.networks.stream import SceneStream, window_before

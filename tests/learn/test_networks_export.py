@@ -5,7 +5,7 @@ import pytest
 import torch
 from room_frames import SHAPE, VOXEL_M, room_batch
 
-from world2minecraft.errors import OutputError
+from world2minecraft.core.errors import OutputError
 from world2minecraft.learn.export import MOST_DIFFERENCE, export_network
 from world2minecraft.learn.networks import NETWORKS, make_network
 from world2minecraft.occupy.network_file import NetworkFacts, OccupancyNetwork

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from room_frames import SHAPE, VOXEL_M, room_batch
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
 from world2minecraft.dataset.label_kernels import mark_in_frustum
 from world2minecraft.learn.batch import OccInput
 from world2minecraft.learn.networks.parts.projection import lift, sight_of

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from world2minecraft.errors import InputError, MissingExtraError
+from world2minecraft.core.errors import InputError, MissingExtraError
 from world2minecraft.learn.batch import OccInput
 from world2minecraft.learn.networks.parts import hf_backbone
 from world2minecraft.learn.networks.parts.attention import DeformableAttention

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run as w2m
+from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.dataset.formats.pickling import pickle_bytes
 from world2minecraft.dataset.importers.embodied import open_scenes
-from world2minecraft.errors import DamagedFileError, InputError
 from world2minecraft.learn.predictions import SavedPredictions
 from world2minecraft.learn.scoring import SCENES, saved_scene_scores, scenes_to_score
 

@@ -12,7 +12,7 @@ import onnx
 from onnx import numpy_helper
 from room_frames import SHAPE, VOXEL_M
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.learn.export import _asked, _question, _traced, export_network
 from world2minecraft.learn.networks import make_network
 from world2minecraft.learn.weight_storage import rounded, with_stored_weights

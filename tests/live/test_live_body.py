@@ -20,12 +20,12 @@ from test_live_walk import HERE, free_port, node
 from tests.vln.small_flat import SPAWN as FLAT_START
 from tests.vln.small_flat import write_flat
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.jit import user_cache_dir
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.jit import user_cache_dir
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.states import complete, parse_state
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.world import write_world
-from world2minecraft.types import AIR, BlockVolume
 from world2minecraft.vln.server.body import join
 from world2minecraft.walk import BlockWorld, Keys, standing_place, step
 

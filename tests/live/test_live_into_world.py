@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from test_live_walk import CORNER, HERE, LIMIT_S, START, free_port, furnished_room, node, run_node
 
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.edit.into_world import build_into, take_blocks_out
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.reading import read_world
 from world2minecraft.minecraft.worlds.world import write_world
-from world2minecraft.types import AIR, BlockVolume
 
 pytestmark = pytest.mark.live
 __all__ = ["node"]  # A fixture.

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from world2minecraft.errors import (
+from world2minecraft.core.errors import (
     DamagedFileError,
     InputError,
     LimitError,

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from world2minecraft.core.types import LayoutObject, Placement
 from world2minecraft.metrics.layout import (
     collisions,
     floaters,
@@ -14,7 +15,6 @@ from world2minecraft.metrics.layout import (
     overlapping_boxes,
     plan_corners_m,
 )
-from world2minecraft.types import LayoutObject, Placement
 
 L_ROOM = np.array([[0, 0], [4, 0], [4, 2], [2, 2], [2, 4], [0, 4]], float)
 

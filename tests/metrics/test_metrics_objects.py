@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from world2minecraft.core.types import LayoutObject, Placement
 from world2minecraft.metrics.objects import (
     ObjectCounts,
     count_objects,
     match_objects,
     turn_between_deg,
 )
-from world2minecraft.types import LayoutObject, Placement
 
 
 def thing(class_id, x, y=0.0, yaw_deg=0.0):

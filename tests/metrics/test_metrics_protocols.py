@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as stn
 from tests.metrics.paper_occupancy import MINECRAFTOCC, NYU, row
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.metrics.intervals import (
     FrameScore,
     bootstrap,

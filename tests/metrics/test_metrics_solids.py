@@ -7,7 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import apply, block_to_room, invert
+from world2minecraft.core.coordinates import apply, block_to_room, invert
+from world2minecraft.core.types import (
+    BlockVolume,
+    Layout,
+    LayoutObject,
+    ObjectInstance,
+    OccupancyGrid,
+    Placement,
+)
 from world2minecraft.furniture import template, templates_of
 from world2minecraft.metrics.layout import (
     category_integrity,
@@ -17,14 +25,6 @@ from world2minecraft.metrics.layout import (
     overlapping_boxes,
 )
 from world2minecraft.metrics.solids import box_m, depth_m, own_cells, solids_m
-from world2minecraft.types import (
-    BlockVolume,
-    Layout,
-    LayoutObject,
-    ObjectInstance,
-    OccupancyGrid,
-    Placement,
-)
 
 NAMES = ["chair", "dining_table", "sofa", "counter", "bookcase", "desk", "double_bed"]
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import apply, invert_rigid, rotation_about_z
+from world2minecraft.core.coordinates import apply, invert_rigid, rotation_about_z
 from world2minecraft.metrics.truth import carry_truth, scored_cells
 
 FINE_M, COARSE_M = 0.02, 0.08

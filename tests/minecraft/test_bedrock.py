@@ -13,7 +13,8 @@ from block_volumes import random_volume, some_states, state_texts, volume_of
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.types import AIR, BlockEntity, Entity
 from world2minecraft.minecraft.bedrock.block_data import bedrock_data, java_state, plain_text
 from world2minecraft.minecraft.bedrock.nbt_little import read_little, write_little
 from world2minecraft.minecraft.bedrock.states import (
@@ -28,7 +29,6 @@ from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Float, Long, NbtLimits, Short
 from world2minecraft.minecraft.states import states_of
-from world2minecraft.types import AIR, BlockEntity, Entity
 
 STONE = "minecraft:stone"
 

@@ -10,7 +10,8 @@ from block_volumes import furnished_volume, random_volume, state_texts, volume_o
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.types import AIR, Entity
 from world2minecraft.minecraft.commands import reading as command_reading
 from world2minecraft.minecraft.commands.reading import read_command_list, read_datapack
 from world2minecraft.minecraft.commands.snbt import SnbtReader, read_snbt
@@ -19,7 +20,6 @@ from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
-from world2minecraft.types import AIR, Entity
 
 VOLUME = random_volume((9, 6, 7), 6, (2, 60, -3))
 

@@ -9,7 +9,7 @@ from connection_rules import STEP, slowly_connected
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.states import complete, parse_state
 from world2minecraft.minecraft.turn import mirror_state, turn_state

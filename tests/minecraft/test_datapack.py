@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from block_volumes import furnished_volume, random_volume, state_texts, volume_of
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.commands import datapack
 from world2minecraft.minecraft.commands.boxes import MAX_FILL, merge_boxes
 from world2minecraft.minecraft.commands.datapack import datapack_files, write_datapack
@@ -18,7 +19,6 @@ from world2minecraft.minecraft.commands.writing import snbt
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.minecraft.versions import game_version, game_versions
-from world2minecraft.types import AIR
 
 OLD = game_version("1.20.1")
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from block_volumes import volume_of
 
+from world2minecraft.core.types import BlockEntity, Entity
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.game_data import count_lost_data, in_game
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte
-from world2minecraft.types import BlockEntity, Entity
 
 CHEST = "minecraft:chest[facing=north,type=single,waterlogged=false]"
 SWORD = {"id": "minecraft:iron_sword", "Slot": Byte(3)}

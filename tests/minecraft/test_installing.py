@@ -10,11 +10,11 @@ from block_volumes import volume_of
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.errors import InputError, OutputError, UsageError
+from world2minecraft.core.errors import InputError, OutputError, UsageError
+from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.worlds import installing
 from world2minecraft.minecraft.worlds.installing import check_name, free_name, install_world
 from world2minecraft.minecraft.worlds.world import write_world
-from world2minecraft.types import AIR
 
 
 @pytest.fixture

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nbt_equality import same_block_entities, same_entities
 
-from world2minecraft.errors import InputError, LimitError, UsageError
+from world2minecraft.core.errors import InputError, LimitError, UsageError
+from world2minecraft.core.types import AIR, Entity
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, unpack, write_nbt
 from world2minecraft.minecraft.schematics import litematic
@@ -26,7 +27,6 @@ from world2minecraft.minecraft.worlds.straddled import (
     unpack_straddled,
     words_for,
 )
-from world2minecraft.types import AIR, Entity
 
 STONE, WOOD = "minecraft:stone", "minecraft:oak_planks"
 VOLUMES = {

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from block_volumes import state_texts, volume_of
 
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.types import AIR, BlockEntity
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.losses import Losses
@@ -14,7 +15,6 @@ from world2minecraft.minecraft.schematics.legacy_blocks import legacy_state
 from world2minecraft.minecraft.schematics.mcedit import read_schematic
 from world2minecraft.minecraft.sign_texts import sign_of_today
 from world2minecraft.minecraft.states import check_state, complete, parse_state
-from world2minecraft.types import AIR, BlockEntity
 
 
 def schematic(

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.minecraft.nbt import (
     Byte,
     Float,

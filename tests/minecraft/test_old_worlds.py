@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from block_volumes import furnished_volume, random_volume, state_texts, volume_of
 
-from world2minecraft.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.commands.datapack import write_datapack
 from world2minecraft.minecraft.game_names import (
     count_unknown,
@@ -28,7 +29,6 @@ from world2minecraft.minecraft.worlds.section_words import (
 )
 from world2minecraft.minecraft.worlds.straddled import pack_straddled, words_for
 from world2minecraft.minecraft.worlds.world import read_world, write_world
-from world2minecraft.types import AIR
 
 VOLUME = random_volume((40, 20, 37), 1, (-20, 50, -5), seed=1)
 OLD = ("1.13", "1.13.2", "1.14.4", "1.15.2", "1.16", "1.16.5", "1.17.1", "1.18.2", "1.19.4")

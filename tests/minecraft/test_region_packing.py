@@ -12,7 +12,7 @@ from block_volumes import random_volume, state_texts
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.minecraft.nbt import write_nbt
 from world2minecraft.minecraft.worlds.anvil import (
     COMPRESSIONS,

@@ -7,7 +7,7 @@ import types
 
 import pytest
 
-from world2minecraft.errors import ConflictError, InputError, OutputError
+from world2minecraft.core.errors import ConflictError, InputError, OutputError
 from world2minecraft.minecraft.worlds import session_lock as locks
 from world2minecraft.minecraft.worlds.session_lock import SNOWMAN, session_lock
 

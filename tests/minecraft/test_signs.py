@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from block_volumes import volume_of
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockEntity
 from world2minecraft.minecraft.commands.datapack import datapack_files
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
@@ -16,7 +17,6 @@ from world2minecraft.minecraft.server.plan import plan_build
 from world2minecraft.minecraft.sign_texts import signs_of_today
 from world2minecraft.minecraft.signs import LINE_LETTERS, sign_entity, wrapped
 from world2minecraft.minecraft.versions import game_version, game_versions, old_versions
-from world2minecraft.types import BlockEntity
 
 STATE = "minecraft:oak_wall_sign[facing=north,waterlogged=false]"
 ENTITY = sign_entity((1, 2, 3), ["Küche", 'the "red" one'], "/function w2m:human_size")

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.formats import read_blocks
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.light import light_of
@@ -16,7 +17,6 @@ from world2minecraft.minecraft.rules.stability import unstable, unstable_cells
 from world2minecraft.minecraft.states import complete, known_blocks, parse_state, states_of
 from world2minecraft.minecraft.turn import turn_volume
 from world2minecraft.minecraft.visual import visual_boxes_of
-from world2minecraft.types import BlockVolume
 
 CASES = json.loads((Path(__file__).parent / "stability_cases.json").read_text())["cases"]
 STEP = {"o": (0, 0, 0), "n": (0, 0, -1), "e": (1, 0, 0), "s": (0, 0, 1), "w": (-1, 0, 0),

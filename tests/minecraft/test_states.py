@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraft.shapes import boxes_of, is_full_cube
 from world2minecraft.minecraft.states import (
     BlockState,

@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nbt_equality import same_block_entities, same_entities
 
-from world2minecraft.errors import InputError, LimitError, UsageError
+from world2minecraft.core.errors import InputError, LimitError, UsageError
+from world2minecraft.core.types import AIR, Entity
 from world2minecraft.minecraft.block_list import _SIZES, skip_value
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
@@ -38,7 +39,6 @@ from world2minecraft.minecraft.schematics.structure import (
 from world2minecraft.minecraft.schematics.structure_pack import pieces, write_structure_pack
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.worlds.entries import state_text
-from world2minecraft.types import AIR, Entity
 
 STONE = "minecraft:stone"
 VOLUMES = {

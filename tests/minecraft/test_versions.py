@@ -1,6 +1,6 @@
 import pytest
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.minecraft.versions import game_version, game_versions, name_in_version
 
 

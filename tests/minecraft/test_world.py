@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 from block_volumes import furnished_volume, random_volume, state_texts, volume_of
 
-from world2minecraft.errors import (
+from world2minecraft.core.errors import (
     DamagedFileError,
     InputError,
     LimitError,
     OutputError,
     UsageError,
 )
+from world2minecraft.core.types import AIR, Entity
 from world2minecraft.minecraft.nbt import write_nbt
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds import anvil as our_anvil
@@ -25,7 +26,6 @@ from world2minecraft.minecraft.worlds import world as our_world
 from world2minecraft.minecraft.worlds.anvil import pack_region, read_region
 from world2minecraft.minecraft.worlds.level import GAME_RULES
 from world2minecraft.minecraft.worlds.world import read_world, write_world
-from world2minecraft.types import AIR, Entity
 
 VOLUMES = {
     "one chunk": random_volume((16, 16, 16), 10, (0, 64, 0)),

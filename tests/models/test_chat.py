@@ -15,7 +15,7 @@ from tests.models.scripted_server import (
     scripted,
 )
 
-from world2minecraft.errors import (
+from world2minecraft.core.errors import (
     BudgetError,
     InputError,
     MissingExtraError,

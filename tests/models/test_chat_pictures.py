@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from world2minecraft.cli.model_options import MAX_PIXELS
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.models.chat_messages import Picture
 from world2minecraft.models.chat_pictures import (
     LEAST_PX,

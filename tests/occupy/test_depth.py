@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.occupy import PREDICTORS, predictor
 from world2minecraft.occupy.depth import DepthPredictor
-from world2minecraft.types import Camera, Scan, View
 
 DEPTH = Camera(32, 24, 30.0, 30.0, 16.0, 12.0)
 

@@ -4,9 +4,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from world2minecraft.core.types import Camera
 from world2minecraft.geometry.lifting import lift_depth, pixel_rays
 from world2minecraft.occupy.facing import facing_of_depth
-from world2minecraft.types import Camera
 
 CAMERA = Camera(320, 240, 262.0, 262.0, 160.0, 120.0)
 ALL = np.arange(320 * 240, dtype=np.int32)

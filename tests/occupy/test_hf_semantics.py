@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from tests.occupy.tiny_segmenters import KINDS, NAMES, READY, write_segmenter
 
-from world2minecraft.classes import CLASS_COUNT
-from world2minecraft.errors import (
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.errors import (
     DamagedFileError,
     InputError,
     MissingExtraError,

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES
+from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.occupy.label_names import label_classes, read_table
 
 

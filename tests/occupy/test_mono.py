@@ -7,10 +7,11 @@ import pytest
 from tests.exact_room import CAMERA, BoxRoom
 from tests.occupy.tiny_network import FACTS, sized, write_network
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.coordinates import apply, invert_rigid, look_at, rotation_about_z
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotation_about_z
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.dataset.region import RegionRule, region_of
-from world2minecraft.errors import CaptureError
 from world2minecraft.fuse import fuse_views, read_out
 from world2minecraft.geometry.lifting import lift_depth, project
 from world2minecraft.occupy import mono, predictor
@@ -21,7 +22,6 @@ from world2minecraft.occupy.mono import (
     fitted,
     region_before,
 )
-from world2minecraft.types import Camera, Scan, View
 
 ROOM = BoxRoom((4.4, 4.0, 2.6))
 POSES = [

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.occupy.tiny_network import FACTS, write_network
 
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.occupy.network_file import OccupancyNetwork
 
 pytest.importorskip("onnx")

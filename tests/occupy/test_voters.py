@@ -7,15 +7,15 @@ import pytest
 from tests.exact_room import CAMERA, BoxRoom
 from tests.occupy.tiny_network import sized, write_network
 
-from world2minecraft.coordinates import apply
-from world2minecraft.errors import UsageError
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.fuse import EvidenceMap
 from world2minecraft.geometry.lifting import project
 from world2minecraft.occupy import OccupyParameters, kept, notes_of, predictor, voters
 from world2minecraft.occupy.depth import DepthPredictor
 from world2minecraft.occupy.mono import MonoPredictor
 from world2minecraft.occupy.voters import CellVoter, PixelVoter, spread
-from world2minecraft.types import Camera, Scan, View
 
 ROOM = BoxRoom()
 

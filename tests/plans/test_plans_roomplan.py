@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from roomplans import captured_room, session_of, surface, thing
 
-from world2minecraft.coordinates import apply
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.exchange.roomplan import find_roomplan, read_roomplan
 from world2minecraft.plans import layouts_of, straightened
 from world2minecraft.plans.outlines import moved_plan
-from world2minecraft.types import Layout, LayoutObject, Opening
 
 ELL = np.array([[0, 0], [4, 0], [4, 2], [2.5, 2], [2.5, 3.2], [0, 3.2]], float)
 

@@ -9,9 +9,11 @@ from roomplans import captured_room, session_of
 from test_plans_roomplan import layout
 
 from world2minecraft import cli
-from world2minecraft.classes import SemanticClass
 from world2minecraft.cli.from_plan import say_plan
-from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.progress import silent
+from world2minecraft.core.types import FusedEvidence
 from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.exchange.objects import read_objects, read_placements
 from world2minecraft.exchange.room import read_room
@@ -31,9 +33,7 @@ from world2minecraft.plans import (
 from world2minecraft.plans.cells import cells_of_plan
 from world2minecraft.plans.furniture import template_of
 from world2minecraft.plans.outlines import moved_plan
-from world2minecraft.progress import silent
 from world2minecraft.scan.plan_alone import plan_in
-from world2minecraft.types import FusedEvidence
 
 SESSION = session_of(21.0, (3.0, -1.4, 0.7))
 

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, map_coordinates
 from scipy.spatial.transform import Rotation
 
-from world2minecraft.types import Camera
-from world2minecraft.types.photos import Photo
+from world2minecraft.core.types import Camera
+from world2minecraft.core.types.photos import Photo
 
 SIZE_M = np.array([4.0, 3.2, 2.4])
 CAMERA = Camera(320, 240, 232.0, 232.0, 160.0, 120.0)

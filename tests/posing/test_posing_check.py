@@ -5,10 +5,10 @@ import pytest
 from PIL import Image
 from tests.posing.box_room import CAMERA, jittered, photos, poses
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera
+from world2minecraft.core.types.photos import Photo
 from world2minecraft.posing import PosingParameters, align_similarity, check_poses
-from world2minecraft.types import Camera
-from world2minecraft.types.photos import Photo
 
 SMALL = PosingParameters(working_px=76_800, most_features=800)
 LOOK_ASIDE = np.array([[0, 0, 1, 0.5], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1.0]])

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from tests.posing.box_room import CAMERA, photos, poses
 
-from world2minecraft.errors import CaptureError, LimitError
+from world2minecraft.core.errors import CaptureError, LimitError
+from world2minecraft.core.types import SparseScene
+from world2minecraft.core.types.photos import Photo
 from world2minecraft.posing import PosingParameters, align_similarity, find_poses, links, matching
-from world2minecraft.types import SparseScene
-from world2minecraft.types.photos import Photo
 
 SMALL = PosingParameters(working_px=76_800, most_features=800)
 

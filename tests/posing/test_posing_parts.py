@@ -7,7 +7,8 @@ import pytest
 from scipy.ndimage import gaussian_filter
 from tests.posing.box_room import poses
 
-from world2minecraft.errors import CaptureError, MissingExtraError
+from world2minecraft.core.errors import CaptureError, MissingExtraError
+from world2minecraft.core.types import Camera
 from world2minecraft.posing import PosingParameters, colmap, find_poses, reasons
 from world2minecraft.posing.bundle import projected
 from world2minecraft.posing.features import sharpness
@@ -16,7 +17,6 @@ from world2minecraft.posing.lenses import from_colmap, is_sane, normalised, to_c
 from world2minecraft.posing.matching import matches, worth_matching
 from world2minecraft.posing.placing import outliers, sampson
 from world2minecraft.posing.steps import Steps
-from world2minecraft.types import Camera
 
 BENT = Camera(640, 480, 500.0, 510.0, 310.0, 250.0, (-0.2, 0.05, 0.001, -0.002, 0.01))
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.types import Camera, Corrections, Scan, View
 from world2minecraft.geometry.surface import Surface, collect_surface
 from world2minecraft.register import RegisterParameters, corrected, register, told
 from world2minecraft.register.refine import register_surface
-from world2minecraft.types import Camera, Corrections, Scan, View
 
 CAMERA = Camera(160, 120, 130.0, 130.0, 80.0, 60.0)
 SIZE_M = np.array([4.2, 3.1, 2.6])

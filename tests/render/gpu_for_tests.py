@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from world2minecraft.core.types import Camera
 from world2minecraft.render import Picture
 from world2minecraft.render.gpu import list_adapters
-from world2minecraft.types import Camera
 
 CAMERA = Camera(48, 36, 30.0, 30.0, 24.0, 18.0)
 EVERYTHING = ("colour", "semantic", "instance", "opaque", "normal", "free")

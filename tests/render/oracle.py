@@ -16,10 +16,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.minecraft.displays import display_cubes
 from world2minecraft.render.elements import BlockModel, Element, LookSource
 from world2minecraft.render.texture import Texture
-from world2minecraft.types import BlockVolume, Camera
 
 NO_FACE = 255
 SIGNS = np.array([[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]])

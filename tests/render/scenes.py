@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from world2minecraft.coordinates import block_to_room, look_at
+from world2minecraft.core.coordinates import block_to_room, look_at
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.render.plain_looks import visible_boxes
-from world2minecraft.types import BlockVolume, Camera
 
 PALETTE = (
     "minecraft:air",

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from scenes import CAMERA, random_pose, random_volume
 
-from world2minecraft.coordinates import apply
-from world2minecraft.errors import UsageError
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Camera
 from world2minecraft.render import LookLight, prepare_scene, render_volume
 from world2minecraft.render.batch import BATCH_OUTPUTS, batch_arrays, render_batch
 from world2minecraft.render.batch import draw as draw_module
 from world2minecraft.render.lamps import DAY, exposure_of
 from world2minecraft.render.live_scene import LiveScene
 from world2minecraft.render.picture import OUTPUTS
-from world2minecraft.types import Camera
 
 SMALL = Camera(32, 24, 20.0, 20.0, 16.0, 12.0)
 FIXED = LookLight(exposure=1.2)

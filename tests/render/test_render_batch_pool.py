@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from scenes import random_pose, random_volume
 
-from world2minecraft.errors import UsageError, WorkerError
+from world2minecraft.core.errors import UsageError, WorkerError
+from world2minecraft.core.types import Camera
 from world2minecraft.render import prepare_scene
 from world2minecraft.render.batch import RenderPool, render_batch
 from world2minecraft.render.batch.ring import runs_of
 from world2minecraft.render.live_scene import LiveScene
 from world2minecraft.render.picture import OUTPUTS
-from world2minecraft.types import Camera
 
 SMALL = Camera(32, 24, 20.0, 20.0, 16.0, 12.0)
 WIDE = Camera(320, 240, 200.0, 200.0, 160.0, 120.0)  # So large that each is a task.

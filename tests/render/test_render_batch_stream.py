@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from scenes import random_pose, random_volume
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Camera
 from world2minecraft.render import prepare_scene, render_volume
 from world2minecraft.render.batch import render_batch, render_stream
 from world2minecraft.render.batch.ahead import ahead_of, done_behind
 from world2minecraft.render.output import colour_bytes
 from world2minecraft.render.views.poses import Shot
-from world2minecraft.types import Camera
 
 SMALL = Camera(32, 24, 20.0, 20.0, 16.0, 12.0)
 COUNT = 5

@@ -7,11 +7,11 @@ import pytest
 from scenes import CAMERA, random_pose, random_volume, slow_picture, volume_of
 from scipy.spatial.transform import Rotation
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.types import Entity
 from world2minecraft.minecraft.displays import block_display
 from world2minecraft.minecraft.nbt import Float
 from world2minecraft.render import preview, render_parallel, render_volume
-from world2minecraft.types import Entity
 
 RED = "minecraft:red_concrete"
 

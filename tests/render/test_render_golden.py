@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from world2minecraft.coordinates import apply, block_to_room, look_at
+from world2minecraft.core.coordinates import apply, block_to_room, look_at
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.minecraft.displays import block_display
 from world2minecraft.render import LookLight, prepare_scene, render_volume
 from world2minecraft.render.photo import render_photo
-from world2minecraft.types import BlockVolume, Camera
 
 FOLDER = Path(__file__).parent / "golden"
 CAMERA = Camera(96, 72, 70.0, 70.0, 48.0, 36.0)

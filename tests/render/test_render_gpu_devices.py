@@ -9,7 +9,7 @@ import pytest
 from gpu_for_tests import CAMERA, adapter_name, assert_alike
 from scenes import random_pose, random_volume
 
-from world2minecraft.errors import MissingExtraError, UnknownNameError
+from world2minecraft.core.errors import MissingExtraError, UnknownNameError
 from world2minecraft.render import prepare_scene, render_parallel, render_volume
 from world2minecraft.render.gpu import (
     CpuRenderer,

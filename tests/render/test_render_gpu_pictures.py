@@ -11,7 +11,7 @@ from looks_for_tests import FewLooks
 from scenes import random_pose, random_volume, volume_of
 from test_render_cubes import random_entity
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
 from world2minecraft.render import LookLight, prepare_scene, render_parallel, render_volume
 from world2minecraft.render.gpu import GpuRenderer, slots
 from world2minecraft.render.lamps import NEUTRAL

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.render.light_worlds import PALETTE, random_world
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.render.light import lattice_light, light_field
 
 SOLIDS = (1, 9)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.render.light import (
     LookLight,
     background_light,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from looks_for_tests import FewLooks
 from scenes import CAMERA, PALETTE, random_pose, random_volume, volume_of
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.render import prepare_scene, render_volume
 from world2minecraft.render.empties import empty_boxes
 from world2minecraft.render.empties_edit import edited_boxes

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.minecraft.colours import colour_of
 from world2minecraft.minecraft.states import known_blocks
 from world2minecraft.render.looks import OwnLooks

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from tests.render.scenes import random_pose
 
-from world2minecraft.coordinates import block_to_room, look_at
+from world2minecraft.core.coordinates import block_to_room, look_at
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.minecraft.displays import block_display
 from world2minecraft.render import NEUTRAL, prepare_scene, render_volume
 from world2minecraft.render.cutaway import without_ceiling, without_near_walls
@@ -12,7 +13,6 @@ from world2minecraft.render.light.look import NEUTRAL_CORNER, NEUTRAL_EXPOSURE, 
 from world2minecraft.render.mesh import BlockMesh, mesh_of
 from world2minecraft.render.mesh.cuts import CORNERS
 from world2minecraft.render.mesh.merge import merged
-from world2minecraft.types import BlockVolume, Camera
 
 PALETTE = (
     "minecraft:air",

@@ -13,7 +13,7 @@ from hypothesis.extra import numpy as hnp
 from PIL import Image
 from scenes import CAMERA, random_pose, random_volume
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.render import render_volume
 from world2minecraft.render.output import (
     LAYERS,

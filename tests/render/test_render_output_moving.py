@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image, ImageSequence
 
-from world2minecraft.errors import LimitError, MissingExtraError, OutputError, UsageError
+from world2minecraft.core.errors import LimitError, MissingExtraError, OutputError, UsageError
 from world2minecraft.render.output import moving, moving_picture
 
 TONES = (20, 120, 220)

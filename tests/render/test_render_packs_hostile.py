@@ -21,7 +21,7 @@ from pack_making import (
     zip_pack,
 )
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.render.packs import PackLooks, archive, resources
 
 RED = plain(200, 0, 0)

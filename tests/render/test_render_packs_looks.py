@@ -15,7 +15,7 @@ from pack_making import (
     zip_pack,
 )
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.render.elements import FACE_NAMES, BlockModel, LookStack
 from world2minecraft.render.packs import PackLooks
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from pack_making import PICTURE, block_files, cube_files, folder_pack, one_model, plain
 
-from world2minecraft.coordinates import block_to_room, look_at
+from world2minecraft.core.coordinates import block_to_room, look_at
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.render import prepare_scene, render_volume
 from world2minecraft.render.elements import FACE_NAMES, LookStack
 from world2minecraft.render.packs import PackLooks
 from world2minecraft.render.plain_looks import PlainLooks
-from world2minecraft.types import BlockVolume, Camera
 
 CAMERA = Camera(64, 48, 60.0, 60.0, 32.0, 24.0)
 COLOURS = {

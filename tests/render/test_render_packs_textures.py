@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pack_making import PICTURE, cube_files, folder_pack, plain, png
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.render.packs import PackLooks
 from world2minecraft.render.packs.lab_pbr import material_maps, normal_map
 from world2minecraft.render.packs.pixels import decode_png, first_frame, resampled, side_for

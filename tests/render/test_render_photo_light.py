@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scenes import volume_of
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.render import LookLight, prepare_scene
 from world2minecraft.render.elements import BlockModel, Element, FaceLook, face_uv
 from world2minecraft.render.light.hours import sun_direction
@@ -16,7 +17,6 @@ from world2minecraft.render.photo.path import new_path
 from world2minecraft.render.photo.paths import trace_rows
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.texture import Texture
-from world2minecraft.types import BlockVolume, Camera
 
 SMALL = Camera(32, 24, 24.0, 24.0, 16.0, 12.0)
 NO_SKY = even_sky(0.0, 0.0, 0.0)

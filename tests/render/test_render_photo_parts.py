@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.jit import lean
+from world2minecraft.core.jit import lean
 from world2minecraft.render.photo.chance import EVEN_USES, mixed, pair
 from world2minecraft.render.photo.denoise import SWEEPS, filtered
 from world2minecraft.render.photo.path import new_path

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scenes import random_pose, random_volume
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.types import Camera
 from world2minecraft.render import LookLight, prepare_scene, render_volume
 from world2minecraft.render.photo import Photo, lamps_of, render_photo
-from world2minecraft.types import Camera
 
 SMALL = Camera(32, 24, 20.0, 20.0, 16.0, 12.0)
 

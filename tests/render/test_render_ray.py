@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from looks_for_tests import FewLooks
 from scenes import CAMERA, random_pose, random_volume, volume_of
 
-from world2minecraft.coordinates import apply, look_at
+from world2minecraft.core.coordinates import apply, look_at
+from world2minecraft.core.types import Camera
 from world2minecraft.render import prepare_scene, render_volume
 from world2minecraft.render.beam import ALONE, NOTHING, PLANE, follow
 from world2minecraft.render.empties import empty_boxes
 from world2minecraft.render.tables import BOXES, FULL, NO_FACE
-from world2minecraft.types import Camera
 
 
 @settings(max_examples=30, deadline=None)

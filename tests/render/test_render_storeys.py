@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from world2minecraft.coordinates import block_to_room
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.render.cutaway import (
     side_by_side,
     storeys_of,
@@ -10,7 +11,6 @@ from world2minecraft.render.cutaway import (
     without_partitions,
 )
 from world2minecraft.render.preview import plan_view, preview
-from world2minecraft.types import BlockVolume
 
 CEILING, FLOOR, WALL, TABLE, OBJS = 1, 2, 3, 8, 11
 SIZE = (24, 22, 18)

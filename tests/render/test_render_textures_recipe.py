@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.render.textures import (
     GENERATORS,
     parse_recipe,

@@ -5,7 +5,7 @@ import pytest
 from scenes import CAMERA, random_pose, random_volume, slow_picture
 from scipy import ndimage
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
 from world2minecraft.render import render_volume
 from world2minecraft.render.tables import NO_FACE
 from world2minecraft.render.trace import fill_distances, safe_start, trace

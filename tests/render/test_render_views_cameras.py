@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import apply, block_to_room, invert_rigid
-from world2minecraft.errors import UsageError
+from world2minecraft.core.coordinates import apply, block_to_room, invert_rigid
+from world2minecraft.core.errors import UsageError
 from world2minecraft.render.views import GamePose, camera_of, game_pose_of, vertical_fov_deg_of
 
 sizes = st.integers(1, 4000)

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from scenes import random_volume
 
-from world2minecraft.coordinates import apply, block_to_room, invert_rigid
-from world2minecraft.errors import DamagedFileError, UsageError
+from world2minecraft.core.coordinates import apply, block_to_room, invert_rigid
+from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.render import prepare_scene
 from world2minecraft.render.views import (
     GamePose,
@@ -26,7 +27,6 @@ from world2minecraft.render.views.frames import frames
 from world2minecraft.render.views.heading import TURN_COST, _best_sequence
 from world2minecraft.render.views.hiding import hiding_of
 from world2minecraft.render.views.orbit import corner_points_m
-from world2minecraft.types import AIR, BlockVolume
 
 CAMERA = camera_of(48, 36, vertical_fov_deg=70)
 DOOR = "minecraft:oak_door[facing=west,half={half},hinge=left,open=false,powered=false]"

@@ -3,7 +3,7 @@
 import numpy as np
 from scenes import volume_of
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
 from world2minecraft.render.views import camera_of, orbit_shots
 from world2minecraft.render.views.frames import DrawOptions
 from world2minecraft.render.views.opened import OpenedBuild, has_ceiling

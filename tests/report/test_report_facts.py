@@ -6,11 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.report.facts import in_solid_block, scene_facts, surface_explained
-from world2minecraft.report.scene import FinishedScene, read_built
-from world2minecraft.types import (
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import (
     BlockVolume,
     FusedEvidence,
     Layout,
@@ -18,6 +16,8 @@ from world2minecraft.types import (
     OccupancyGrid,
     Placement,
 )
+from world2minecraft.report.facts import in_solid_block, scene_facts, surface_explained
+from world2minecraft.report.scene import FinishedScene, read_built
 
 VOXEL_M = 0.08
 

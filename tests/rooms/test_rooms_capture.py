@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from world2minecraft.errors import UnknownNameError
-from world2minecraft.files import read_npz
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.files import read_npz
 from world2minecraft.geometry.lifting import lift_depth
 from world2minecraft.render import cast_voxels, prepare_voxels
 from world2minecraft.rooms import generate_room, room_views, scan_room

@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from world2minecraft.classes import OBJECT_CLASSES
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.classes import OBJECT_CLASSES
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.rooms import BASE_KINDS, KINDS, generate_room
 from world2minecraft.rooms.room import kind_of_seed
 from world2minecraft.rooms.stands import find_stands

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.rooms.sensor import (
     BASELINE_M,
     CLEAN,

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.metrics.layout import collisions, out_of_bounds
 from world2minecraft.rooms import KINDS, SHAPES, generate_room

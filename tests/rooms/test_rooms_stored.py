@@ -6,8 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.files import read_npz, write_json, write_npz
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.files import read_npz, write_json, write_npz
 from world2minecraft.rooms import (
     generate_room,
     read_generated,

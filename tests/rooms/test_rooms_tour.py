@@ -5,14 +5,14 @@ from functools import cache
 import numpy as np
 import pytest
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.types import Camera, Layout, Opening
 from world2minecraft.render import cast_voxels, prepare_voxels
 from world2minecraft.rooms import Room, generate_room
 from world2minecraft.rooms.shots import Shooting, room_shots
 from world2minecraft.rooms.stands import BODY_M, HEAD_M, find_stands, is_inside
 from world2minecraft.rooms.tour import plan_tour
 from world2minecraft.rooms.walk import plan_walk
-from world2minecraft.types import Camera, Layout, Opening
 
 CAMERA = Camera(160, 120, 131.2, 131.2, 80.0, 60.0)
 FRAMES = 40

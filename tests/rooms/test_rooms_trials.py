@@ -6,8 +6,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from world2minecraft.errors import UnknownNameError
-from world2minecraft.files import read_npz
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.files import read_npz
 from world2minecraft.rooms import trials as module
 from world2minecraft.rooms.trials import DIFFICULTIES, Trial, trial_named, trials, write_trial
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from world2minecraft.classes import UNKNOWN, SemanticClass
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.files import read_json
 from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.exchange.scene import read_scene
-from world2minecraft.files import read_json
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.minecraft.worlds.reading import read_level

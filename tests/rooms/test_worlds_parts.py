@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture.materials import kinds
 from world2minecraft.minecraft.states import complete, known_blocks, parse_state
 from world2minecraft.rooms.worlds.choices import DESIGNS
@@ -16,7 +17,6 @@ from world2minecraft.rooms.worlds.shell import rails
 from world2minecraft.rooms.worlds.task import BOARDS
 from world2minecraft.rooms.worlds.wares import HOME, MOUNTS, Deck, table, wares
 from world2minecraft.rooms.worlds.ways import Ways
-from world2minecraft.types import BlockVolume
 from world2minecraft.walk.graph import walk_graph
 
 PLANS = [(seed, rooms, storeys) for seed, (rooms, storeys) in enumerate([(4, 1), (9, 1), (8, 2)])]

@@ -5,7 +5,7 @@ import json
 import numpy as np
 from PIL import Image
 
-from world2minecraft.coordinates import OPENGL_TO_OPENCV
+from world2minecraft.core.coordinates import OPENGL_TO_OPENCV
 from world2minecraft.scan import write_plain
 
 

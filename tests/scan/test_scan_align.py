@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from world2minecraft.coordinates import apply, invert_rigid, rotation_about_z
+from world2minecraft.core.coordinates import apply, invert_rigid, rotation_about_z
+from world2minecraft.core.types import Scan
 from world2minecraft.geometry.surface import collect_surface
 from world2minecraft.scan.align import ImplausibleRoomError, align, align_surface, realigned
 from world2minecraft.scan.gravity import find_ground, frame_of_up
 from world2minecraft.scan.surface import profile
-from world2minecraft.types import Scan
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ import pytest
 from layouts import WRITERS, write_nerfstudio, write_seven_scenes
 from PIL import Image
 
-from world2minecraft.errors import CaptureError, InputError, LimitError, UsageError
+from world2minecraft.core.errors import CaptureError, InputError, LimitError, UsageError
 from world2minecraft.scan import describe_capture, open_scan, write_plain
 from world2minecraft.scan.align import Alignment
 from world2minecraft.scan.images import read_header

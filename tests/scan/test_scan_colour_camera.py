@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from world2minecraft.core.types import Camera, View
 from world2minecraft.scan import open_scan
 from world2minecraft.scan.colour_camera import estimate_colour_camera
-from world2minecraft.types import Camera, View
 
 DEPTH = Camera(320, 240, 270.0, 270.0, 160.0, 120.0)
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from PIL import Image
 
-from world2minecraft.errors import CaptureError, UnknownNameError
+from world2minecraft.core.errors import CaptureError, UnknownNameError
 from world2minecraft.scan.depth import DEPTH_UNITS, DepthEncoding, find_encoding, read_depth
 
 

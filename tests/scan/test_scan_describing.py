@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from PIL import Image, ImageFilter
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.describing import describe
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.judged import judge
@@ -17,7 +18,6 @@ from world2minecraft.scan.survey.directions import SECTORS, directions_of, up_of
 from world2minecraft.scan.survey.overlap import _flattened, shared_share
 from world2minecraft.scan.survey.pictures import bare_share, sharpness
 from world2minecraft.scan.telling import as_data, summary_lines
-from world2minecraft.types import Camera
 
 CAMERA = Camera(160, 120, 130.0, 130.0, 80.0, 60.0)
 

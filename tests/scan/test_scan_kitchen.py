@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.coordinates import apply, rotation_about_z
+from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.geometry.lifting import lift_depth
 from world2minecraft.scan import describe_capture, open_scan
 from world2minecraft.scan.judged import spread_over
@@ -89,7 +89,7 @@ def test_the_summary_of_the_kitchen(shared_data):
 
 
 def test_a_folder_of_another_kind_is_refused(shared_data):
-    from world2minecraft.errors import CaptureError
+    from world2minecraft.core.errors import CaptureError
 
     with pytest.raises(CaptureError, match="of another kind, which holds .*; a capture"):
         open_scan(shared_data / "layoutgpt_outputs")

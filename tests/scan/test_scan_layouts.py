@@ -8,12 +8,12 @@ import pytest
 from layouts import WRITERS, write_nerfstudio, write_seven_scenes
 from PIL import Image
 
-from world2minecraft.errors import CaptureError, UnknownNameError, UsageError
+from world2minecraft.core.errors import CaptureError, UnknownNameError, UsageError
+from world2minecraft.core.types import View
 from world2minecraft.scan import describe_capture, open_scan, write_plain
 from world2minecraft.scan.judged import judge_capture
 from world2minecraft.scan.options import ScanOptions
 from world2minecraft.scan.sources import SOURCES, find_capture
-from world2minecraft.types import View
 
 NAMES = {"seven_scenes": "frame-{:06d}", "plain": "{:06d}", "nerfstudio": "{:06d}"}
 

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from world2minecraft.coordinates import rotation_about_z
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.types import View
 from world2minecraft.rooms import room_views
 from world2minecraft.rooms.trials import trial_named
 from world2minecraft.scan.align import ImplausibleRoomError
@@ -20,7 +21,6 @@ from world2minecraft.scan.metric import (
     resized,
 )
 from world2minecraft.scan.metric.posterior import Posterior, summed
-from world2minecraft.types import View
 
 
 def shrunk(views, factor):

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from world2minecraft.errors import CaptureError, InputError, UsageError
+from world2minecraft.core.errors import CaptureError, InputError, UsageError
 from world2minecraft.scan.images import check_whole, read_colour, read_header
 from world2minecraft.scan.judged import judge_capture
 from world2minecraft.scan.options import ScanOptions, parse_options

@@ -3,12 +3,12 @@
 import numpy as np
 from PIL import Image
 
+from world2minecraft.core.types import Camera
 from world2minecraft.scan import write_plain
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.judged import judge_capture
 from world2minecraft.scan.options import ScanOptions
 from world2minecraft.scan.photos import CapturePhotos, judged_photos, shrunk
-from world2minecraft.types import Camera
 
 
 def _slow_mean(colour, height, width):

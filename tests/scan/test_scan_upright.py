@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from world2minecraft.coordinates import apply, look_at
+from world2minecraft.core.coordinates import apply, look_at
+from world2minecraft.core.types import Camera
 from world2minecraft.geometry.lifting import project
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.images import check_whole, read_colour, read_header, read_raw
@@ -16,7 +17,6 @@ from world2minecraft.scan.upright import (
     turned_camera,
     turned_frame,
 )
-from world2minecraft.types import Camera
 
 LENS = Camera(160, 120, 130.0, 128.0, 82.0, 57.0, (0.08, -0.03, 0.004, -0.007, 0.01))
 DEPTH_LENS = Camera(80, 60, 66.0, 64.0, 41.0, 29.0)

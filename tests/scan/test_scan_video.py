@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from world2minecraft.errors import CaptureError, InputError
+from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.scan.judged import judge_capture
 from world2minecraft.scan.motion import look_through, picked
 from world2minecraft.scan.options import ScanOptions

@@ -8,15 +8,15 @@ from console import Console
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.errors import ServerError, UsageError
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import ServerError, UsageError
+from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.server.building import LiveBuilder
 from world2minecraft.minecraft.server.plan import plan_build
 from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES, RconClient
 from world2minecraft.minecraft.states import complete, parse_state
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
 NAMES = ("white_concrete", "oak_stairs[facing=west]", "torch", "oak_sign")
 PALETTE = (AIR, *(str(complete(parse_state(name))) for name in NAMES))

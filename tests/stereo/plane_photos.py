@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from world2minecraft.types import Camera
-from world2minecraft.types.photos import Photo, SparseScene
+from world2minecraft.core.types import Camera
+from world2minecraft.core.types.photos import Photo, SparseScene
 
 CAMERA = Camera(160, 120, 150.0, 150.0, 80.0, 60.0)
 

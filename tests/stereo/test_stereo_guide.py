@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.stereo.guide import (
     DEPTH_MODELS,
     FILLED_TRUST,

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from tests.stereo.plane_photos import row_of_photos, scene_of
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera
+from world2minecraft.core.types.photos import Photo
 from world2minecraft.stereo import StereoParameters, depth_maps, maps
-from world2minecraft.types import Camera
-from world2minecraft.types.photos import Photo
 
 FEW = StereoParameters(width_px=160, planes=48)
 

@@ -7,7 +7,7 @@ from open_field import OpenField, an_episode
 from tests.models.scripted_server import MEGABYTE, Answer, scripted
 from tests.models.test_chat import model_at
 
-from world2minecraft.errors import BudgetError, ServerError, UsageError
+from world2minecraft.core.errors import BudgetError, ServerError, UsageError
 from world2minecraft.models.chat_budget import Ledger
 from world2minecraft.models.chat_forms import UnreadableError
 from world2minecraft.vln.agents import AGENTS, Decision, ModelAgent, agent_of

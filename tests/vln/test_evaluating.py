@@ -9,7 +9,7 @@ from tests.models.scripted_server import scripted
 from tests.models.test_chat import model_at
 from vln_sets import next_action, next_view, write_pictures
 
-from world2minecraft.errors import InputError, ServerError, UsageError
+from world2minecraft.core.errors import InputError, ServerError, UsageError
 from world2minecraft.models.chat_forms import UnreadableError
 from world2minecraft.models.chat_messages import Picture
 from world2minecraft.vln.agents.answer_form import read_answer

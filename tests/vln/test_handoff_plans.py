@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.vln.vln_sets import next_action, next_view
 from transformers.models.qwen2_vl.image_processing_pil_qwen2_vl import smart_resize
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.vln.handoff.parts import held_out, parts_of, shuffled
 from world2minecraft.vln.handoff.rules import HandoffRule
 from world2minecraft.vln.handoff.steps import GRPO_BATCH, grpo_plan, sft_steps

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.vln.vln_sets import a_trajectory, an_episode, small_set
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.errors import DamagedFileError, InputError
-from world2minecraft.files import write_json
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.files import write_json
 from world2minecraft.vln.handoff import export_set
 from world2minecraft.vln.handoff.frames import block_to_habitat, positions, rotation
 from world2minecraft.vln.handoff.r2r import heading, write_r2r

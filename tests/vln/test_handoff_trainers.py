@@ -11,7 +11,7 @@ import yaml
 from PIL import Image
 from tests.vln.vln_sets import small_set, with_sums, write_pictures
 
-from world2minecraft.errors import (
+from world2minecraft.core.errors import (
     ConflictError,
     DamagedFileError,
     InputError,

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.vln.vln_sets import next_action, next_view
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.prompts import IMAGE, question_of
 from world2minecraft.vln.values import Instruction
 

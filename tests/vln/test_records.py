@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.vln.vln_sets import a_trajectory, next_action, next_view
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.vln import records
 from world2minecraft.vln.records import (
     as_line,

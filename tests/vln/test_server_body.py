@@ -10,7 +10,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from small_flat import SPAWN, flat_volume
 
-from world2minecraft.errors import InputError, ServerError, UsageError
+from world2minecraft.core.errors import InputError, ServerError, UsageError
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.vln.environment.senses import Eyes
 from world2minecraft.vln.server import body as body_module

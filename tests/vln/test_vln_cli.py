@@ -14,7 +14,7 @@ from vln_sets import next_action, next_view, write_pictures
 
 from world2minecraft import cli
 from world2minecraft.cli.vln_live import LinesLive, half_blocks, safe
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.records import read_episodes, write_items
 from world2minecraft.vln.running.asking import named_in
 from world2minecraft.vln.running.picking import picked_items

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from world2minecraft.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.vln.environment import ENV_ID
 from world2minecraft.vln.environment.env import VlnEnv
 from world2minecraft.vln.environment.senses import SENSES, Eyes

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.errors import UnknownNameError
-from world2minecraft.types import AIR, BlockVolume
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.vln.motion import BodySize, walked
 from world2minecraft.vln.moves import forward_blocks, moved, named_set, wrapped_yaw
 from world2minecraft.vln.oracle import expert

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse.csgraph import dijkstra
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.vln.floor import LEVEL, REACH, distance_over
 from world2minecraft.vln.landmarks import colour_name
 from world2minecraft.vln.scene import camera_of, open_scene

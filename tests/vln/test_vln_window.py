@@ -11,7 +11,7 @@ import pytest
 from open_field import OpenField, an_episode
 from PIL import Image
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.agents.human import HumanAgent
 from world2minecraft.vln.environment.env import VlnEnv
 from world2minecraft.vln.environment.playing import play

@@ -8,7 +8,7 @@ from open_field import OpenField, an_episode
 from tests.models.scripted_server import scripted
 from tests.models.test_chat import model_at
 
-from world2minecraft.errors import InputError, OutputError
+from world2minecraft.core.errors import InputError, OutputError
 from world2minecraft.models.chat_messages import Picture
 from world2minecraft.vln.agents import AGENTS, Decision, ModelAgent
 from world2minecraft.vln.running.course import run_course, write_course

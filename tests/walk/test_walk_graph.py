@@ -7,8 +7,8 @@ import pytest
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.types import AIR, BlockVolume
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.walk import BlockWorld, Body, Keys, body_box, step
 from world2minecraft.walk.doors import doors_opened, is_shut, opened
 from world2minecraft.walk.graph import WalkRule, walk_graph

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.walk.golden_cases import CASES, FLAGS, GOLDEN, crowd, walked
 
-from world2minecraft.types import BlockVolume
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.walk import (
     TICKS_PER_S,
     BlockWorld,

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse.csgraph import dijkstra
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.types import AIR, BlockVolume
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.walk.graph import WalkRule, walk_graph
 from world2minecraft.walk.paths import distances_m
 from world2minecraft.walk.straight import lattice_of, straight_distances_m, straight_m

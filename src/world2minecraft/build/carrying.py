@@ -7,7 +7,7 @@ game such things would float.
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
-from world2minecraft.classes import OBJECT_CLASSES, STRUCTURE_CLASSES, SemanticClass
+from world2minecraft.core.classes import OBJECT_CLASSES, STRUCTURE_CLASSES, SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 
 REACH_M = 1.25  # A cord is no longer than this,

@@ -8,8 +8,9 @@ import numpy as np
 
 from world2minecraft.build.fitted import TIE, Design, standing, turned_middle
 from world2minecraft.build.lattice import Lattice
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import turn_grid
+from world2minecraft.core.types import UNSEEN, OccupancyGrid
 from world2minecraft.fit import (
     Fit,
     Rules,
@@ -22,7 +23,6 @@ from world2minecraft.fit import (
     thin_cells,
 )
 from world2minecraft.fit.masks import SUB
-from world2minecraft.types import UNSEEN, OccupancyGrid
 
 # What is closed: nobody sees into it, so what lies unseen under its skin belongs to it.
 CLOSED = (SemanticClass.FURN, SemanticClass.SOFA, SemanticClass.BED)

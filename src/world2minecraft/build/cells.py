@@ -9,7 +9,7 @@ import numpy as np
 
 from world2minecraft.build.halves import of_half_layers
 from world2minecraft.build.lattice import Lattice, face_shares
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.core.types import OccupancyGrid
 
 PHASES = 4  # Shifts of a quarter block along x and y; finer ones changed nothing in reference/fit.
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from world2minecraft.build.morphology import beside
 from world2minecraft.build.tops import top_cells
-from world2minecraft.classes import SemanticClass
-from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
 
 
 class Hues(NamedTuple):

@@ -7,7 +7,7 @@ a torch without its wall hangs there until somebody builds beside it.
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
-from world2minecraft.coordinates import block_axes_to_grid, grid_to_block_axes
+from world2minecraft.core.coordinates import block_axes_to_grid, grid_to_block_axes
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.stability import unmet_cells
 

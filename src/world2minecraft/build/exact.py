@@ -9,7 +9,7 @@ from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.structure import STANDING_M, WALL, WINDOW
 from world2minecraft.build.surfaces import painted
-from world2minecraft.types import UNSEEN, OccupancyGrid
+from world2minecraft.core.types import UNSEEN, OccupancyGrid
 
 
 def put_cells_exactly(

@@ -12,7 +12,7 @@ from scipy import ndimage
 
 from world2minecraft.build.lattice import Lattice, overlaps, summed
 from world2minecraft.build.parameters import BuildParameters
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.core.types import OccupancyGrid
 
 LEAST_WIDTH_M = 0.24  # Narrower than this, structure is noise or the end of a wall. A guess.
 

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.build.lattice import Lattice
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Placement
 from world2minecraft.fit import Fit, PartsFit, fit_parts
 from world2minecraft.fit.masks import SUB
 from world2minecraft.fit.shapes import ShapeSet, shape_set
 from world2minecraft.furniture import Part
-from world2minecraft.types import Placement
 
 TIE = 1e-6
 LAID_ON = (SemanticClass.TABLE,)  # Things lie on these; a top in mid-block would leave a gap.

@@ -14,13 +14,13 @@ from world2minecraft.build.lattice import Lattice
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.tinting import Hue, tinted
-from world2minecraft.coordinates import cells_to_block_axes
+from world2minecraft.core.coordinates import cells_to_block_axes
+from world2minecraft.core.types import Placement
 from world2minecraft.furniture import Idiom
 from world2minecraft.furniture.idiom import block_size
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import DYES, WOODS, colour_of, colours_of, nearest_oklab
 from world2minecraft.minecraft.shapes import is_full_cube
-from world2minecraft.types import Placement
 
 _KEPT_DYES = ("white",)  # A design's own white is meant: a pillow, a sheet.
 LIFTED_UNDER, HIGH_M = (

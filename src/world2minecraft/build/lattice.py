@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.coordinates import ROOM_CORNER_BLOCK, apply, room_to_block
-from world2minecraft.errors import UsageError
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK, apply, room_to_block
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import OccupancyGrid
 
 MAX_BLOCKS = 1 << 27  # A 40 x 40 x 5 m hall at 12.5 blocks a metre has 16 million.
 FLOOR_LAYER = ROOM_CORNER_BLOCK[1] - 1

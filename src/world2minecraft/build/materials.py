@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.build.palettes import Palette
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.fit.shapes import Shape
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.blocks import block_table

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.types import BlockVolume
 
 LONGEST_WORD = 60
 MOST_OBJECTS = 65_535

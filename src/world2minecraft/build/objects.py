@@ -34,12 +34,12 @@ from world2minecraft.build.standins import known_by_shape
 from world2minecraft.build.surfaces import block_colours
 from world2minecraft.build.tinting import Hue
 from world2minecraft.build.windows import Window, window_on
-from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
+from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
+from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
 from world2minecraft.fit import without_loose
 from world2minecraft.fit.masks import SUB
 from world2minecraft.furniture import Idiom, idiom, template
 from world2minecraft.metrics.solids import own_cells
-from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
 
 CELLS = "cells"
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.

@@ -12,7 +12,8 @@ import numpy as np
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.idioms import idiom_box
 from world2minecraft.build.pieces import FACINGS, Piece
-from world2minecraft.coordinates import cells_to_block_axes
+from world2minecraft.core.coordinates import cells_to_block_axes
+from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import Idiom, template
 from world2minecraft.furniture.idiom import block_size, laid
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Span, Template
@@ -20,7 +21,6 @@ from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.metrics.solids import own_cells
 from world2minecraft.minecraft.colours import DYES, WOODS, colours_of, nearest_oklab
 from world2minecraft.minecraft.states import BlockState, parse_state
-from world2minecraft.types import OccupancyGrid, Placement
 
 SLACK = 0.7  # Blocks by which an object may be larger than a piece of a fixed size.
 HIGHEST = 1.7  # Blocks: furniture of one layer stands for nothing higher.

@@ -14,9 +14,9 @@ from typing import Any
 from world2minecraft.build.meanings import meanings_of
 from world2minecraft.build.palettes import PALETTE_FILES, Palette, shipped
 from world2minecraft.build.pieces import piece_of
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_CLASSES
-from world2minecraft.errors import InputError, UsageError, one_line
-from world2minecraft.files import plain_yaml, read_bytes
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_CLASSES
+from world2minecraft.core.errors import InputError, UsageError, one_line
+from world2minecraft.core.files import plain_yaml, read_bytes
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colours_of, nearest_oklab
 from world2minecraft.minecraft.shapes import is_full_cube

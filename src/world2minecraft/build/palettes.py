@@ -12,7 +12,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from world2minecraft.errors import InputError, UnknownNameError
+from world2minecraft.core.errors import InputError, UnknownNameError
 
 if TYPE_CHECKING:
     from world2minecraft.build.meanings import Meanings

@@ -12,10 +12,10 @@ import numpy as np
 
 from world2minecraft.build.halves import of_half_layers
 from world2minecraft.build.lattice import Lattice
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import turn_grid
+from world2minecraft.core.types import Placement
 from world2minecraft.furniture import Part
-from world2minecraft.types import Placement
 
 THIN = 0.75  # Blocks: a part thinner than this along an axis is one layer.
 TIE = 1e-6

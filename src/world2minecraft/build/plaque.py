@@ -10,11 +10,11 @@ import numpy as np
 
 from world2minecraft.build.canvas import LIGHT
 from world2minecraft.build.spawn import Spawn, find_spawn
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.rules.supports import STEPS, UP, faces_of, is_solid
 from world2minecraft.minecraft.shapes import boxes_of
 from world2minecraft.minecraft.signs import sign_entity, wrapped
-from world2minecraft.types import AIR, BlockVolume
 
 WALL_SIGN = "minecraft:oak_wall_sign[facing={},waterlogged=false]"
 SIGN = "minecraft:oak_sign[rotation={},waterlogged=false]"

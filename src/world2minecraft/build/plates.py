@@ -7,12 +7,12 @@ from world2minecraft.build.fitted import Design
 from world2minecraft.build.halves import FULL
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.worktops import Worktop, find_worktop, joined
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colours_of
 from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.minecraft.states import known_blocks
-from world2minecraft.types import OccupancyGrid
 
 PLATES_FROM = 1.5  # Blocks per metre: below, a counter is one block high.
 

@@ -14,13 +14,13 @@ import numpy as np
 
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.palettes import Palette
+from world2minecraft.core.types import AIR, Entity
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colours_of, nearest_oklab
 from world2minecraft.minecraft.displays import BLOCK_DISPLAY
 from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.minecraft.states import complete, parse_state
 from world2minecraft.minecraft.visual import visual_boxes_of
-from world2minecraft.types import AIR, Entity
 
 UNSEEN = frozenset(f"minecraft:{name}" for name in ("air", "light", "barrier"))
 # Endings of names that are one shape in many materials.

@@ -7,8 +7,8 @@ Chairs whose colours lie near are a set.
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 
 SAME_SET = 0.08  # Oklab, lightness as light as in the choice of blocks: brown and grey are 0.1.
 LIGHTER_SHARE = 0.5

@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.build.lattice import Lattice
-from world2minecraft.classes import SemanticClass
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 
 LEAST_HEIGHT_M = 1.9  # Between two floors: under a loft one still has to stand.
 LEAST_AREA_M2 = 2.0

@@ -22,8 +22,8 @@ from world2minecraft.build.morphology import (
     without_holes,
 )
 from world2minecraft.build.parameters import BuildParameters
-from world2minecraft.classes import SemanticClass
-from world2minecraft.types import UNSEEN, OccupancyGrid
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import UNSEEN, OccupancyGrid
 
 CEILING, FLOOR, WALL, WINDOW = (
     int(SemanticClass[name]) for name in ("CEILING", "FLOOR", "WALL", "WINDOW")

@@ -7,7 +7,7 @@ from world2minecraft.build.hues import default_colour, group_medians, spread
 from world2minecraft.build.paint import FADED, paint
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
-from world2minecraft.classes import STRUCTURE_CLASSES
+from world2minecraft.core.classes import STRUCTURE_CLASSES
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colours_of
 

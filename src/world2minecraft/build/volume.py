@@ -22,9 +22,9 @@ from world2minecraft.build.restricting import restrict
 from world2minecraft.build.shell import put_edge, put_shell
 from world2minecraft.build.storeys import with_storeys
 from world2minecraft.build.structure import build_shell
-from world2minecraft.classes import OBJECT_CLASSES
-from world2minecraft.errors import UsageError
-from world2minecraft.types import BlockVolume, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.core.classes import OBJECT_CLASSES
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGrid, Placement
 
 
 def build_volume(

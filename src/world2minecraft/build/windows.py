@@ -6,7 +6,7 @@ import numpy as np
 
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.morphology import beside
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 
 
 class Window(NamedTuple):

@@ -15,11 +15,11 @@ from world2minecraft.cli.build_options import (
     style_note,
     with_build_options,
 )
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
+    from world2minecraft.core.types import BlockVolume
     from world2minecraft.parameters import Parameters
-    from world2minecraft.types import BlockVolume
 
 EXAMPLES = """\
 w2m build OUT --out second --blocks-per-metre 2     a finished run at another scale

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.errors import ConflictError, InputError, OutputError, UsageError
+from world2minecraft.core.errors import ConflictError, InputError, OutputError, UsageError
 
 if TYPE_CHECKING:
+    from world2minecraft.core.types import BlockEdit
     from world2minecraft.edit.history import History
-    from world2minecraft.types import BlockEdit
 
 EXAMPLES = """\
 w2m clean OUT                  mend what is left to mend
@@ -133,7 +133,7 @@ def opened(build: Path) -> "History":
 
 def listed(edits: "Sequence[BlockEdit]", is_done: list[bool], first: int = 0) -> str:
     """Return edits as lines: number, verb, blocks, object, place, reason."""
-    from world2minecraft.classes import CLASS_NAMES
+    from world2minecraft.core.classes import CLASS_NAMES
 
     lines = []
     for number, (edit, done) in enumerate(zip(edits, is_done, strict=True), first + 1):
@@ -167,8 +167,8 @@ def taken_back(history: "History", undo: int | None, undo_all: bool, redo: int |
 def write_again(build: Path, history: "History") -> None:
     """Write a build with other blocks in it, under the name that its world has."""
     from world2minecraft.build import WORLD_NAME, write_build
+    from world2minecraft.core.files import read_json
     from world2minecraft.exchange.scene import read_scene
-    from world2minecraft.files import read_json
     from world2minecraft.minecraft.worlds.reading import read_level
     from world2minecraft.parameters import Parameters
     from world2minecraft.steps import write_further_forms

@@ -81,7 +81,7 @@ def chosen_scenes(
     Raises:
         UnknownNameError: no scene has such a name.
     """
-    from world2minecraft.errors import UnknownNameError
+    from world2minecraft.core.errors import UnknownNameError
 
     if not names:
         return found[: count or 1]

@@ -68,8 +68,8 @@ def run(
     )
     from world2minecraft.compare.importers import read_layouts_of
     from world2minecraft.compare.truths import true_scene
-    from world2minecraft.errors import UnknownNameError, UsageError
-    from world2minecraft.files import write_text
+    from world2minecraft.core.errors import UnknownNameError, UsageError
+    from world2minecraft.core.files import write_text
 
     if method not in METHODS:
         raise UnknownNameError("form", method, METHODS)

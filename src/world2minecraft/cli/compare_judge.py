@@ -64,7 +64,7 @@ def run(
     """
     from world2minecraft.compare.judge import means_of, prompt_sum
     from world2minecraft.compare.table import grade_table
-    from world2minecraft.files import read_bytes, write_json
+    from world2minecraft.core.files import read_bytes, write_json
     from world2minecraft.vln.running.tables import text_of
 
     told = read_bytes(wish, MOST_WISH_BYTES).decode("utf-8", "replace") if wish else ""
@@ -93,8 +93,8 @@ def graded(
     from world2minecraft.cli.progress import shown
     from world2minecraft.compare.importers import read_layouts_of
     from world2minecraft.compare.judge import grade, pictures_of
+    from world2minecraft.core.files import write_bytes
     from world2minecraft.exchange.source import read_source
-    from world2minecraft.files import write_bytes
 
     scenes = [read_layouts_of(place)[0] for place in places]
     names, grades = folder_names(scenes), []

@@ -39,7 +39,7 @@ Assets = Annotated[
 
 def check_px(px_m: float) -> None:
     """Raise UsageError where a pixel is no length."""
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
 
     if not 0 < px_m < 1:
         raise UsageError(f"--px-m is metres of a pixel, above 0 and under 1, not {px_m:g}")

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.errors import InputError, OutputError, UsageError
+from world2minecraft.core.errors import InputError, OutputError, UsageError
 
 if TYPE_CHECKING:
+    from world2minecraft.core.types import BlockVolume
     from world2minecraft.exchange.cutting import Box
     from world2minecraft.minecraft.file_format import WriteOptions
     from world2minecraft.minecraft.losses import Losses
-    from world2minecraft.types import BlockVolume
 
 EXAMPLES = """\
 w2m convert house.schem worlds/house        a schematic to a world folder

@@ -88,9 +88,9 @@ def build(folder: Path, plan: "DatasetPlan", engine: str, jobs: int | None) -> N
     """Carry out a plan and say what came of it. Raises what ``run`` raises."""
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
+    from world2minecraft.core.machine import usable_cores
     from world2minecraft.dataset.building import build_dataset
     from world2minecraft.dataset.engine import opened_engine
-    from world2minecraft.machine import usable_cores
 
     compiling_note()
     processes = usable_cores() if jobs is None else jobs

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.progress import Progress
+    from world2minecraft.core.progress import Progress
 
 EXAMPLES = """\
 w2m dataset import depthbin --labels preprocess --out NYU     NYUv2 as MonoScene has it
@@ -42,9 +42,9 @@ def run(
     from itertools import islice
 
     from world2minecraft.cli.progress import shown
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.dataset.importers import open_occupancy
     from world2minecraft.dataset.store import write_store
-    from world2minecraft.errors import UsageError
 
     found = open_occupancy(source, format, labels=labels)
     count = len(found.keys(split)) if limit is None else min(limit, len(found.keys(split)))

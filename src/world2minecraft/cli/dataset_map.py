@@ -41,8 +41,8 @@ def run(blocks: Blocks = None, block_map: MapName = "nyu", json_out: Json = None
         UnknownNameError: there is no such map. InputError: the file is no map.
         UsageError: a block is no block state.
     """
+    from world2minecraft.core.files import write_json
     from world2minecraft.dataset.blockmap import block_map_json, load_block_map
-    from world2minecraft.files import write_json
     from world2minecraft.minecraft.states import parse_state
 
     rules = load_block_map(block_map)
@@ -72,7 +72,7 @@ def word_count(rules: "BlockMap") -> int:
 
 def lines_of(rules: "BlockMap") -> list[str]:
     """Return a map's name, what each class is by name alone, and the kinds with their classes."""
-    from world2minecraft.classes import CLASS_NAMES
+    from world2minecraft.core.classes import CLASS_NAMES
     from world2minecraft.minecraft.states import known_blocks
 
     held: dict[str, list[str]] = {}

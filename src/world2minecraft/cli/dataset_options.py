@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.core.errors import InputError, UsageError
 
 if TYPE_CHECKING:
+    from world2minecraft.core.types import Camera
     from world2minecraft.dataset.plan import GivenViews, SceneSpec
-    from world2minecraft.types import Camera
 
 IMAGES_A_SCENE = 50  # Where nobody says how many.
 
@@ -93,8 +93,8 @@ Jobs = Annotated[int | None, _option("--jobs", text="How many processes; one a c
 def camera_named(name: str, size: str, fov_deg: float | None) -> "Camera":
     """Return the camera that the options mean. Raises UsageError or UnknownNameError."""
     from world2minecraft.cli.render_options import camera_choice
+    from world2minecraft.core.errors import UnknownNameError
     from world2minecraft.dataset.tours import nyu_camera, paper_camera
-    from world2minecraft.errors import UnknownNameError
     from world2minecraft.render.views import vertical_fov_deg_of
 
     cameras = {"nyu": nyu_camera, "paper": paper_camera}

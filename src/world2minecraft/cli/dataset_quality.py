@@ -61,6 +61,7 @@ def run(
         InputError: there are no pictures. UsageError: a size or a model is none.
     """
     from world2minecraft.cli.progress import shown
+    from world2minecraft.core.files import write_json
     from world2minecraft.dataset.picture_sources import pictures_at
     from world2minecraft.dataset.quality import (
         choose,
@@ -69,7 +70,6 @@ def run(
         quality_text,
         size_of,
     )
-    from world2minecraft.files import write_json
     from world2minecraft.metrics.image_quality import niqe_model
     from world2minecraft.metrics.image_quality.niqe_models import available_variants
 

@@ -56,9 +56,9 @@ def run(
     Raises:
         UsageError: a tour without its world, a number out of range. InputError: it cannot be read.
     """
+    from world2minecraft.core.errors import InputError, UsageError
+    from world2minecraft.core.files import write_bytes
     from world2minecraft.dataset.sheet import picture_sheet
-    from world2minecraft.errors import InputError, UsageError
-    from world2minecraft.files import write_bytes
     from world2minecraft.render.output.images import colour_bytes
 
     if min(most, columns) < 1 or not 16 <= width <= 2000:
@@ -86,9 +86,9 @@ def _chosen(count: int, most: int, first: bool) -> list[int]:
 def _of_data(
     folder: Path, most: int, first: bool, split: str, labels: bool
 ) -> "Iterable[tuple[np.ndarray, str]]":
+    from world2minecraft.core.errors import InputError
     from world2minecraft.dataset.showing import labelled_picture
     from world2minecraft.dataset.store import open_store
-    from world2minecraft.errors import InputError
 
     store = open_store(folder)
     keys = store.keys(split or None)

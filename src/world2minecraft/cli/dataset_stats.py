@@ -66,9 +66,9 @@ def run(
         MissingExtraError: plots are asked for, and matplotlib is not installed.
     """
     from world2minecraft.cli.progress import shown
+    from world2minecraft.core.machine import usable_cores
     from world2minecraft.dataset.statistics import statistics_text
     from world2minecraft.dataset.statistics.reading import statistics_of
-    from world2minecraft.machine import usable_cores
 
     if plots is not None:
         from world2minecraft.dataset.statistics.plots import need_matplotlib
@@ -92,9 +92,9 @@ def _written(
     plots: Path | None,
 ) -> list[Path]:
     """Write what is asked for, and return where it lies."""
+    from world2minecraft.core.files import write_json, write_text
     from world2minecraft.dataset.statistics import statistics_json, statistics_latex
     from world2minecraft.dataset.statistics.plots import write_plots
-    from world2minecraft.files import write_json, write_text
 
     written = []
     if json_file is not None:

@@ -84,9 +84,9 @@ def run(
         UsageError: the words contradict each other, or nobody can stand in the world.
         InputError: the world or a screenshot cannot be read.
     """
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.dataset.source import open_scene_source
     from world2minecraft.dataset.tours import write_views
-    from world2minecraft.errors import UsageError
 
     if screenshots is None and (at or poses is not None or pattern is not None):
         raise UsageError("--at, --poses and --pattern tell of --screenshots DIR; name them")
@@ -108,8 +108,8 @@ def _planned(
 ) -> "list[PlannedView]":
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.dataset.tours import TourRule, layouts_beside, plan_views
-    from world2minecraft.errors import UsageError
 
     start = source.start()
     if reachable and start is None:

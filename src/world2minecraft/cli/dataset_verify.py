@@ -15,8 +15,8 @@ def run(folder: option.Folder) -> None:
         InputError: it is no data set, or not finished. DamagedFileError: something is wrong.
     """
     from world2minecraft.cli.progress import shown
+    from world2minecraft.core.errors import DamagedFileError
     from world2minecraft.dataset.store import verify_store
-    from world2minecraft.errors import DamagedFileError
 
     with shown() as progress:
         verdict = verify_store(folder, progress)

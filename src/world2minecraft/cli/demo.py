@@ -77,7 +77,7 @@ def run(
 
 def check_figures(seed: int, frames: int) -> None:
     """Raise UsageError, before any work, where there is no such room or scan."""
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
 
     if seed < 0:
         raise UsageError(f"--seed must be 0 or more, not {seed}")

@@ -80,7 +80,7 @@ def check_package(name: str) -> Check:
 
 def check_cache() -> Check:
     """Check that compiled kernels can be kept between runs."""
-    from world2minecraft.jit import user_cache_dir
+    from world2minecraft.core.jit import user_cache_dir
 
     folder = user_cache_dir()
     try:
@@ -94,7 +94,7 @@ def check_cache() -> Check:
 
 def check_threads() -> Check:
     """Say how many cores this process may use."""
-    from world2minecraft.machine import usable_cores
+    from world2minecraft.core.machine import usable_cores
 
     cores = usable_cores()
     limit = os.environ.get("NUMBA_NUM_THREADS")

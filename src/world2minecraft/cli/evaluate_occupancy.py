@@ -10,7 +10,7 @@ from world2minecraft.cli.train_options import Cache, Device
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from world2minecraft.progress import Progress
+    from world2minecraft.core.progress import Progress
 
 EXAMPLES = """\
 w2m evaluate occupancy RUN DATA                                 what w2m train made
@@ -77,12 +77,12 @@ def run(
     from rich.console import Console
 
     from world2minecraft.cli.progress import shown
+    from world2minecraft.core.files import write_json, write_text
     from world2minecraft.dataset.importers import open_occupancy
-    from world2minecraft.files import write_json, write_text
     from world2minecraft.learn.tables import latex_rows
 
     if not said.exists():
-        from world2minecraft.errors import InputError
+        from world2minecraft.core.errors import InputError
 
         raise InputError(said, "is not there; give a run's folder, weights, .onnx or predictions")
     found = open_occupancy(truth, labels=labels)
@@ -202,7 +202,7 @@ class _Asked:
 
     def _of_scenes(self, saved: Any, progress: "Progress") -> dict[str, Any] | None:
         """Return scores of grids of whole scenes; None where none of the files is a scene's."""
-        from world2minecraft.errors import UsageError
+        from world2minecraft.core.errors import UsageError
         from world2minecraft.learn.scoring import saved_scene_scores, scenes_to_score
 
         if self.found.format != "embodied":
@@ -219,7 +219,7 @@ class _Asked:
 
 def _split_of(asked: str, held: Any) -> str | None:
     """Return the split to score, None for all. Raises UsageError for one that is empty."""
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
 
     there = set(held)
     if not asked:

@@ -44,11 +44,11 @@ def run(
     from rich.console import Console
 
     from world2minecraft.cli.progress import shown
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
+    from world2minecraft.core.files import write_json
     from world2minecraft.evaluate import evaluate_reconstruction
     from world2minecraft.evaluate.foreign import evaluate_foreign, foreign_file
     from world2minecraft.evaluate.stages import stage_losses
-    from world2minecraft.files import write_json
 
     foreign = foreign_file(out)
     if foreign is not None and stages:
@@ -77,7 +77,7 @@ def run(
 
 def check_run(out: Path) -> None:
     """Raise InputError where ``out`` holds no finished run."""
-    from world2minecraft.errors import InputError
+    from world2minecraft.core.errors import InputError
 
     if not out.is_dir():
         raise InputError(out, "is no folder; w2m reconstruct CAPTURE --out OUT makes one")

@@ -4,7 +4,7 @@ import errno
 import sys
 import traceback
 
-from world2minecraft.errors import World2MinecraftError, one_line
+from world2minecraft.core.errors import World2MinecraftError, one_line
 
 FAILURE, USAGE, BAD_INPUT, STOPPED = 1, 2, 3, 130
 

@@ -85,7 +85,7 @@ def run(
         UsageError: the words contradict each other, or the port is taken.
         InputError: there is no room in the source.
     """
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.forge.captures import is_capture, user_home
     from world2minecraft.forge.editor import Editor
     from world2minecraft.forge.identity import folder_of
@@ -113,7 +113,7 @@ def run(
 def _walk(source: Path | None, no_browser: bool) -> None:
     """Let a person walk in a world on the page that shows what agents see."""
     from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.vln.agents.human import VIEW_WIDTH_PX
     from world2minecraft.vln.scene import open_scene
     from world2minecraft.vln.strolling import stroll

@@ -42,7 +42,7 @@ def run(
     """
     import json
 
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.forge.stats import (
         effort_at,
         stats_csv,

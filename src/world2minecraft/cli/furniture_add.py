@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.furniture.adopting import Adopted
@@ -102,7 +102,7 @@ def check_free(name: str, force: bool) -> Path:
 
 def write_checked(adopted: "Adopted", target: Path) -> None:
     """Write a piece that can be read again. Raises ``OutputError``."""
-    from world2minecraft.files import write_json
+    from world2minecraft.core.files import write_json
     from world2minecraft.furniture.own import own_template
 
     own_template(adopted.content)

@@ -32,7 +32,7 @@ def run(
     Raises:
         UnknownNameError: there is no such class.
     """
-    from world2minecraft.classes import class_id
+    from world2minecraft.core.classes import class_id
     from world2minecraft.furniture import TEMPLATES, template
     from world2minecraft.furniture.listing import by_class, markdown
     from world2minecraft.furniture.own import own_files

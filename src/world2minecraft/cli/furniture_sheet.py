@@ -39,8 +39,8 @@ def run(
     Raises:
         UnknownNameError: there is no such piece or class. OutputError: it cannot be written.
     """
-    from world2minecraft.classes import class_id
     from world2minecraft.cli.outcome import compiling_note
+    from world2minecraft.core.classes import class_id
     from world2minecraft.furniture import TEMPLATES, template
 
     number = class_id(kind) if kind else None
@@ -57,8 +57,8 @@ def draw(templates: Sequence["Template"], out: Path, columns: int = 4) -> None:
     Raises:
         UsageError: there is nothing to draw. OutputError: it cannot be written.
     """
-    from world2minecraft.errors import UsageError
-    from world2minecraft.files import write_bytes
+    from world2minecraft.core.errors import UsageError
+    from world2minecraft.core.files import write_bytes
     from world2minecraft.furniture.listing import by_class
     from world2minecraft.render.sheet import contact_sheet, sheet_png
 

@@ -42,7 +42,7 @@ def run(
 
 def facts_of(one: "Template") -> list[str]:
     """Return what is known of a template, a line each."""
-    from world2minecraft.classes import CLASS_NAMES
+    from world2minecraft.core.classes import CLASS_NAMES
 
     lines = [f"{one.name}: {one.title} ({CLASS_NAMES[one.class_id]}, family {one.family})"]
     for side, span in zip(("deep", "wide", "high"), one.size_m, strict=True):

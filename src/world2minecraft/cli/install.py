@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.core.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.minecraft.worlds.launchers import Game

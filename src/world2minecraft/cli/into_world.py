@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from world2minecraft.types import BlockVolume
+    from world2minecraft.core.types import BlockVolume
 
 
 def check_world(world: Path, air: str) -> None:
@@ -46,7 +46,7 @@ def into_world(
     Raises:
         UsageError, InputError: as ``edit.into_world.build_into``.
     """
-    from world2minecraft.coordinates import ROOM_CORNER_BLOCK
+    from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
     from world2minecraft.edit.into_world import build_into
     from world2minecraft.edit.placing import placed
     from world2minecraft.minecraft.commands.sizes import size_pack

@@ -18,7 +18,7 @@ from world2minecraft.cli.build_options import (
 )
 
 if TYPE_CHECKING:
-    from world2minecraft.types import Scan
+    from world2minecraft.core.types import Scan
 
 EXAMPLES = """\
 w2m join kitchen hall bedroom --out HOME          by the doors that they have in common

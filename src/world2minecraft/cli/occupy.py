@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from world2minecraft.core.types import Camera
     from world2minecraft.dataset.frame_completion import GridPlace
     from world2minecraft.dataset.saved_cells import SaidCells
-    from world2minecraft.types import Camera
 
 EXAMPLES = """\
 w2m occupy NYU0001_0000.png --grid NYU0001_0000.bin --out pred.npz       SSCNet's NYUv2
@@ -76,8 +76,8 @@ def run(
     the room, x, y, z up. A capture with --grid answers in that grid, whose world must be the
     capture's. ``labels`` is uint8, ids 0 to 11, 255 where nobody looked.
     """
+    from world2minecraft.core.errors import InputError
     from world2minecraft.dataset.frame_completion import read_grid_place
-    from world2minecraft.errors import InputError
     from world2minecraft.scan.photo_folder import PHOTO_SUFFIXES
 
     if not source.exists():
@@ -98,7 +98,7 @@ def run(
 
 def _check_no_depth(source: Path) -> None:
     """Refuse a depth picture of which nobody says where it was taken."""
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.scan.images import read_header
 
     if source.suffix.lower() == ".png" and read_header(source).mode.startswith("I"):
@@ -106,7 +106,7 @@ def _check_no_depth(source: Path) -> None:
 
 
 def _is_mono(predictor: str) -> bool:
-    from world2minecraft.errors import UnknownNameError
+    from world2minecraft.core.errors import UnknownNameError
 
     kind = predictor.partition(":")[0]
     if kind not in ("depth", "mono"):
@@ -123,9 +123,9 @@ class _Frame:
 
     def by_depth(self, place: "GridPlace") -> "SaidCells":
         """Return what the completion network says."""
+        from world2minecraft.core.errors import CaptureError
         from world2minecraft.dataset.frame_completion import VOXEL_M, complete_frame, depth_of_png
         from world2minecraft.dataset.saved_cells import SaidCells
-        from world2minecraft.errors import CaptureError
         from world2minecraft.scan.depth import check_depth_kind
         from world2minecraft.scan.images import read_colour, read_header, read_raw
 
@@ -149,8 +149,8 @@ class _Frame:
 
     def by_network(self, place: "GridPlace", predictor: str) -> "SaidCells":
         """Return what a monocular network says."""
+        from world2minecraft.core.errors import CaptureError
         from world2minecraft.dataset.saved_cells import cells_by_network
-        from world2minecraft.errors import CaptureError
         from world2minecraft.occupy.mono import MonoPredictor
         from world2minecraft.scan.images import read_colour, read_header
 
@@ -164,7 +164,7 @@ class _Frame:
         return cells_by_network(pixels, self._camera(*pixels.shape[:2]), place, network)
 
     def _camera(self, height: int, width: int) -> "Camera":
-        from world2minecraft.types import Camera
+        from world2minecraft.core.types import Camera
 
         focal_px = self.focal_px
         return Camera(width, height, focal_px, focal_px, width / 2 + 0.5, height / 2 + 0.5)
@@ -214,7 +214,7 @@ def told(source: Path, out: Path, cells: "SaidCells", grid: Path | None) -> list
     """Return what is printed of the cells of a capture or a photo."""
     import numpy as np
 
-    from world2minecraft.classes import CLASS_NAMES
+    from world2minecraft.core.classes import CLASS_NAMES
 
     counts = np.bincount(cells.labels.reshape(-1), minlength=len(CLASS_NAMES))
     found = ", ".join(

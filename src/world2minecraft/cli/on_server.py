@@ -3,11 +3,11 @@
 import os
 from typing import TYPE_CHECKING
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.server.address import note_of, parse_address
 
 if TYPE_CHECKING:
-    from world2minecraft.types import BlockVolume
+    from world2minecraft.core.types import BlockVolume
 
 PASSWORD = "W2M_RCON_PASSWORD"
 
@@ -40,7 +40,7 @@ def on_server(
     host, port = parse_address(address)
     password = password_of_environment()
     from world2minecraft.cli.progress import shown
-    from world2minecraft.coordinates import ROOM_CORNER_BLOCK
+    from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
     from world2minecraft.edit.into_world import built_mask
     from world2minecraft.edit.placing import placed
     from world2minecraft.minecraft.losses import Losses

@@ -6,7 +6,7 @@ from typing import Any
 
 def compiling_note() -> None:
     """Say, once after installation, why the first run takes longer."""
-    from world2minecraft.jit import KERNEL_CACHE
+    from world2minecraft.core.jit import KERNEL_CACHE
 
     if not any(KERNEL_CACHE.iterdir()):
         print("First run: compiling the inner loops, about 30 s; later runs start at once.")
@@ -40,7 +40,7 @@ def say_how_to_play(build: Path) -> None:
 
 def say_forms(build: Path) -> None:
     """Print the further forms that were asked for, each with what it could not carry."""
-    from world2minecraft.files import read_json
+    from world2minecraft.core.files import read_json
 
     if not (build / "forms.json").is_file():
         return

@@ -49,7 +49,7 @@ def summary_of(palette: "Palette") -> str:
 
 def lines_of(palette: "Palette") -> list[str]:
     """Return what each class is made of, and what else there is."""
-    from world2minecraft.classes import CLASS_NAMES
+    from world2minecraft.core.classes import CLASS_NAMES
 
     lines = [summary_of(palette)]
     if palette.only is not None:

@@ -52,7 +52,7 @@ def run(
     """
     import json
 
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.paper import filled, read_results, read_table, table_names
     from world2minecraft.paper.writing import as_latex, as_markdown, as_text, as_values
 

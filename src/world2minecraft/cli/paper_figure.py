@@ -36,7 +36,7 @@ def run(
         CaptureError: the capture has no posed photo that the run used.
         InputError: a file is missing or damaged.
     """
-    from world2minecraft.files import write_bytes
+    from world2minecraft.core.files import write_bytes
     from world2minecraft.paper.figure import reconstruction_figure
     from world2minecraft.report.pictures import as_png
 

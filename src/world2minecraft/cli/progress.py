@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
 
-from world2minecraft.progress import Progress
+from world2minecraft.core.progress import Progress
 
 EVERY_S = 30.0  # Between the lines of a long stage, where there is no terminal.
 

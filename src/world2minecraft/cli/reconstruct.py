@@ -17,8 +17,8 @@ from world2minecraft.cli.build_options import (
 )
 
 if TYPE_CHECKING:
+    from world2minecraft.core.progress import Progress
     from world2minecraft.parameters import Parameters
-    from world2minecraft.progress import Progress
 
 EXAMPLES = """\
 w2m reconstruct my_scan --out OUT                         the whole way
@@ -157,7 +157,7 @@ def run(
 
 def check_stage(start: str | None, follow: bool) -> None:
     """Raise UsageError, before any work, where ``--from`` names no stage, or goes not with it."""
-    from world2minecraft.errors import UnknownNameError, UsageError
+    from world2minecraft.core.errors import UnknownNameError, UsageError
     from world2minecraft.pipeline import STAGES
 
     if follow and start is not None:
@@ -182,7 +182,7 @@ def built_from_plan(
     """
     from world2minecraft.cli.from_plan import say_plan
     from world2minecraft.cli.progress import shown
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.making import make_from_plan
     from world2minecraft.prepare import scene_name
     from world2minecraft.scan.plan_alone import plan_in

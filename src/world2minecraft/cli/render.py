@@ -19,14 +19,14 @@ from world2minecraft.cli.render_files import (
 from world2minecraft.cli.render_look import Look, Looks, take
 from world2minecraft.cli.render_shots import Plan, View, plan_of, settled, turntable_count, view_of
 from world2minecraft.cli.render_source import Source, read_source
-from world2minecraft.errors import UsageError
-from world2minecraft.progress import Progress
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.progress import Progress
 
 if TYPE_CHECKING:
+    from world2minecraft.core.types import BlockVolume
     from world2minecraft.render import Picture
     from world2minecraft.render.views import Shot
     from world2minecraft.render.views.frames import DrawOptions
-    from world2minecraft.types import BlockVolume
 
 MOST_WRITERS = 16  # Each holds a picture.
 EXAMPLES = """\

@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from world2minecraft.cli.render_shots import Kind, Medium
-from world2minecraft.errors import OutputError, UsageError
+from world2minecraft.core.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
     import numpy as np
 
+    from world2minecraft.core.types import BlockVolume, Camera
     from world2minecraft.render import Picture
     from world2minecraft.render.output import FileChoice
     from world2minecraft.render.views import Shot
-    from world2minecraft.types import BlockVolume, Camera
 
 LINES_FILE, NAMES_FILE = "poses.jsonl", "names.json"
 _NUMBERS = ("block", "opaque", "state", "class", "instance", "face")
@@ -104,7 +104,7 @@ class Writer:
 
     def later(self, shot: "Shot", picture: "Picture", volume: "BlockVolume") -> Callable[[], None]:
         """Name the files of a picture, and return what writes all its layers, on any thread."""
-        from world2minecraft.files import write_bytes
+        from world2minecraft.core.files import write_bytes
         from world2minecraft.render.output import LAYERS
 
         moving, choice = self._moving, self.target.choice
@@ -122,7 +122,7 @@ class Writer:
 
     def colour(self, shot: "Shot", colour: "np.ndarray | None") -> None:
         """Write a picture of which there is colour alone."""
-        from world2minecraft.files import write_bytes
+        from world2minecraft.core.files import write_bytes
         from world2minecraft.render.output import colour_bytes
 
         if colour is None:
@@ -137,7 +137,7 @@ class Writer:
 
     def finish(self, volume: "BlockVolume") -> None:
         """Write the poses, and what the numbers mean where there are any."""
-        from world2minecraft.files import write_json
+        from world2minecraft.core.files import write_json
         from world2minecraft.render.output import table_of_names
         from world2minecraft.render.views import write_lines
 
@@ -181,8 +181,8 @@ def check_many(target: Target, count: int) -> None:
 
 def check_pixels(cameras: Iterable["Camera"], samples: int) -> None:
     """Refuse pictures that are too large. Raises UsageError."""
+    from world2minecraft.core.types.capture import MAX_SIDE_PX
     from world2minecraft.render.picture import MAX_PIXELS
-    from world2minecraft.types.capture import MAX_SIDE_PX
 
     for width, height in {(camera.width_px, camera.height_px) for camera in cameras}:
         rays = width * height * samples**2

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.cli.render_shots import Kind, Medium

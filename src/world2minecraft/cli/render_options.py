@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
+    from world2minecraft.core.types import Camera
     from world2minecraft.render.output import FileChoice
     from world2minecraft.render.views import GamePose
-    from world2minecraft.types import Camera
 
 MOST_FRAMES = 1_000_000
 
@@ -213,7 +213,7 @@ def check_count(frames: int | None, rate_hz: float) -> None:
 
 def threads_of(asked: int | None) -> int:
     """Return how many threads to use. Raises UsageError."""
-    from world2minecraft.machine import usable_cores
+    from world2minecraft.core.machine import usable_cores
 
     if asked is None:
         return usable_cores()

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Literal
 
 from world2minecraft.cli.render_options import CameraChoice
 from world2minecraft.cli.render_source import Source
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
+    from world2minecraft.core.types import BlockVolume
     from world2minecraft.render.views import GamePose, Shot
-    from world2minecraft.types import BlockVolume
 
 Kind = Literal["pose", "poses", "orbit", "tour", "turntable", "spawn"]
 Medium = Literal["picture", "folder", "moving"]
@@ -113,7 +113,7 @@ def _game_fov_deg() -> float:
 
 
 def _shot(pose: "GamePose", camera, volume: "BlockVolume", t_s: float) -> "Shot":
-    from world2minecraft.coordinates import eye_height_blocks
+    from world2minecraft.core.coordinates import eye_height_blocks
     from world2minecraft.render.views import Shot
 
     eye_blocks = eye_height_blocks(volume.blocks_per_metre)

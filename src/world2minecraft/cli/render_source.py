@@ -4,13 +4,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
+    from world2minecraft.core.types import BlockVolume
     from world2minecraft.exchange.cutting import Box
     from world2minecraft.exchange.source import Start
     from world2minecraft.render.views import GamePose
-    from world2minecraft.types import BlockVolume
 
 
 @dataclass(eq=False)

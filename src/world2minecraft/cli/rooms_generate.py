@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.progress import Progress
+    from world2minecraft.core.progress import Progress
     from world2minecraft.rooms import Room
 
 EXAMPLES = """\
@@ -72,7 +72,7 @@ def _generate(
 ) -> None:
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.run_folder import check_writable
 
     check_writable(out)
@@ -100,7 +100,7 @@ def _check_worlds(
     rooms: int | None,
     storeys: int | None,
 ) -> None:
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.run_folder import check_writable
 
     if houses is None or worlds is None:
@@ -115,7 +115,7 @@ def _check_worlds(
 def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None) -> None:
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.rooms.worlds import write_worlds
 
     if seed < 0:
@@ -132,7 +132,7 @@ def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None) -> No
 def _check_words(
     kind: str | None, shape: str, house: bool, rooms: int | None, storeys: int | None
 ) -> None:
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
 
     if house and (kind is not None or shape != "box"):
         raise UsageError("--kind and --shape are of a single room; leave them out with --house")
@@ -161,7 +161,7 @@ def _write(made: "Room", out: Path, progress: "Progress") -> None:
 
     from PIL import Image
 
-    from world2minecraft.files import write_bytes
+    from world2minecraft.core.files import write_bytes
     from world2minecraft.rooms import room_picture, write_generated
 
     progress("write", 0, 2, "layout.json, truth.npz")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.progress import Progress
+    from world2minecraft.core.progress import Progress
     from world2minecraft.rooms import Room
 
 EXAMPLES = """\
@@ -85,7 +85,7 @@ def _check_source(
     trial: str | None,
     given: dict[str, Any],
 ) -> None:
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
 
     if trial is not None:
         if room_dir is not None or seed is not None or kind is not None or given:
@@ -100,7 +100,7 @@ def _check_source(
 
 def _check_figures(given: dict[str, Any]) -> None:
     """Refuse figures out of range before any work is done."""
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.rooms.shots import Shooting
 
     try:
@@ -111,7 +111,7 @@ def _check_figures(given: dict[str, Any]) -> None:
 
 def _check_empty(out: Path) -> None:
     """Refuse a folder that holds a capture or a room: two would mix."""
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.run_folder import check_writable
 
     check_writable(out)

@@ -48,7 +48,7 @@ def run(
         as_json: print JSON.
         settings: options of the reader, such as ``capture.depth_unit=mm``.
     """
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.exchange.roomplan import read_roomplan
     from world2minecraft.parameters import Parameters, with_settings
     from world2minecraft.scan import describe_capture
@@ -80,8 +80,8 @@ def _print_all(lines: list[str], as_json: bool) -> None:
 
 def _write_picture(summary: "CaptureSummary", picture: Path | None) -> str:
     """Write the picture and return where it is, or why there is none."""
-    from world2minecraft.errors import OutputError
-    from world2minecraft.files import write_bytes
+    from world2minecraft.core.errors import OutputError
+    from world2minecraft.core.files import write_bytes
     from world2minecraft.scan.poster import is_poster, poster_png
 
     chosen = picture or Path(f"{Path(summary.folder.name).stem or 'capture'}-scan.png")

@@ -60,7 +60,7 @@ def chosen_run(
     """Return the run that the options mean. Raises UsageError, UnknownNameError or InputError."""
     from dataclasses import replace
 
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.learn.config import DataSource, RunConfig, read_config
 
     sources = tuple(DataSource.parsed(text) for text in data)
@@ -77,7 +77,7 @@ def chosen_run(
 
 def image_size(text: str) -> tuple[int, int]:
     """Return what ``320x240`` means. Raises UsageError."""
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
 
     sides = text.lower().split("x")
     if len(sides) != 2 or not all(side.isdigit() for side in sides):
@@ -89,7 +89,7 @@ def check_extra() -> None:
     """Refuse to begin without what training is made of. Raises MissingExtraError."""
     from importlib.util import find_spec
 
-    from world2minecraft.errors import MissingExtraError
+    from world2minecraft.core.errors import MissingExtraError
 
     if any(
         find_spec(name) is None for name in ("torch", "lightning", "safetensors", "tensorboard")

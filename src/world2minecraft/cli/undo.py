@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from world2minecraft.errors import ConflictError, UsageError
+from world2minecraft.core.errors import ConflictError, UsageError
 
 EXAMPLES = """\
 w2m undo saves/Home             every byte as it was before the last build

@@ -168,7 +168,7 @@ class VerbGroup(TyperGroup):
             # Its first word may be a verb of its own, which would take the second for a file.
             return both, load(both), args[2:]
         if self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
-            from world2minecraft.errors import UnknownNameError
+            from world2minecraft.core.errors import UnknownNameError
 
             raise UnknownNameError("verb", f"{self.prefix}{args[0]}", VERBS)
         return super().resolve_command(ctx, args)

@@ -94,7 +94,7 @@ def run(
         UsageError: an option cannot be, or no scene gives an item. InputError: a scene cannot be
         read. OutputError: the folder cannot be written.
     """
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.vln.data.building import BuildRule
     from world2minecraft.vln.data.recorded import checked_at
     from world2minecraft.vln.data.scene_work import WorkRule
@@ -122,7 +122,7 @@ def _built(
 ) -> "Built":
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.machine import usable_cores
+    from world2minecraft.core.machine import usable_cores
     from world2minecraft.run_folder import check_writable
     from world2minecraft.vln.data.building import build_set
     from world2minecraft.vln.data.made_scenes import make_scenes
@@ -137,7 +137,7 @@ def _built(
 
 
 def _moves(name: str) -> str:
-    from world2minecraft.errors import UnknownNameError
+    from world2minecraft.core.errors import UnknownNameError
     from world2minecraft.vln.values import MOVE_SETS
 
     if name not in MOVE_SETS:
@@ -146,7 +146,7 @@ def _moves(name: str) -> str:
 
 
 def _size(text: str) -> tuple[int, int]:
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
 
     parts = text.lower().split("x")
     if len(parts) != 2 or not all(part.isdecimal() and 16 <= int(part) <= 4096 for part in parts):

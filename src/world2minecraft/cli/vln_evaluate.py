@@ -80,7 +80,7 @@ def run(
         UsageError, InputError: a name, an option or the set is wrong.
         ServerError, BudgetError: the model cannot be asked.
     """
-    from world2minecraft.errors import UnknownNameError
+    from world2minecraft.core.errors import UnknownNameError
     from world2minecraft.models.chat_endpoints import is_endpoint
     from world2minecraft.vln.agents.answering import ModelAnswerer
     from world2minecraft.vln.records import read_items
@@ -122,7 +122,7 @@ def _baseline(
     name: str, every: "list[Item]", items: "list[Item]", place: Path
 ) -> "tuple[Any, list[Item]]":
     """Return a baseline and the items that it knows the task of."""
-    from world2minecraft.errors import UnknownNameError, UsageError
+    from world2minecraft.core.errors import UnknownNameError, UsageError
     from world2minecraft.models.chat_endpoints import ENDPOINTS
     from world2minecraft.vln.agents.answering import LetterAnswerer
     from world2minecraft.vln.data.baselines import NAMES, baseline_letters

@@ -52,7 +52,7 @@ def run(
     Raises:
         UsageError, InputError: an option or a file is wrong. ServerError: the model gives no reply.
     """
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.vln.data.rewording import ORDER, annotated, asked_by, read_set, write_set
 
     if not (annotations or rewrite or plain):

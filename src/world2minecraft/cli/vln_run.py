@@ -135,7 +135,7 @@ def run(
 
 def _check_apart(folder: Path, scene: Path) -> None:
     """Refuse to write what was walked over the very episodes that are walked."""
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.vln.records import EPISODES
 
     source = scene if scene.suffix == ".jsonl" else scene / EPISODES
@@ -188,7 +188,7 @@ class _Grounds:
 def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "list[Episode]":
     from dataclasses import replace
 
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.vln.records import EPISODES, read_episodes, scene_place
     from world2minecraft.vln.running.asking import episode_of
 
@@ -288,7 +288,7 @@ def _say(
 def _stance(text: str) -> "Stance | None":
     from math import isfinite
 
-    from world2minecraft.errors import UsageError
+    from world2minecraft.core.errors import UsageError
     from world2minecraft.vln.values import Stance
 
     if not text:

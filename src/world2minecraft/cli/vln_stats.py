@@ -48,7 +48,7 @@ def run(
     Raises:
         InputError: it is no set, or a picture is missing.
     """
-    from world2minecraft.files import write_json
+    from world2minecraft.core.files import write_json
     from world2minecraft.vln.data.baselines import baselines as score
     from world2minecraft.vln.data.leaks import leaks_of
     from world2minecraft.vln.data.statistics import statistics_of

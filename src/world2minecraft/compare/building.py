@@ -14,15 +14,15 @@ import numpy as np
 
 from world2minecraft.compare.designs import design_of
 from world2minecraft.compare.values import SCENE_FILE, ComparedScene, write_scene
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.exchange.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
-from world2minecraft.files import read_json
 from world2minecraft.metrics.layout import inside_polygon
 from world2minecraft.parameters import Parameters
 from world2minecraft.plans import PlanWorld, build_captured
-from world2minecraft.progress import Progress, silent
 from world2minecraft.report import write_brief_report
-from world2minecraft.types import Layout, LayoutObject, Opening
 
 PLACE = "layout of"
 

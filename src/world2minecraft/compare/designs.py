@@ -9,11 +9,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.files import read_json
+from world2minecraft.core.types import LayoutObject
 from world2minecraft.exchange.roomplan import PlanObject
-from world2minecraft.files import read_json
 from world2minecraft.plans.furniture import HUNG_FROM_M, OWN_CELLS, template_of
-from world2minecraft.types import LayoutObject
 
 TABLE = Path(__file__).parent / "data" / "designs.json"
 # What stands for a class that no word tells more of, by RoomPlan's categories.

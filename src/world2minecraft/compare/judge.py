@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.models.chat import ChatModel
 from world2minecraft.models.chat_forms import Form, UnreadableError, ask_form, json_of
 from world2minecraft.models.chat_messages import Picture, Turn
@@ -26,7 +27,6 @@ from world2minecraft.render.views.frames import DrawOptions, frames_of
 from world2minecraft.render.views.opened import OpenedBuild
 from world2minecraft.render.views.orbit import TURN_DEG, orbit_shots
 from world2minecraft.render.views.turntable import OPEN_ELEVATION_DEG
-from world2minecraft.types import BlockVolume
 
 ASPECTS = ("realism", "completeness", "atmosphere")
 LEAST, MOST = 1, 10

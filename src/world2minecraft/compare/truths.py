@@ -4,7 +4,7 @@ from pathlib import Path
 
 from world2minecraft.compare.importers import read_layouts_of
 from world2minecraft.compare.values import ComparedScene
-from world2minecraft.errors import InputError
+from world2minecraft.core.errors import InputError
 from world2minecraft.evaluate.truth import read_truth
 
 TRUTH = "truth"

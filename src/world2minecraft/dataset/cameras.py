@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.coordinates import (
+from world2minecraft.core.coordinates import (
     carry_camera,
     fov_deg_of_focal_px,
     game_pose_of_camera_to_block,
@@ -19,8 +19,8 @@ from world2minecraft.coordinates import (
     paper_focal_px,
     paper_rotation,
 )
-from world2minecraft.errors import UsageError
-from world2minecraft.types import Camera
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Camera
 
 CONVENTIONS = {
     "K": "[[fx, 0, cx], [0, fy, cy], [0, 0, 1]] in pixels; pixel centres at +0.5",

@@ -11,17 +11,17 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
+from world2minecraft.core.files import array_names, read_npz
+from world2minecraft.core.types import Camera, FusedEvidence, PointEvidence, View
+from world2minecraft.core.types.checks import transform
 from world2minecraft.dataset.formats.cameras import NYU_CAMERA
 from world2minecraft.dataset.formats.depth_codes import metres_of
 from world2minecraft.dataset.formats.sscnet import HEADER_BYTES
-from world2minecraft.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
-from world2minecraft.files import array_names, read_npz
 from world2minecraft.fuse import CleanParameters, EvidenceMap, read_out, remove_floaters
 from world2minecraft.label.channels import sight_of
 from world2minecraft.label.completion_net import CompletionModel, likeliest
 from world2minecraft.occupy.depth import DepthPredictor
-from world2minecraft.types import Camera, FusedEvidence, PointEvidence, View
-from world2minecraft.types.checks import transform
 
 SHAPE = (60, 60, 36)  # x, y, z; a file's own order is x, z up, y.
 FILE_AXES = (0, 2, 1)

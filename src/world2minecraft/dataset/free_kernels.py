@@ -8,7 +8,7 @@ it. What is left is tested pixel by pixel.
 
 import numpy as np
 
-from world2minecraft.jit import inlined, lean
+from world2minecraft.core.jit import inlined, lean
 from world2minecraft.render.ray import steep
 
 CROSSED_M = 0.001

@@ -7,7 +7,7 @@ is z-depth in metres, 0 where a ray meets nothing.
 
 import numpy as np
 
-from world2minecraft.jit import inlined, lean
+from world2minecraft.core.jit import inlined, lean
 
 OUTSIDE_LABEL = 255
 

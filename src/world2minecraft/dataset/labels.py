@@ -18,7 +18,8 @@ for the region's nearest cell that holds something.
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, invert
+from world2minecraft.core.coordinates import apply, invert
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.free_kernels import TILE, greatest_depths, mark_free
 from world2minecraft.dataset.label_kernels import (
     count_hits,
@@ -29,7 +30,6 @@ from world2minecraft.dataset.label_kernels import (
 from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.values import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.render import BlockScene, render_volume
-from world2minecraft.types import Camera
 
 AROUND_M = 5e-6  # More than a depth under 40 m is rounded by, along the same ray.
 REACH_M = 0.006  # A point so far from a solid cell is rounding at a shape's edge.

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 NEEDED = ("x", "y", "z", "yaw", "pitch")
 USUAL = ("*{x}_{y}_{z}_{yaw}_{pitch}", "*{x},{y},{z},{yaw},{pitch}", "*{x} {y} {z} {yaw} {pitch}")

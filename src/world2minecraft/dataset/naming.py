@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.dataset.values import FineClass
-from world2minecraft.errors import UsageError
 from world2minecraft.minecraft.displays import display_cubes
-from world2minecraft.types import BlockVolume
 
 EMPTY = FineClass("minecraft:air")
 MOST_CLASSES = 65_535

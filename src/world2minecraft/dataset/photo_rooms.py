@@ -12,19 +12,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import UsageError, World2MinecraftError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.formats.cameras import NYU_CAMERA
 from world2minecraft.dataset.formats.sscnet import downsampled
 from world2minecraft.dataset.labels import label_image
 from world2minecraft.dataset.region import region_in
 from world2minecraft.dataset.values import USUAL_VOXEL_M, FineClass, OccSample, SceneVoxels
-from world2minecraft.errors import UsageError, World2MinecraftError
 from world2minecraft.render.voxels import cast_voxels
 from world2minecraft.rooms import Room, generate_room
 from world2minecraft.rooms.exposure import TexturedScene, developed, exposed, prepare_textured
 from world2minecraft.rooms.kinds import KINDS
 from world2minecraft.rooms.tour import plan_tour
-from world2minecraft.types import Camera
 
 FIRST_SEED = 40_000  # Of rooms: those of trials and of other sets are far below.
 ROOMS_A_SEED = 1_000

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.core.errors import InputError
 from world2minecraft.dataset.store import OccStore, open_store
 from world2minecraft.dataset.store.layout import META
-from world2minecraft.errors import InputError
 from world2minecraft.scan.images import SUFFIXES, read_colour, read_header
 
 

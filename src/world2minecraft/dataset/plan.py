@@ -9,12 +9,12 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.region import RegionRule
 from world2minecraft.dataset.source import scene_id_of
 from world2minecraft.dataset.store.sample_files import SampleFiles
 from world2minecraft.dataset.tours import nyu_camera
-from world2minecraft.errors import UnknownNameError, UsageError
-from world2minecraft.types import Camera
 
 TEST_SHARE = 0.2  # Of images and of scenes, where no preset says it.
 MOST_IMAGES, MOST_SCENES = 10_000_000, 100_000

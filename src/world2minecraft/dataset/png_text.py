@@ -9,7 +9,7 @@ import zlib
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 MOST_CHUNKS = 20_000

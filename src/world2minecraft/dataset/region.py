@@ -5,7 +5,7 @@ The rule itself is that of ``geometry/region.py``.
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.dataset.values import SceneVoxels
 from world2minecraft.geometry.region import LabelRegion, RegionRule, region_of, view_yaw_deg
 

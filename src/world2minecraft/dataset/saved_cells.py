@@ -9,14 +9,14 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
-from world2minecraft.coordinates import apply
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.files import write_npz
+from world2minecraft.core.types import Camera, OccupancyGrid, View
 from world2minecraft.dataset.frame_completion import FILE_AXES, SHAPE, VOXEL_M, GridPlace
-from world2minecraft.errors import InputError, UsageError
-from world2minecraft.files import write_npz
 from world2minecraft.occupy.mono import fitted
 from world2minecraft.occupy.network_file import OccupancyNetwork
-from world2minecraft.types import Camera, OccupancyGrid, View
 
 OBSERVED = 1  # Of ``OccupancyGrid.source``.
 

@@ -13,14 +13,14 @@ from typing import Literal
 
 import numpy as np
 
-from world2minecraft.coordinates import eye_height_blocks
+from world2minecraft.core.coordinates import eye_height_blocks
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.name_patterns import NEEDED, USUAL, NamePattern
 from world2minecraft.dataset.png_text import PngFacts, read_png_facts
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.render.views.cameras import camera_of
 from world2minecraft.render.views.poses import GamePose
 from world2minecraft.render.views.tour_file import TourPose, read_tour
-from world2minecraft.types import Camera
 
 At = Literal["feet", "eye"]
 SIDECARS = ("poses.jsonl", "poses.csv", "tour.jsonl", "screenshots.jsonl", "screenshots.csv")

@@ -6,8 +6,8 @@ labels belong together. A figure beside says the same of the depth.
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN
-from world2minecraft.coordinates import apply, invert_rigid
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN
+from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.dataset.values import OccSample
 from world2minecraft.geometry.lifting import lift_depth
 from world2minecraft.render.voxels import cast_voxels

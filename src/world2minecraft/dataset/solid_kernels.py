@@ -9,7 +9,7 @@ it fills more by a margin, so that rounding decides nothing.
 
 import numpy as np
 
-from world2minecraft.jit import inlined, njit
+from world2minecraft.core.jit import inlined, njit
 from world2minecraft.render.tables import ABSOLUTE, FLAGS, FULL, OWNER
 
 NOBODY = -1

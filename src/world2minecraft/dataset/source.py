@@ -12,16 +12,16 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.coordinates import block_to_room
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.dataset.blockmap import BlockMap, classify, load_block_map, remapped
 from world2minecraft.dataset.blockmap.reading import MAPS
 from world2minecraft.dataset.built_box import built_box
 from world2minecraft.dataset.designs import designs_beside
 from world2minecraft.dataset.naming import fine_names
-from world2minecraft.errors import InputError, UsageError
 from world2minecraft.exchange.cutting import Box
 from world2minecraft.exchange.source import Source, read_source
-from world2minecraft.types import BlockVolume
 
 FOREIGN_SCALE = 1.0  # Blocks per metre of worlds that do not say theirs: players build so.
 OWN_MAP = MAPS[0]  # The map that our own truth is by.

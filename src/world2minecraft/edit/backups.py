@@ -17,11 +17,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.core.errors import ConflictError, DamagedFileError, InputError, OutputError
+from world2minecraft.core.files import read_bytes, read_json, write_bytes, write_json
+from world2minecraft.core.types import BlockEdit
 from world2minecraft.edit.journal import write_journal
-from world2minecraft.errors import ConflictError, DamagedFileError, InputError, OutputError
-from world2minecraft.files import read_bytes, read_json, write_bytes, write_json
 from world2minecraft.minecraft.worlds.level import UNDO_FOLDER as FOLDER
-from world2minecraft.types import BlockEdit
 
 MANIFEST, JOURNAL = "manifest.json", "edit.journal"
 PREPARED, DONE, UNDOING = "prepared", "done", "undoing"

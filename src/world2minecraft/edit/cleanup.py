@@ -15,15 +15,15 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.types import BlockEdit, Blocks, BlockVolume
 from world2minecraft.edit.draft import Draft
 from world2minecraft.edit.floating import mend_floating
 from world2minecraft.edit.holes import close_holes
 from world2minecraft.edit.intrusions import close_see_through, trim_cut_off
 from world2minecraft.edit.sight import take_away
-from world2minecraft.errors import UnknownNameError
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.stability import unstable
-from world2minecraft.types import BlockEdit, Blocks, BlockVolume
 
 EXACT_BLOCKS_PER_METRE = 8.0  # Above it, cells are copied as they are.
 ROUNDS = 4  # A mend may uncover what another rule is for.

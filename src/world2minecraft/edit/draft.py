@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import ConflictError, LimitError
+from world2minecraft.core.errors import ConflictError, LimitError
+from world2minecraft.core.types import AIR, BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
 from world2minecraft.minecraft.nbt import write_nbt
-from world2minecraft.types import AIR, BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
 
 MAX_STATES = 1 << 16
 Position = tuple[int, int, int]

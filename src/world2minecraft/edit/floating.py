@@ -6,7 +6,8 @@ of some size, is carried; everything else floats.
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import AIR
 from world2minecraft.edit.contact import touches, touching_parts
 from world2minecraft.edit.draft import Draft
 from world2minecraft.edit.gaps import close_gap, whole_of
@@ -19,7 +20,6 @@ from world2minecraft.edit.sight import (
     structure_of,
     take_away,
 )
-from world2minecraft.types import AIR
 
 CARRIER_M2 = 0.5  # A piece of structure of this area carries, though it holds to nothing itself.
 JOIN_M = 0.5  # A part is joined to its own object over no wider gap,

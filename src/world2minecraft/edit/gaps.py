@@ -7,11 +7,11 @@ their cells.
 
 import numpy as np
 
+from world2minecraft.core.types import Blocks
 from world2minecraft.edit.draft import Draft
 from world2minecraft.edit.sight import move
 from world2minecraft.minecraft.states import known_blocks
 from world2minecraft.minecraft.visual import visual_boxes_of
-from world2minecraft.types import Blocks
 
 DOWN = np.array([0, -1, 0])
 PLATE = 0.26  # What is no higher than this, in blocks, is a plate: a trapdoor, a carpet.

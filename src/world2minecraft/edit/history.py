@@ -1,9 +1,9 @@
 """A volume and the edits made to it: do, undo, redo, any of them by its number."""
 
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockEdit, BlockVolume
 from world2minecraft.edit.draft import Draft, applied
 from world2minecraft.edit.journal import Journal
-from world2minecraft.errors import UsageError
-from world2minecraft.types import BlockEdit, BlockVolume
 
 
 class History:

@@ -6,7 +6,7 @@ which one sees out. Doorways and open windows are larger; what hangs in a hole i
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.edit.draft import Draft
 from world2minecraft.edit.sight import blocks_in, free_cells, structure_of
 from world2minecraft.geometry.parts import connected_parts

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.core.errors import ConflictError, DamagedFileError, InputError, UsageError
+from world2minecraft.core.types import BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
 from world2minecraft.edit.backups import (
     JOURNAL,
     Step,
@@ -24,13 +26,11 @@ from world2minecraft.edit.draft import data_keys
 from world2minecraft.edit.journal import Journal
 from world2minecraft.edit.world_box import WorldBox, is_void, read_world_box
 from world2minecraft.edit.world_entities import WorldEntities, marked
-from world2minecraft.errors import ConflictError, DamagedFileError, InputError, UsageError
 from world2minecraft.minecraft.game_data import block_entity_in_game, entity_in_game
 from world2minecraft.minecraft.states import BlockState, parse_state
 from world2minecraft.minecraft.versions import name_in_version
 from world2minecraft.minecraft.worlds.reading import read_level
 from world2minecraft.minecraft.worlds.session_lock import session_lock
-from world2minecraft.types import BlockEdit, BlockEntity, Blocks, BlockVolume, Entity
 
 AIR_CHOICES = ("room", "box", "none")
 FIRST_DISPLAY_VERSION = 3337  # 1.19.4, the first game with display entities.

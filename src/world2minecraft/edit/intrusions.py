@@ -7,7 +7,7 @@ cubes in the plane of a wall, past which one sees out.
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.edit.draft import Draft
 from world2minecraft.edit.sight import crumb_blocks, structure_of, take_away, things_of
 from world2minecraft.geometry.parts import connected_parts

@@ -7,11 +7,11 @@ comes the edit itself. ``records.py`` tells how they lie in the file.
 from collections.abc import Sequence
 from pathlib import Path
 
+from world2minecraft.core.errors import DamagedFileError, LimitError, OutputError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.core.types import BlockEdit
 from world2minecraft.edit.packing import EDIT_LIMITS, pack_edit, unpack_edit
 from world2minecraft.edit.records import RecordFile, packed_record
-from world2minecraft.errors import DamagedFileError, LimitError, OutputError
-from world2minecraft.files import write_bytes
-from world2minecraft.types import BlockEdit
 
 EDITS_FILE = "edits.journal"  # Beside a build: what was mended in it.
 MARK = b"w2m edits 1\n"

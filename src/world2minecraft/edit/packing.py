@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import BlockEdit, BlockEntity, Blocks, Entity
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, write_nbt
-from world2minecraft.types import BlockEdit, BlockEntity, Blocks, Entity
 
 EDIT_LIMITS = NbtLimits(depth=64, values=2_000_000, bytes=256 << 20)
 

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.minecraft.rules.attached import attached
 from world2minecraft.minecraft.turn import turn_volume
-from world2minecraft.types import BlockVolume, Entity
 
 
 def placed(

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, OutputError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, OutputError
 
 LEVEL = 1  # Of zlib: a build of a million blocks is recorded in half a second.
 HEAD = struct.Struct(">II")

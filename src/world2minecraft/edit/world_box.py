@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.types import BlockEntity
 from world2minecraft.minecraft.nbt import write_nbt
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.chunk_edit import (
@@ -26,7 +27,6 @@ from world2minecraft.minecraft.worlds.chunk_edit import (
 )
 from world2minecraft.minecraft.worlds.reading import read_level
 from world2minecraft.minecraft.worlds.region_edit import RegionFile, read_region_file
-from world2minecraft.types import BlockEntity
 
 MAX_CELLS = 64 << 20
 MODERN_FOLDER = Path("dimensions/minecraft/overworld")  # From 26.1 on.

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import Entity
 from world2minecraft.edit.world_box import Place, chunks_of, overworld_folder, region_of
-from world2minecraft.errors import DamagedFileError
 from world2minecraft.minecraft.entities import entity_nbt, entity_tags
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
 from world2minecraft.minecraft.worlds.region_edit import RegionFile, read_region_file
-from world2minecraft.types import Entity
 
 BUILT = "w2m_built"  # The tag of the entities that were built into a world.
 

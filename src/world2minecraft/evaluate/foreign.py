@@ -18,18 +18,18 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN, class_id
-from world2minecraft.coordinates import invert_rigid
-from world2minecraft.errors import DamagedFileError, InputError, UnknownNameError
+from world2minecraft.core.classes import UNKNOWN, class_id
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
+from world2minecraft.core.files import array_names, read_json, read_npy, read_npz
+from world2minecraft.core.types import LayoutObject, OccupancyGrid
+from world2minecraft.core.types.checks import floats, positive, transform
 from world2minecraft.evaluate.frame_error import frame_error
 from world2minecraft.evaluate.frames import all_frames
 from world2minecraft.evaluate.objects import object_counts, object_facts
 from world2minecraft.evaluate.score import HOW, cell_facts, headline, see_truth
 from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.exchange.occupancy import DEFAULT_VOXEL_M, labels_grid
-from world2minecraft.files import array_names, read_json, read_npy, read_npz
-from world2minecraft.types import LayoutObject, OccupancyGrid
-from world2minecraft.types.checks import floats, positive, transform
 
 LABELS = ("labels.npz", "labels.npy")
 OBJECTS = "objects.json"

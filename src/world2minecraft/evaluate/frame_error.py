@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.coordinates import apply
-from world2minecraft.types import Layout
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.types import Layout
 
 STRAIGHT_DEG = 10.0  # A wall of the truth that runs along an axis of the estimated frame.
 

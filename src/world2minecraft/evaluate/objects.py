@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
-from world2minecraft.coordinates import apply
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.types import LayoutObject
 from world2minecraft.evaluate.reach import Reached
 from world2minecraft.evaluate.truth import Truth, read_instances
 from world2minecraft.metrics.objects import ObjectCounts, count_objects, match_objects
-from world2minecraft.types import LayoutObject
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from world2minecraft.coordinates import apply
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.types import Layout
 from world2minecraft.evaluate.reach import Reached
 from world2minecraft.metrics.occupancy import ratio
-from world2minecraft.types import Layout
 
 KINDS = ("window", "door", "doorway")
 MATCH_DISTANCE_M = 0.3  # As for objects: between the middles of two openings.

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.evaluate.frames import UsedFrame, common_move
 from world2minecraft.evaluate.truth import Truth
 from world2minecraft.exchange.poses import read_poses

@@ -11,15 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.coordinates import apply
-from world2minecraft.errors import LimitError
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import LimitError
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
 from world2minecraft.evaluate.frames import UsedFrame
 from world2minecraft.evaluate.truth import Truth
 from world2minecraft.geometry.lifting import pixel_rays
-from world2minecraft.jit import njit
 from world2minecraft.render.tables import FACE_NORMALS
 from world2minecraft.render.voxels import cast_voxels, prepare_voxels
-from world2minecraft.types import Camera
 
 CROSSED, MET = 1, 2
 RAYS_WIDE = 320  # All 640 of a frame come to 0.1 % more cells, in four times the time.

@@ -4,8 +4,8 @@ from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import DamagedFileError, UsageError
-from world2minecraft.files import read_json
+from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.files import read_json
 from world2minecraft.parameters import Parameters
 
 

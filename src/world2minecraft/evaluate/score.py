@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
+from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
+from world2minecraft.core.types import OBSERVED, OccupancyGrid
 from world2minecraft.evaluate.frame_error import frame_error
 from world2minecraft.evaluate.frames import UsedFrame, truth_of_run, used_frames
 from world2minecraft.evaluate.layout import in_room, layout_facts
@@ -34,7 +35,6 @@ from world2minecraft.metrics.calibration import count_calibration
 from world2minecraft.metrics.occupancy import count_occupancy
 from world2minecraft.metrics.surface import SurfaceCounts, count_surface, free_space_recall
 from world2minecraft.metrics.truth import carry_truth
-from world2minecraft.types import OBSERVED, OccupancyGrid
 
 HOW = (
     "Scored on the cells that a noise-free ray of a used frame reached or crossed; truth occupied "

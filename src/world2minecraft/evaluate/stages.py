@@ -14,7 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Scan, View
 from world2minecraft.evaluate.frames import truth_of_run, used_frames
 from world2minecraft.evaluate.recorded import recorded_parameters
 from world2minecraft.evaluate.score import TrueRoom, cell_facts, score_run, see_truth
@@ -32,10 +34,8 @@ from world2minecraft.exchange.scan import write_scan
 from world2minecraft.fuse import fuse_views
 from world2minecraft.occupy import predictor
 from world2minecraft.parameters import Parameters
-from world2minecraft.progress import Progress, silent
 from world2minecraft.scan import open_scan
 from world2minecraft.steps import LATER_STEPS
-from world2minecraft.types import Scan, View
 
 AFTER = ("alignment", "fusion", "labels", "instances", "templates")
 

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import CLASS_COUNT, UNKNOWN
-from world2minecraft.coordinates import apply
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.types import Camera, FusedEvidence, View
 from world2minecraft.evaluate.reach import PUSH_M, RAYS_WIDE, pinhole
 from world2minecraft.evaluate.score import TrueRoom
 from world2minecraft.render.tables import FACE_NORMALS
 from world2minecraft.render.voxels import VoxelScene, cast_voxels, prepare_voxels
-from world2minecraft.types import Camera, FusedEvidence, View
 
 SURE_LOG_ODDS = 6.0  # The fusion's own limit.
 

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.classes import OBJECT_CLASSES, UNKNOWN
-from world2minecraft.coordinates import apply, invert_rigid
-from world2minecraft.errors import World2MinecraftError
+from world2minecraft.core.classes import OBJECT_CLASSES, UNKNOWN
+from world2minecraft.core.coordinates import apply, invert_rigid
+from world2minecraft.core.errors import World2MinecraftError
+from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.evaluate.score import TrueRoom, placed
 from world2minecraft.evaluate.truth import read_instances
 from world2minecraft.exchange.objects import (
@@ -18,7 +19,6 @@ from world2minecraft.exchange.objects import (
 )
 from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.furniture import template
-from world2minecraft.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid, Placement
 
 OWN_CELLS = "cells"
 

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN, SemanticClass, class_id
-from world2minecraft.errors import DamagedFileError, InputError, UnknownNameError
+from world2minecraft.core.classes import UNKNOWN, SemanticClass, class_id
+from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
+from world2minecraft.core.files import array_names, read_json, read_npz
+from world2minecraft.core.types import Layout, LayoutObject, checks
 from world2minecraft.exchange.layout import layout_of_row
-from world2minecraft.files import array_names, read_json, read_npz
-from world2minecraft.types import Layout, LayoutObject, checks
 
 ARRAYS = ("labels", "voxel_m", "origin_m", "truth_room_to_scan")
 

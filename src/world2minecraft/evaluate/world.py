@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
-from world2minecraft.coordinates import apply, cell_centers_m, invert
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.coordinates import apply, cell_centers_m, invert
 from world2minecraft.evaluate.reach import Reached
 from world2minecraft.exchange.scene import Scene, read_scene
 

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, LimitError, UsageError
+from world2minecraft.core.errors import DamagedFileError, LimitError, UsageError
+from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.nbt import NbtLimits, pack_gzip, read_nbt, unpack, write_nbt
-from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
 MAX_CELLS = 32 << 20  # 320 blocks a side; with its labels such a volume takes 160 MB.
 LIMITS = NbtLimits(bytes=6 * MAX_CELLS)

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.coordinates import ROOM_AXES_TO_BLOCK, apply
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK, apply
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.exchange.faces import faces_of_boxes
 from world2minecraft.minecraft.colours import colour_of
 from world2minecraft.minecraft.commands.boxes import merge_boxes
@@ -19,7 +20,6 @@ from world2minecraft.minecraft.displays import display_cubes, owner_of
 from world2minecraft.minecraft.glow import is_luminous
 from world2minecraft.minecraft.shapes import FULL_CUBE
 from world2minecraft.minecraft.visual import visual_boxes_of
-from world2minecraft.types import BlockVolume
 
 STEPS = 64  # Parts of a block that box corners are rounded to; the game's own table needs 32.
 CLEAR_ALPHA = 90  # Of 255: a pane is seen and seen through.

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.files import write_npz
+from world2minecraft.core.files import write_npz
 
 
 def write_centers(

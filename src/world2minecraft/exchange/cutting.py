@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
-from world2minecraft.types import BlockVolume
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume
 
 Box = tuple[int, int, int, int, int, int]
 

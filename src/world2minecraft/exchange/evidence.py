@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import read_npz, write_npz
-from world2minecraft.types import FusedEvidence
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_npz, write_npz
+from world2minecraft.core.types import FusedEvidence
 
 EVIDENCE_ARRAYS = (
     "log_odds",

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 
 # Which ends of u and v the four corners take, counter-clockwise for a face along its axis.
 _U_ENDS, _V_ENDS = np.array([0, 1, 1, 0]), np.array([0, 0, 1, 1])

@@ -8,7 +8,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
-from world2minecraft.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.registry import Registry
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.exchange.labelled import labelled, place_of_blocks
 from world2minecraft.minecraft.file_format import FileFormat, WriteOptions
 from world2minecraft.minecraft.formats import (
@@ -19,8 +21,6 @@ from world2minecraft.minecraft.formats import (
     read_blocks,
 )
 from world2minecraft.minecraft.losses import Losses
-from world2minecraft.registry import Registry
-from world2minecraft.types import BlockVolume
 
 FORMS = Registry(
     "scene_format",

@@ -11,8 +11,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, LimitError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.errors import DamagedFileError, LimitError
+from world2minecraft.core.files import read_bytes
 
 MAGIC, JSON_CHUNK, BIN_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 MAX_BYTES = 192 << 20

@@ -23,9 +23,11 @@ from typing import Any
 import numpy as np
 
 from world2minecraft import __version__
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.coordinates import ROOM_AXES_TO_BLOCK
-from world2minecraft.errors import UsageError
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import write_bytes, write_json, write_text
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.exchange.bodies import Body, bodies_of
 from world2minecraft.exchange.glb import GlbWriter
 from world2minecraft.exchange.gltf import (
@@ -36,9 +38,7 @@ from world2minecraft.exchange.gltf import (
     triangles_of,
     vertices_of,
 )
-from world2minecraft.files import write_bytes, write_json, write_text
 from world2minecraft.geometry.colour import linear_of_srgb
-from world2minecraft.types import BlockVolume
 
 HEADER = "HM3D Semantic Annotations"
 MAX_ID = 10_000  # Habitat's own limit.

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import InputError
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.exchange.scene import Scene, read_scene
-from world2minecraft.types import BlockVolume
 
 SCENE_FILE = "scene.json"
 

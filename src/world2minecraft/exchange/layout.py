@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import read_json, write_json
-from world2minecraft.types import Layout, Opening
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.types import Layout, Opening
 
 
 def write_layouts(path: str | Path, layouts: tuple[Layout, ...]) -> None:

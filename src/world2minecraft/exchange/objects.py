@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES, class_id
-from world2minecraft.errors import DamagedFileError, World2MinecraftError
-from world2minecraft.files import read_json, write_json
-from world2minecraft.types import Alternative, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.core.classes import CLASS_NAMES, class_id
+from world2minecraft.core.errors import DamagedFileError, World2MinecraftError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.types import Alternative, ObjectInstance, OccupancyGrid, Placement
 
 
 def write_objects(path: str | Path, instances: tuple[ObjectInstance, ...]) -> None:

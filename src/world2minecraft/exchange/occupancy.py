@@ -12,12 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.files import array_names, read_npy, read_npz
+from world2minecraft.core.types import OBSERVED, UNSEEN, OccupancyGrid
 from world2minecraft.exchange.paper import read_occ_json
 from world2minecraft.exchange.room import GRID_ARRAYS, read_room
-from world2minecraft.files import array_names, read_npy, read_npz
-from world2minecraft.types import OBSERVED, UNSEEN, OccupancyGrid
 
 DEFAULT_VOXEL_M = 0.08  # The paper's.
 

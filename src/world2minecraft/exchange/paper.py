@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.errors import DamagedFileError, LimitError
-from world2minecraft.files import read_json, write_text
-from world2minecraft.types import OBSERVED, ObjectInstance, OccupancyGrid
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import DamagedFileError, LimitError
+from world2minecraft.core.files import read_json, write_text
+from world2minecraft.core.types import OBSERVED, ObjectInstance, OccupancyGrid
 
 MAX_CELLS = 200_000_000
 _CHUNK = 1 << 18  # Rows that are made into text at once.

@@ -19,12 +19,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import DamagedFileError, LimitError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.exchange.occupancy import DEFAULT_VOXEL_M, labels_grid
 from world2minecraft.exchange.paper import MAX_CELLS, read_occ_json
-from world2minecraft.files import read_json
-from world2minecraft.types import OccupancyGrid
 
 CELLS, METRES = "cells", "metres"
 _HOLDERS = (

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import read_npz, write_npz
-from world2minecraft.types import Corrections
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_npz, write_npz
+from world2minecraft.core.types import Corrections
 
 POSE_ARRAYS = ("names", "pose_change", "depth_scale")
 

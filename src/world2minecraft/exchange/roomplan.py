@@ -15,10 +15,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath, ArchivePath, is_zip
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.files import read_json
-from world2minecraft.types import checks
+from world2minecraft.core.archives import AnyPath, ArchivePath, is_zip
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.types import checks
 
 MOST_BYTES = 64 << 20  # A house of RoomPlan has under 2 MB.
 MOST_PARTS = 10_000

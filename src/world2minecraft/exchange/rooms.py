@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Layout, OccupancyGrid
 from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.exchange.scan import read_room_size
-from world2minecraft.types import Layout, OccupancyGrid
 
 
 def read_rooms(folder: str | Path, grid: OccupancyGrid) -> tuple[Layout, ...]:

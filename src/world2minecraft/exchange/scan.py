@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import read_json, write_json
-from world2minecraft.types import Scan
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.types import Scan
 
 MOST_NAME = 60
 

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import array_names, read_json, read_npz, write_json, write_npz
-from world2minecraft.types import BlockVolume, checks
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import array_names, read_json, read_npz, write_json, write_npz
+from world2minecraft.core.types import BlockVolume, checks
 
 DESIGNS = "designs.json"
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 
 ANGLES_DEG = np.array([sign * a for a in range(8, 38) for sign in (1, -1)], np.float64)
 CLEARLY = 0.95  # Of the upright rectangle's area. Straight chairs of 0.08 m cells stay above it.

@@ -3,13 +3,13 @@
 import numpy as np
 from scipy.spatial import KDTree
 
-from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find.heap import floor_below
 from world2minecraft.find.owned import cells_by_owner
 from world2minecraft.furniture import template
 from world2minecraft.furniture.seating import AGAINST, OWN, SeatFit, fit_seat, look_at
 from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.types import OccupancyGrid
 
 WIDE_M = 0.85  # A chair turned by half a quarter is this wide; an easy chair may be wider.
 EASY_WIDE_M = 1.2

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import OBJECT_CLASSES
+from world2minecraft.core.classes import OBJECT_CLASSES
 
 
 def object_cells(labels: np.ndarray) -> np.ndarray:

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 
 NEAR_CELLS = 6  # The floor beside a cupboard is seen, the floor under it is not.
 LEAST_FLOOR = 4

@@ -4,9 +4,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
-from world2minecraft.coordinates import cell_centers_m
-from world2minecraft.errors import UsageError
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.coordinates import cell_centers_m
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
 from world2minecraft.find.askew import askew_rectangle
 from world2minecraft.find.chairs import join_backs, part_chairs
 from world2minecraft.find.clusters import cluster_candidates
@@ -22,7 +23,6 @@ from world2minecraft.find.rows import part_rows
 from world2minecraft.find.specks import without_specks
 from world2minecraft.find.stacks import join_stacked
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
-from world2minecraft.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
 
 MAX_OBJECTS = 65535
 

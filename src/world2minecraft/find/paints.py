@@ -6,11 +6,11 @@ and its leaves, the books of a pile.
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find.growth import grow
 from world2minecraft.find.owned import cells_by_owner
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.types import OccupancyGrid
 
 ALIKE = 0.12  # Neighbouring cells of one paint differ by less, in Oklab.
 LEAST_CELLS = 5  # Of a patch that is a thing of its own.

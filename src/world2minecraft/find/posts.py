@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find.heap import floor_below
 from world2minecraft.find.owned import cells_by_owner
-from world2minecraft.types import OccupancyGrid
 
 THIN_CELLS = 2  # A post or a cord is at most so wide,
 FLAT_CELLS = 1  # a foot so high.

@@ -5,9 +5,9 @@ A scan misses what is thin: the post of a lamp, the cord of a pendant, a chair's
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find.heap import floor_below
-from world2minecraft.types import OccupancyGrid
 
 STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
 STANDS_BELOW_M = 1.0  # What begins higher stands on something else; a chair's back does not.

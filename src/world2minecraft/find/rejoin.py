@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import KDTree
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 
 STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)

@@ -10,7 +10,8 @@ has no such step: its clusters take a whole kitchen for one object.
 import numpy as np
 from scipy.spatial import KDTree
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find.absorb import absorbed
 from world2minecraft.find.arms import arms
 from world2minecraft.find.hanging import hung_cells
@@ -18,7 +19,6 @@ from world2minecraft.find.heap import Heap, heap_of
 from world2minecraft.find.levels import levels
 from world2minecraft.find.owned import cells_by_owner
 from world2minecraft.find.seams import seams
-from world2minecraft.types import OccupancyGrid
 
 LONG_M = 0.9  # Shorter furniture is one piece.
 

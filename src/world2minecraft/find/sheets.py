@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 
 NEAR_CELLS = 2  # A curtain hangs this near its wall.

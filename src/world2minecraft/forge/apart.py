@@ -15,7 +15,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import WorkerError, World2MinecraftError
+from world2minecraft.core.errors import WorkerError, World2MinecraftError
 from world2minecraft.forge.jobs import Report, Work
 
 WORKER = (sys.executable, "-m", "world2minecraft.forge.worker")

@@ -13,14 +13,14 @@ import numpy as np
 
 from world2minecraft.build import BuildParameters, build_volume, find_spawn
 from world2minecraft.build.parameters import STYLES
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.types import BlockVolume, OccupancyGrid, SceneObject
 from world2minecraft.edit.cleanup import mended
 from world2minecraft.edit.scene import instances_of, placements_of
-from world2minecraft.errors import UnknownNameError, UsageError
 from world2minecraft.forge.arrays import packed_arrays
 from world2minecraft.forge.editor import Editor
 from world2minecraft.render.mesh import BlockMesh, mesh_of
 from world2minecraft.steps import corner_m
-from world2minecraft.types import BlockVolume, OccupancyGrid, SceneObject
 from world2minecraft.walk import BlockWorld, standing_place
 
 MAGIC = b"W2MB"

@@ -15,7 +15,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import BaseRoute, Route
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.forge.blocks import Build, BuildOptions, HeldScene
 from world2minecraft.forge.collision import build_collision, voxel_collision
 from world2minecraft.forge.editor import Editor

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import (
+from world2minecraft.core.errors import (
     ConflictError,
     DamagedFileError,
     InputError,
@@ -29,7 +29,7 @@ from world2minecraft.errors import (
     UnknownNameError,
     UsageError,
 )
-from world2minecraft.files import read_json, write_json
+from world2minecraft.core.files import read_json, write_json
 from world2minecraft.forge.upload_names import UploadFile, checked_files, common_folder
 from world2minecraft.minecraft.worlds.installing import check_name
 from world2minecraft.scan.plan_alone import plan_in

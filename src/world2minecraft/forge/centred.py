@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import KDTree
 
-from world2minecraft.classes import OBJECT_CLASSES
-from world2minecraft.coordinates import cell_centers_m
-from world2minecraft.errors import LimitError
+from world2minecraft.core.classes import OBJECT_CLASSES
+from world2minecraft.core.coordinates import cell_centers_m
+from world2minecraft.core.errors import LimitError
+from world2minecraft.core.types import ObjectInstance, OccupancyGrid
 from world2minecraft.exchange.paper_forms import Center
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
-from world2minecraft.types import ObjectInstance, OccupancyGrid
 
 MAX_CENTERS = 65535
 

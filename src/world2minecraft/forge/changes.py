@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.types import GridCells, Operation
 from world2minecraft.edit.scene import SceneDraft
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.volumes import as_bytes
 from world2minecraft.forge.wire import counts_json, object_json
-from world2minecraft.types import GridCells, Operation
 
 MAX_HELD_RUNS = 20_000  # As JSON 0.5 MB; of more, the page gets the whole volume again.
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
+from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.forge.arrays import packed_arrays
 from world2minecraft.forge.blocks import Build, HeldScene
-from world2minecraft.types import OccupancyGrid
 from world2minecraft.walk import BlockWorld, standing_place
 
 MAGIC = b"W2MC"

@@ -18,7 +18,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
-from world2minecraft.errors import UsageError, World2MinecraftError
+from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.forge.comparing import (
     beside_reached,
     checked_name,

@@ -19,9 +19,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from world2minecraft.core.errors import ConflictError, OutputError
+from world2minecraft.core.locks import Lock
+from world2minecraft.core.types import Operation
 from world2minecraft.edit.scene import SceneHistory
 from world2minecraft.edit.scene.journal import DO, UNDO
-from world2minecraft.errors import ConflictError, OutputError
 from world2minecraft.forge import saving
 from world2minecraft.forge.effort import EffortLog
 from world2minecraft.forge.identity import (
@@ -41,8 +43,6 @@ from world2minecraft.forge.recovery import (
 from world2minecraft.forge.snapshots import State, snapshot_path, snapshot_paths, write_state
 from world2minecraft.forge.sources import Opened, read_source
 from world2minecraft.forge.unkept import Unkept
-from world2minecraft.lock import Lock
-from world2minecraft.types import Operation
 
 SNAPSHOT_STEPS, SNAPSHOT_S = 200, 60.0
 HISTORY_BYTES = 256 << 20  # What undo reaches takes at most so much of the disk, packed.

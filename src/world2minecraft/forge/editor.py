@@ -18,6 +18,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Operation
 from world2minecraft.edit.scene import Command, SceneDraft, parse_command
 from world2minecraft.forge.document import Document
 from world2minecraft.forge.identity import folder_of
@@ -26,8 +28,6 @@ from world2minecraft.forge.sources import Opened
 from world2minecraft.forge.tools import tools_of
 from world2minecraft.forge.unkept import Unkept
 from world2minecraft.forge.wire import PROTOCOL, classes_json, counts_json, objects_json
-from world2minecraft.progress import Progress, silent
-from world2minecraft.types import Operation
 
 Listener = Callable[[int, str, Operation], None]
 Value = TypeVar("Value")

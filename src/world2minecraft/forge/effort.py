@@ -8,9 +8,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import InputError
-from world2minecraft.files import read_bytes
-from world2minecraft.types import Operation
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.files import read_bytes
+from world2minecraft.core.types import Operation
 
 EFFORT_FILE = "effort.jsonl"
 MAX_EFFORT_BYTES = 256 << 20  # About two million lines.

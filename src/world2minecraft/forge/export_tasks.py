@@ -12,7 +12,9 @@ from typing import Any
 from PIL import Image
 
 from world2minecraft.build import WORLD_NAME, write_build
-from world2minecraft.coordinates import ROOM_CORNER_BLOCK
+from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
+from world2minecraft.core.progress import Progress
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.edit.into_world import build_into, built_mask
 from world2minecraft.edit.placing import placed
 from world2minecraft.exchange.forms import form_named, templates_of_run, write_form
@@ -28,10 +30,8 @@ from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.installing import age_note, install_world
 from world2minecraft.minecraft.worlds.launchers import Game
 from world2minecraft.parameters import Parameters
-from world2minecraft.progress import Progress
 from world2minecraft.render.preview import preview
 from world2minecraft.steps import built_volume, scene_name
-from world2minecraft.types import BlockVolume
 
 WORLD, PICTURE = "world", "png"
 

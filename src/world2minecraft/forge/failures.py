@@ -6,7 +6,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 
-from world2minecraft.errors import World2MinecraftError, one_line
+from world2minecraft.core.errors import World2MinecraftError, one_line
 
 
 def explained(error: BaseException) -> str:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 
-from world2minecraft.errors import ConflictError, DamagedFileError, OutputError
-from world2minecraft.files import read_json, write_json
+from world2minecraft.core.errors import ConflictError, DamagedFileError, OutputError
+from world2minecraft.core.files import read_json, write_json
 from world2minecraft.forge import saving
 from world2minecraft.forge.recovery import BASE_FILE, recover
 from world2minecraft.forge.snapshots import State, write_state

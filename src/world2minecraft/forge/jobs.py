@@ -11,7 +11,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Protocol
 
-from world2minecraft.errors import ConflictError, UnknownNameError, World2MinecraftError, one_line
+from world2minecraft.core.errors import (
+    ConflictError,
+    UnknownNameError,
+    World2MinecraftError,
+    one_line,
+)
 from world2minecraft.forge.time_left import TimeLeft
 
 SOONEST_S = 0.1  # More states a second are seen by nobody.

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 MAX_JSON_BYTES = 8 << 20  # 200,000 runs of a 64 M cell grid as text take 4 MB.
 MAX_JSON_DEPTH = 32  # Commands have at most five.

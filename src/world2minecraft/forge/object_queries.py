@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.edit.scene.boxes import object_named
 from world2minecraft.edit.scene.doubts import Doubt, find_doubts, ordered
 from world2minecraft.edit.scene.furnishing import ObjectClass

@@ -13,7 +13,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
-from world2minecraft.errors import World2MinecraftError
+from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.forge.failures import explained
 from world2minecraft.forge.photos import RunPhotos
 from world2minecraft.forge.requests import workshop_of

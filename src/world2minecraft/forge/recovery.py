@@ -13,9 +13,10 @@ from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 
+from world2minecraft.core.errors import ConflictError, DamagedFileError, InputError, OutputError
+from world2minecraft.core.types import Operation
 from world2minecraft.edit.scene import Line, SceneDraft
 from world2minecraft.edit.scene.journal import UNDO, SceneJournal, Step
-from world2minecraft.errors import ConflictError, DamagedFileError, InputError, OutputError
 from world2minecraft.forge.snapshots import (
     State,
     read_state,
@@ -23,7 +24,6 @@ from world2minecraft.forge.snapshots import (
     snapshot_paths,
     write_state,
 )
-from world2minecraft.types import Operation
 
 JOURNAL_FILE, BASE_FILE = "journal.bin", "base.npz"
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from starlette.requests import Request
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.forge.limits import json_of
 from world2minecraft.forge.workshop import Workshop
 

@@ -13,7 +13,7 @@ from typing import Self
 import uvicorn
 from starlette.types import ASGIApp
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.forge.app import build_app
 from world2minecraft.forge.captures import MOST_UPLOAD_BYTES, user_home
 from world2minecraft.forge.editor import Editor

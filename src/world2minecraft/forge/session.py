@@ -13,8 +13,9 @@ import zlib
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Operation
 from world2minecraft.edit.scene import Command, parse_command
-from world2minecraft.errors import UsageError
 from world2minecraft.forge.beside import TITLES, beside, copy_of
 from world2minecraft.forge.changes import change_of, preview_of
 from world2minecraft.forge.editor import Editor
@@ -22,7 +23,6 @@ from world2minecraft.forge.hub import Hub
 from world2minecraft.forge.jobs import Jobs
 from world2minecraft.forge.volumes import volume_of
 from world2minecraft.forge.wire import PROTOCOL
-from world2minecraft.types import Operation
 
 QUICK = frozenset({"set_cells", "move_object", "turn_objects", "delete_objects", "set_template"})
 QUICK_CELLS = 1 << 20  # In a larger grid the thread does these too.

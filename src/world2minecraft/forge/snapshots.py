@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_npz, write_npz
+from world2minecraft.core.types import OccupancyGrid, SceneObject
 from world2minecraft.edit.scene import Line, SceneDraft
 from world2minecraft.edit.scene.packing import pack_objects, unpack_objects
-from world2minecraft.errors import DamagedFileError
 from world2minecraft.exchange.room import GRID_ARRAYS
-from world2minecraft.files import read_npz, write_npz
-from world2minecraft.types import OccupancyGrid, SceneObject
 
 NOTHING_DONE = Line()
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from world2minecraft.errors import UsageError, World2MinecraftError
+from world2minecraft.core.errors import UsageError, World2MinecraftError
 from world2minecraft.forge.failures import explained
 from world2minecraft.forge.hub import Tab, as_text
 from world2minecraft.forge.limits import json_of

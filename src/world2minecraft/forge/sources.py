@@ -15,8 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, SceneObject
 from world2minecraft.edit.scene import objects_of
-from world2minecraft.errors import InputError
 from world2minecraft.exchange.objects import read_objects, read_placements
 from world2minecraft.exchange.occupancy import read_occupancy
 from world2minecraft.exchange.paper_forms import Center, read_any_centers, read_any_occ
@@ -25,7 +26,6 @@ from world2minecraft.exchange.rooms import read_rooms
 from world2minecraft.find import find_objects
 from world2minecraft.forge.centred import instances_at
 from world2minecraft.furnish import furnish
-from world2minecraft.types import Layout, ObjectInstance, OccupancyGrid, SceneObject
 
 RUN_FILES = ("room.npz", "objects.json", "placements.json")
 DEMO_FOLDER = Path(__file__).parent / "demo_room"

@@ -7,8 +7,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import InputError
-from world2minecraft.files import read_json
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.files import read_json
 from world2minecraft.forge.effort import read_effort
 from world2minecraft.forge.identity import folder_of, read_identity
 from world2minecraft.metrics.effort import (

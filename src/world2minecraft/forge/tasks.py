@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.build import BuildParameters
-from world2minecraft.files import write_bytes, write_json
+from world2minecraft.core.files import write_bytes, write_json
+from world2minecraft.core.progress import Progress
 from world2minecraft.making import make_from_plan, make_run
 from world2minecraft.parameters import Parameters, with_settings
 from world2minecraft.plans import read_roomplan
 from world2minecraft.prepare import scene_name
-from world2minecraft.progress import Progress
 from world2minecraft.rooms import generate_room, scan_room
 from world2minecraft.scan import describe_capture
 from world2minecraft.scan.plan_alone import plan_in

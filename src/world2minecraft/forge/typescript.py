@@ -13,9 +13,9 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from world2minecraft.core.errors import World2MinecraftError
+from world2minecraft.core.files import write_text
 from world2minecraft.edit.scene import COMMANDS
-from world2minecraft.errors import World2MinecraftError
-from world2minecraft.files import write_text
 from world2minecraft.forge.queries import QUERIES
 
 TARGET = Path(__file__).parent / "web" / "src" / "commands.ts"

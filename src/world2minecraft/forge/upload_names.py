@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
-from world2minecraft.errors import LimitError, UsageError
+from world2minecraft.core.errors import LimitError, UsageError
 
 MOST_FILES = 20_000  # Ten minutes of frames with depth and confidence.
 MOST_DEPTH = 12

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COLOURS, CLASS_COUNT, CLASS_NAMES
-from world2minecraft.types import Placement, SceneObject
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_COUNT, CLASS_NAMES
+from world2minecraft.core.types import Placement, SceneObject
 
 PROTOCOL = 1
 

@@ -11,9 +11,9 @@ import sys
 import threading
 from typing import IO, Any
 
+from world2minecraft.core.progress import Progress
+from world2minecraft.core.registry import Registry
 from world2minecraft.forge.jobs import said
-from world2minecraft.progress import Progress
-from world2minecraft.registry import Registry
 
 TASKS = Registry(
     "forge_task",

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import InputError, OutputError, UnknownNameError, UsageError
-from world2minecraft.files import read_json, write_json
+from world2minecraft.core.errors import InputError, OutputError, UnknownNameError, UsageError
+from world2minecraft.core.files import read_json, write_json
 from world2minecraft.forge.captures import MOST_UPLOAD_BYTES, CaptureFolder, Captures
 from world2minecraft.forge.comparing import truth_folder
 from world2minecraft.forge.editor import Editor

@@ -5,9 +5,9 @@ from itertools import combinations
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Placement
 from world2minecraft.furniture import template
-from world2minecraft.types import Placement
 
 DEEPEST_CELLS = 2  # A scan's noise and the cells that two things share; more is a real overlap.
 OWN_CELLS = "cells"

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN, SemanticClass
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 
 IGNORED, AGAINST, OWN, BEYOND = 0, 1, 2, 3
 MARGIN = 3  # Shift, slack and one more cell around the largest box that is tried.

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furnish.bounds import floor_under_m, within_rooms
 from world2minecraft.furnish.evidence import Evidence, evidence_of
 from world2minecraft.furnish.match import best_matches
@@ -11,7 +12,6 @@ from world2minecraft.furnish.parameters import FurnishParameters
 from world2minecraft.furnish.seeds import limits, reach_of
 from world2minecraft.furnish.trial import Bias, Scored
 from world2minecraft.furniture import Template, template, templates_of
-from world2minecraft.types import Layout, ObjectInstance, OccupancyGrid, Placement
 
 OWN_CELLS = "cells"
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 SHARES = (
     "min_iou",

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Alternative, Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furnish.bounds import floor_under_m
 from world2minecraft.furnish.crumbs import tidied
 from world2minecraft.furnish.evidence import OWN, Evidence, evidence_of
@@ -19,7 +20,6 @@ from world2minecraft.furnish.variants import Choice, choose, colour_of_cells, of
 from world2minecraft.furniture import template, templates_of
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
 from world2minecraft.furniture.seating import fit_seat, look_at, without_open_top
-from world2minecraft.types import Alternative, Layout, ObjectInstance, OccupancyGrid, Placement
 
 OWN_CELLS = "cells"
 HALF = 0.5

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.furnish.evidence import Evidence
 from world2minecraft.furniture import Template, raster
 from world2minecraft.furniture.overlap import overlaps

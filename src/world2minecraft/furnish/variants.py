@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furnish.evidence import OWN, Evidence
 from world2minecraft.furnish.trial import Bias, Scored, score_shifts
 from world2minecraft.furniture import Span, Template, template, variants_of
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.types import OccupancyGrid, Placement
 
 LOST_IOU = 0.02  # What another design may explain less: about the noise of a scan.
 SLACK_M = 0.04  # Half a cell: sizes are whole cells.

@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
-from world2minecraft.coordinates import block_axes_to_grid
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.coordinates import block_axes_to_grid
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture.own import (
     MAX_BLOCKS,
     MAX_KINDS,
@@ -24,7 +25,6 @@ from world2minecraft.furniture.own import (
 )
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.turn import SIDES, turn_volume
-from world2minecraft.types import BlockVolume
 
 SEATS = ("chair", "sofa", "bed")
 OPPOSITE = {"north": "south", "south": "north", "east": "west", "west": "east"}

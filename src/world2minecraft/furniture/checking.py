@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.furniture.raster import raster, size_in_cells
 from world2minecraft.furniture.template import Part, Template
 

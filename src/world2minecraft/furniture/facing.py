@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.furniture.seating import look_at
 
 SIDES = ((0, 1), (1, 1), (0, -1), (1, -1))  # (axis, sign) of the fronts at 0, 90, 180, 270 degrees.

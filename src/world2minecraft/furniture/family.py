@@ -7,8 +7,8 @@ materials (``reading.py``); the family, one value in ``families/``, makes of the
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from world2minecraft.core.registry import Registry
 from world2minecraft.furniture.template import Build, Design, Span
-from world2minecraft.registry import Registry
 
 _FOLDER = "world2minecraft.furniture.families"
 

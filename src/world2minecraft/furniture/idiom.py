@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from world2minecraft.core.types import Placement
 from world2minecraft.furniture.library import template
 from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Parameters, Template
-from world2minecraft.types import Placement
 
 PARTS_FROM = 6.0  # Blocks per metre from which parts of 8 cm are half a block thick and fit well.
 

@@ -10,10 +10,10 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
+from world2minecraft.core.registry import Registry
 from world2minecraft.furniture.own import own_files, read_own
 from world2minecraft.furniture.reading import read_design
 from world2minecraft.furniture.template import Template
-from world2minecraft.registry import Registry
 
 # Of templates that match equally well the first is taken: the plainer one.
 FIRST = (

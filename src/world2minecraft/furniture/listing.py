@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.furniture.template import Span, Template
 
 HEADINGS = {

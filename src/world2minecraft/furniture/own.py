@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
-from world2minecraft.errors import DamagedFileError, UsageError
-from world2minecraft.files import read_json
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.files import read_json
 from world2minecraft.furniture.look import Look
 from world2minecraft.furniture.materials import FIXED, Material, kinds, places_of
 from world2minecraft.furniture.reading import design_of

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.furniture.template import Parameters, Template
 
 MAX_CELLS = 8_000_000  # A box of 4 m at 0.02 m; more is a mistake in the size.

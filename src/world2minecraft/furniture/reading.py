@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
-from world2minecraft.errors import InputError, UnknownNameError
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.errors import InputError, UnknownNameError
 from world2minecraft.furniture.family import FAMILIES, Family
 from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.template import Span, Template

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.coordinates import turn_grid
+from world2minecraft.core.coordinates import turn_grid
 from world2minecraft.furniture.overlap import overlaps
 from world2minecraft.furniture.raster import raster
 from world2minecraft.furniture.template import Template

@@ -5,12 +5,12 @@ For pictures and checks of a design: what a look at it and a look for unstable b
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import block_to_room
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture.idiom import Idiom, block_size, laid
 from world2minecraft.furniture.template import Parameters, Template
 from world2minecraft.minecraft.rules.connections import connected
-from world2minecraft.types import BlockVolume
 
 ROOM = "minecraft:smooth_stone"
 

@@ -11,11 +11,11 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from world2minecraft.classes import OBJECT_CLASSES
-from world2minecraft.errors import UsageError
+from world2minecraft.core.classes import OBJECT_CLASSES
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import checks
 from world2minecraft.furniture.look import Look
 from world2minecraft.furniture.materials import Material
-from world2minecraft.types import checks
 
 Mount = Literal["floor", "wall", "ceiling", "any"]
 STALE = "; placements.json of another version is made anew by --from furnish"

@@ -12,8 +12,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from world2minecraft.coordinates import apply
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import FusedEvidence, GridEvidence, PointEvidence, Scan
 from world2minecraft.fuse.blocks import BLOCK_CELLS, MAX_DENSE, SIDE, Blocks
 from world2minecraft.fuse.grids import grid_gains
 from world2minecraft.fuse.kernels import (
@@ -30,8 +32,6 @@ from world2minecraft.fuse.kernels import (
 from world2minecraft.fuse.parameters import FuseParameters
 from world2minecraft.fuse.rays import free_rays
 from world2minecraft.fuse.settle import inherit, settle
-from world2minecraft.progress import Progress, silent
-from world2minecraft.types import FusedEvidence, GridEvidence, PointEvidence, Scan
 
 REACH_CELLS = 2  # A nudged point may leave its cell by one.
 ALL_SUB_CELLS = 64

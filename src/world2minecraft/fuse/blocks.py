@@ -8,9 +8,9 @@ with the space that was seen, and the many sums with the surface in it.
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT
-from world2minecraft.errors import CaptureError
-from world2minecraft.files import MAX_ARRAY_BYTES
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.files import MAX_ARRAY_BYTES
 
 SHIFT = 3
 SIDE = 1 << SHIFT  # 0.64 m at the paper's cell: half of a room's blocks hold no surface.

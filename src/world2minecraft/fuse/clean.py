@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import UNKNOWN, SemanticClass
-from world2minecraft.errors import UsageError
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import COMPLETED, OccupancyGrid
 from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.types import COMPLETED, OccupancyGrid
 
 MOST_HOLE_M = 10.0  # Wider than any room's floor has holes; closing takes the square of it.
 

@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import CLASS_COUNT, UNKNOWN
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import read_json
-from world2minecraft.types import COMPLETED, OBSERVED, FusedEvidence, OccupancyGrid
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.types import COMPLETED, OBSERVED, FusedEvidence, OccupancyGrid
 
 TABLES = Path(__file__).parent / "data" / "confidence.json"
 OCCUPIED_FEATURES = (

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, cell_centers_m
+from world2minecraft.core.coordinates import apply, cell_centers_m
+from world2minecraft.core.types import GridEvidence
 from world2minecraft.fuse.parameters import FuseParameters
-from world2minecraft.types import GridEvidence
 
 EDGE = 0.02  # Probabilities are kept off 0 and 1, so that one sure view cannot veto all others.
 LEAST_VOTE = 0.05  # Below, a cell is as good as free, and what it would be says nothing.

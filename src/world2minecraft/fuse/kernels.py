@@ -9,8 +9,8 @@ tests, which hold them against it.
 
 import numpy as np
 
+from world2minecraft.core.jit import njit
 from world2minecraft.fuse.blocks import BLOCK_CELLS, FACE_SUMS, FACES, MASK, SHIFT
-from world2minecraft.jit import njit
 
 
 @njit

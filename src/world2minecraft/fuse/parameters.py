@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 _ABOVE_0 = ("hit_log_odds", "limit_log_odds", "pose_m", "sure_m")
 _NOT_BELOW_0 = (

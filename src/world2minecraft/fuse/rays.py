@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from world2minecraft.core.jit import njit
 from world2minecraft.fuse.kernels import place_of
-from world2minecraft.jit import njit
 
 
 @njit

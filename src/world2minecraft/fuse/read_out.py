@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN, SemanticClass
-from world2minecraft.types import OBSERVED, UNSEEN, FusedEvidence, OccupancyGrid
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.types import OBSERVED, UNSEEN, FusedEvidence, OccupancyGrid
 
 
 def read_out(evidence: FusedEvidence) -> OccupancyGrid:

@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
+from world2minecraft.core.jit import njit
 from world2minecraft.fuse.blocks import FACES
-from world2minecraft.jit import njit
 
 PER_SIDE = 4  # Sub-cells along a cell's edge, as in SSCNet's rule.
 # More than the noise alone explains is let go as spill, because views err together; and never more

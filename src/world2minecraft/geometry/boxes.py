@@ -10,7 +10,7 @@ from itertools import permutations, product
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 
 SEARCH_CELLS = 4_000_000  # Above it one sweep is made: 48 would take seconds.
 

@@ -6,8 +6,8 @@ one: whichever changes fewest cells for each box that it saves. Boxes never come
 
 import numpy as np
 
+from world2minecraft.core.jit import njit
 from world2minecraft.geometry.boxes import join_pairs, partition
-from world2minecraft.jit import njit
 
 REACH = 2  # Cells between boxes that may be joined; a box over a wider gap changes the shape.
 MOST_BOXES = 600  # More are left as they are: each step looks at every pair of neighbours.

@@ -7,8 +7,8 @@ from itertools import product
 
 import numpy as np
 
+from world2minecraft.core.jit import njit
 from world2minecraft.geometry.boxes import partition
-from world2minecraft.jit import njit
 
 WORTH = 0.75  # A cover is taken where it has at most this share of a partition's boxes.
 LEAST_BOXES = 8  # With fewer boxes a partition is always taken: it needs no care where boxes meet.

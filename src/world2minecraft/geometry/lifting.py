@@ -8,8 +8,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from world2minecraft.jit import njit
-from world2minecraft.types import Camera
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
 
 UNDISTORT_ROUNDS = 8  # The fixed point of common lenses moves under 1e-4 px after five.
 

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, rotation_about_z
-from world2minecraft.errors import UnknownNameError, UsageError
-from world2minecraft.types import checks
+from world2minecraft.core.coordinates import apply, rotation_about_z
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.types import checks
 
 USUAL_SHAPE = (60, 60, 36)  # x right, y forward, z up: 60x36x60 as the papers write it
 USUAL_VOXEL_M = 0.08
@@ -97,7 +97,7 @@ def region_of(
             origin where None.
 
     Example:
-        >>> from world2minecraft.coordinates import look_at
+        >>> from world2minecraft.core.coordinates import look_at
         >>> pose = look_at(np.array([1.0, 2.0, 1.6]), np.array([5.0, 2.1, 1.2]))
         >>> region_of(pose).kind
         'axis'

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
 from world2minecraft.geometry.lifting import pixel_rays, project
-from world2minecraft.jit import njit
-from world2minecraft.types import Camera
 
 
 def pinhole_of(camera: Camera, width_px: int) -> Camera:

@@ -6,7 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft import __version__
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.files import write_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Scan
 from world2minecraft.exchange.layout import write_layouts
 from world2minecraft.exchange.objects import (
     read_objects,
@@ -18,15 +21,12 @@ from world2minecraft.exchange.paper import write_centers_json, write_occ_json
 from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.exchange.rooms import read_rooms
 from world2minecraft.exchange.scan import write_scan
-from world2minecraft.files import write_json
 from world2minecraft.joining.merging import Home, merged
 from world2minecraft.joining.moving import Run
 from world2minecraft.joining.placing import Placed, parse_place, place_runs, stated
 from world2minecraft.parameters import Parameters
-from world2minecraft.progress import Progress, silent
 from world2minecraft.run_folder import check_finished, check_writable
 from world2minecraft.steps import LATER_STEPS
-from world2minecraft.types import Scan
 
 MOST_RUNS = 50
 

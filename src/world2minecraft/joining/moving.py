@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, rotation_about_z, turn_grid
-from world2minecraft.types import Layout, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.core.coordinates import apply, rotation_about_z, turn_grid
+from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
 
 DECIMALS = 4  # As in the files of a run.
 

@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.joining.doors import Doorway, doorways_of
 from world2minecraft.joining.fits import Fit, agreement, fits, known_of, overlap_m2
 from world2minecraft.joining.moving import Move, Run, moved

@@ -9,10 +9,10 @@ others join through the entry point group ``world2minecraft.labeller``.
 
 from typing import Protocol
 
+from world2minecraft.core.registry import Registry
+from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 from world2minecraft.label.bare_walls import with_whole_walls, without_wall_guesses
 from world2minecraft.label.layouts import find_structure
-from world2minecraft.registry import Registry
-from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 __all__ = [
     "LABELLERS",

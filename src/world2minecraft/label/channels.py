@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT
-from world2minecraft.types import FusedEvidence, OccupancyGrid
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 
 KINDS = CLASS_COUNT - 1  # The classes of occupied cells, 1 to 11.
 ODDS_STEP = 0.05  # Log-odds a step of int8: -6 to 6 are -120 to 120.

@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import CLASS_COUNT, SemanticClass
+from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
+from world2minecraft.core.types import COMPLETED, UNSEEN, FusedEvidence, OccupancyGrid
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.label.channels import sight_of
 from world2minecraft.label.completion_net import CompletionModel
@@ -23,7 +24,6 @@ from world2minecraft.label.smoothing import smooth_labels
 from world2minecraft.label.storeys import find_storeys
 from world2minecraft.label.surface import surface_of
 from world2minecraft.label.votes import geometric_prior
-from world2minecraft.types import COMPLETED, UNSEEN, FusedEvidence, OccupancyGrid
 
 LEAST_CHANCE = 1e-4
 FIRST_THING = int(SemanticClass.CHAIR)

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT
-from world2minecraft.errors import DamagedFileError, first_line
-from world2minecraft.files import read_bytes
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.errors import DamagedFileError, first_line
+from world2minecraft.core.files import read_bytes
 from world2minecraft.label.channels import CHANNELS, Sight, network_input
 
 WEIGHTS = Path(__file__).parents[1] / "weights" / "completion.onnx"

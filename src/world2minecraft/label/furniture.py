@@ -3,7 +3,7 @@
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.label.components import Piece, find_pieces
 from world2minecraft.label.morphology import grown, plan_of

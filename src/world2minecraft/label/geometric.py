@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 from world2minecraft.label.backs import classes_with_backs
 from world2minecraft.label.furniture import label_furniture
 from world2minecraft.label.parameters import GeometricParameters
@@ -17,7 +18,6 @@ from world2minecraft.label.storeys import find_storeys
 from world2minecraft.label.straighten import Straightening
 from world2minecraft.label.structure import structure_of
 from world2minecraft.label.surface import surface_of
-from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 # How far a class may be trusted: the share of its cells that were right on generated rooms, objects
 # capped at 0.8, because real rooms hold more than the generator knows.

@@ -6,6 +6,7 @@ lintels were seen, and behind what stands before them.
 
 import numpy as np
 
+from world2minecraft.core.types import FusedEvidence, Layout, OccupancyGrid, Opening
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.label.morphology import grown
 from world2minecraft.label.openings import Gap
@@ -14,7 +15,6 @@ from world2minecraft.label.parameters import GeometricParameters
 from world2minecraft.label.storeys import find_storeys
 from world2minecraft.label.structure import Structure, Wall, structure_of
 from world2minecraft.label.surface import Surface, surface_of, turned
-from world2minecraft.types import FusedEvidence, Layout, OccupancyGrid, Opening
 
 ROOM_M2 = 1.0  # A closet; less is the depth of a wall between the two faces of a doorway.
 FLOOR_SHARE = 0.15  # Of a room's columns, its floor was seen in so many; out of a window, in none.

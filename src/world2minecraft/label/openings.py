@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.label.morphology import grown, opened
 from world2minecraft.label.parameters import StructureParameters, within

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.label.components import Piece
 from world2minecraft.label.morphology import grown, shrunk
 from world2minecraft.label.parameters import PieceParameters, PlateParameters, within

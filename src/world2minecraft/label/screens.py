@@ -8,7 +8,7 @@ from typing import cast
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.label.parameters import PieceParameters, within
 from world2minecraft.label.peaks import highest_peak

@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.types import COMPLETED, UNSEEN, OccupancyGrid
 from world2minecraft.label.relief import SOLID_M, Relief, relief_of
 from world2minecraft.label.storeys import Storey
 from world2minecraft.label.surface import Surface, turned
-from world2minecraft.types import COMPLETED, UNSEEN, OccupancyGrid
 
 MOVE_M = 0.02  # A place this far off its plane does not move into a layer where nothing was seen.
 

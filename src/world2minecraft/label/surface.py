@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.coordinates import cell_centers_m
+from world2minecraft.core.coordinates import cell_centers_m
+from world2minecraft.core.types import FusedEvidence, OccupancyGrid
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.types import FusedEvidence, OccupancyGrid
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,8 +14,8 @@ from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 from torch import Tensor, nn
 
-from world2minecraft.errors import DamagedFileError, InputError
-from world2minecraft.files import write_bytes
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.files import write_bytes
 from world2minecraft.learn.config import RunConfig, config_text, parse_config
 
 CONFIG, FACTS = "run", "facts"  # Keys of a file's texts.

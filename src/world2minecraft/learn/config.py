@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from world2minecraft.errors import DamagedFileError, UnknownNameError, UsageError
-from world2minecraft.files import plain_yaml, read_bytes, write_text
+from world2minecraft.core.errors import DamagedFileError, UnknownNameError, UsageError
+from world2minecraft.core.files import plain_yaml, read_bytes, write_text
 
 MAX_BYTES = 1 << 20
 

@@ -17,8 +17,8 @@ import onnxruntime
 import torch
 from torch import Tensor, nn
 
-from world2minecraft.errors import MissingExtraError, OutputError
-from world2minecraft.files import write_bytes
+from world2minecraft.core.errors import MissingExtraError, OutputError
+from world2minecraft.core.files import write_bytes
 from world2minecraft.learn.batch import OccInput
 from world2minecraft.occupy.network_file import OUTPUT, NetworkFacts
 

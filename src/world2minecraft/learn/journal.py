@@ -13,8 +13,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import write_text
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import write_text
 
 METRICS = "metrics.csv"
 HEADER = ("step", "name", "value")

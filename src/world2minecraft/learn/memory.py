@@ -12,7 +12,8 @@ import numpy as np
 import torch
 from torch import nn
 
-from world2minecraft.classes import UNKNOWN
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.dataset.formats.sscnet import downsampled
 from world2minecraft.dataset.importers.source import ImportedSet
 from world2minecraft.learn.config import GRIDS, RunConfig
@@ -24,7 +25,6 @@ from world2minecraft.learn.scenes import SceneFrame, assembled, lattice_of
 from world2minecraft.learn.scoring import MEMORY, of_scenes
 from world2minecraft.metrics.intervals import FrameScore
 from world2minecraft.metrics.protocols import count_scene
-from world2minecraft.progress import Progress, silent
 
 FINE = GRIDS["0.08"]
 

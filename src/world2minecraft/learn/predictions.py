@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
+from world2minecraft.core.files import array_names, read_npy, read_npz
 from world2minecraft.dataset.formats.unpickling import read_pickle
-from world2minecraft.errors import DamagedFileError, InputError, UnknownNameError
-from world2minecraft.files import array_names, read_npy, read_npz
 from world2minecraft.learn.config import GRIDS, Grid
 
 # How an array's axes lie: which of them are our x, y, z.

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, UNKNOWN
-from world2minecraft.coordinates import apply, turn_grid
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.coordinates import apply, turn_grid
 from world2minecraft.metrics.intervals import FrameScore
 from world2minecraft.metrics.protocols import KnownCells, ProtocolCounts, count_scene
 

@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.dataset.importers.embodied import SceneSet
 from world2minecraft.dataset.importers.source import ImportedSet
-from world2minecraft.errors import InputError, UsageError
 from world2minecraft.learn.config import Grid
 from world2minecraft.learn.data.cache import Frames
 from world2minecraft.learn.data.frames import known_cells
@@ -26,7 +27,6 @@ from world2minecraft.metrics.protocols import (
     count_scene,
     protocol_named,
 )
-from world2minecraft.progress import Progress, silent
 
 SCENES = "embodied scenes"  # The scene level of ``embodied``, beside its frames.
 MEMORY = "embodied memory"  # The same of a network that fuses frames by itself.

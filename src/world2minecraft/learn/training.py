@@ -28,9 +28,11 @@ import torch
 from torch import nn
 
 from world2minecraft import __version__
+from world2minecraft.core.errors import ConflictError, DamagedFileError, UsageError
+from world2minecraft.core.files import write_json
+from world2minecraft.core.locks import Lock
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.dataset.importers import open_occupancy
-from world2minecraft.errors import ConflictError, DamagedFileError, UsageError
-from world2minecraft.files import write_json
 from world2minecraft.learn.checkpoints import (
     load_checkpoint,
     load_weights,
@@ -54,8 +56,6 @@ from world2minecraft.learn.validation import (
     said_labels,
     validated,
 )
-from world2minecraft.lock import Lock
-from world2minecraft.progress import Progress, silent
 
 RUN, FACTS, SCORES = "run.yaml", "run.json", "scores.json"
 LAST_SCORES = "scores_last.json"  # Of the last step's weights, where somebody asks for them.

@@ -8,12 +8,12 @@ import numpy as np
 import torch
 from torch import nn
 
-from world2minecraft.errors import MissingExtraError
+from world2minecraft.core.errors import MissingExtraError
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.learn.config import RunConfig
 from world2minecraft.learn.data.batches import ordered_batches
 from world2minecraft.learn.data.cache import Frames
 from world2minecraft.metrics.occupancy import OccupancyCounts, count_occupancy
-from world2minecraft.progress import Progress, silent
 
 
 def precision_here(precision: str, device: torch.device) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 import onnx
 from onnx import numpy_helper
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 
 KINDS = ("float", "half", "int8")
 SMALL = 64  # Weights of fewer numbers are not worth a node.

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from world2minecraft.types.edit import COUNTED
+from world2minecraft.core.types.edit import COUNTED
 
 IDLE_AFTER_S = 10.0  # Who does nothing for so long has stopped to work.
 # The paper's table, means of 15 scenes: from nothing, and from its reconstruction.

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.metrics.occupancy import OccupancyCounts
 from world2minecraft.metrics.protocols import ProtocolCounts
 

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from world2minecraft.classes import CLASS_COUNT, SemanticClass
+from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
 from world2minecraft.metrics.occupancy import ratio
 
 MATCH_DISTANCE_M = 0.3  # The rule; less than half a chair.

@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
+from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
 
 TABLE_SHAPE = (CLASS_COUNT, CLASS_COUNT)
 

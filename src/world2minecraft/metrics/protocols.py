@@ -15,8 +15,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.metrics.occupancy import OccupancyCounts, count_occupancy
 
 

@@ -6,8 +6,8 @@ things meet is asked of their parts.
 
 import numpy as np
 
+from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import template
-from world2minecraft.types import OccupancyGrid, Placement
 
 OWN_CELLS = "cells"
 

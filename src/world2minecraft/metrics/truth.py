@@ -8,12 +8,12 @@ which SSCNet made its labels decides, as in the paper's data.
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, UNKNOWN
-from world2minecraft.coordinates import invert_rigid
-from world2minecraft.jit import njit
-from world2minecraft.types import UNSEEN
-from world2minecraft.types.checks import labels as check_labels
-from world2minecraft.types.checks import transform
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import UNSEEN
+from world2minecraft.core.types.checks import labels as check_labels
+from world2minecraft.core.types.checks import transform
 
 EMPTY_SHARE = 0.95  # SSCNet: a cell with more of it empty or unknown is not occupied.
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.jit import njit
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.nbt import COMPOUND, INT, LIST, NbtReader, write_nbt
 from world2minecraft.minecraft.schematics.unlabelled import MISSHAPEN
 

@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from world2minecraft.errors import LimitError
+from world2minecraft.core.errors import LimitError
+from world2minecraft.core.types import AIR
 from world2minecraft.minecraft.rules.supports import STEPS
 from world2minecraft.minecraft.rules.traits import traits_of
 from world2minecraft.minecraft.states import complete, parse_state
-from world2minecraft.types import AIR
 
 MOST_STATES = 1 << 16  # A volume's states are uint16.
 _NONE = np.empty(0, np.int32)

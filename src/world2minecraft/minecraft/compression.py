@@ -4,7 +4,7 @@ import struct
 import zlib
 from pathlib import Path
 
-from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.core.errors import DamagedFileError, LimitError
 
 MAX_BYTES = 136 << 20  # Unpacked: 67 million blocks in two bytes each.
 _AT_ONCE = 1 << 20

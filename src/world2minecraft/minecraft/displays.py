@@ -15,13 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.errors import UsageError
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.minecraft.entities import entity_tags
 from world2minecraft.minecraft.nbt import Float
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.versions import GameVersion
-from world2minecraft.types import BlockVolume, Entity
 
 BLOCK_DISPLAY = "minecraft:block_display"
 FIRST_VERSION = 3337  # 1.19.4, the first game with display entities.

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.types import Entity
 from world2minecraft.minecraft.nbt import Float
-from world2minecraft.types import Entity
 
 
 def entity_nbt(entity: Entity, number: int) -> dict[str, Any]:

@@ -7,11 +7,11 @@ they could not carry; ``write_blocks`` itself counts the labels, which no format
 from pathlib import Path
 from typing import Literal, Protocol
 
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.registry import Registry
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.file_format import FileFormat, WriteOptions
 from world2minecraft.minecraft.losses import Losses
-from world2minecraft.registry import Registry
-from world2minecraft.types import BlockVolume
 
 LABELS = "labels of blocks (class and object)"  # What no format of the game holds.
 FORMATS = Registry(

@@ -12,11 +12,11 @@ from importlib.resources import files
 
 import numpy as np
 
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.game_data import count_lost_data
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.states import BlockState, parse_state
 from world2minecraft.minecraft.versions import GameVersion, name_in_version, new_names
-from world2minecraft.types import BlockVolume
 
 FIRST_1_14 = 1952  # Its first release; the names changed in snapshots before.
 FIRST_1_16 = 2566

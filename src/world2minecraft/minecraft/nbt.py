@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.core.errors import DamagedFileError, LimitError
 from world2minecraft.minecraft.compression import MAX_BYTES, pack_gzip, unpack
 from world2minecraft.minecraft.nbt_tags import (
     BYTE,

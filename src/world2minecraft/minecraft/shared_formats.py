@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.file_format import FileFormat
 from world2minecraft.minecraft.losses import Losses
-from world2minecraft.types import BlockVolume
 
 if TYPE_CHECKING:
     from world2minecraft.minecraft.file_format import WriteOptions

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from world2minecraft.core.types import BlockEntity
 from world2minecraft.minecraft.nbt import Byte
-from world2minecraft.types import BlockEntity
 
 FIRST_TWO_SIDES = 3463  # 1.20.
 FIRST_NBT_LINES = 4325  # 1.21.5.

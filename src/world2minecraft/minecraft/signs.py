@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from textwrap import wrap
 from typing import Any
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockEntity
 from world2minecraft.minecraft.nbt import Byte
-from world2minecraft.types import BlockEntity
 
 SIGN = "minecraft:sign"
 LINES = 4

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.shapes import boxes_of
-from world2minecraft.types import BlockVolume
 
 PLAYER_LAYERS = 2  # A player is 1.8 blocks high.
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraft.blocks import block_table
 
 MAX_TEXT = 1000  # The longest state of the game has about 150 characters.

@@ -12,10 +12,10 @@ from typing import Any, Literal
 
 import numpy as np
 
+from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.nbt import Byte, Float
 from world2minecraft.minecraft.rules.attached import named_block, naming
 from world2minecraft.minecraft.states import BlockState, parse_state
-from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
 Properties = dict[str, str]
 SIDES = ("east", "north", "west", "south")  # Counter-clockwise.

@@ -6,7 +6,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 
 DEFAULT_VERSION = "1.20.1"
 

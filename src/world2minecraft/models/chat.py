@@ -15,7 +15,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Protocol
 
-from world2minecraft.errors import ServerError, UsageError
+from world2minecraft.core.errors import ServerError, UsageError
 from world2minecraft.models.chat_budget import Ledger, price_of, read_prices
 from world2minecraft.models.chat_endpoints import endpoint_of
 from world2minecraft.models.chat_messages import Question, Reply, Turn

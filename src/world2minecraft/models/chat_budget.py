@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import BudgetError, DamagedFileError, UsageError
-from world2minecraft.files import plain_yaml, read_bytes
+from world2minecraft.core.errors import BudgetError, DamagedFileError, UsageError
+from world2minecraft.core.files import plain_yaml, read_bytes
 from world2minecraft.models.chat_messages import Question, Reply
 
 PRICES_FILE = Path(__file__).with_name("chat_prices.yaml")

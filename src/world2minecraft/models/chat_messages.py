@@ -10,7 +10,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 ROLES = ("system", "user", "assistant")
 PICTURE_KINDS = ("image/jpeg", "image/png", "image/webp")

@@ -11,14 +11,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import (
+from world2minecraft.core.errors import (
     DamagedFileError,
     InputError,
     OutputError,
     ServerError,
     UsageError,
 )
-from world2minecraft.files import read_bytes
+from world2minecraft.core.files import read_bytes
 from world2minecraft.models.chat_messages import Question, Reply
 from world2minecraft.models.chat_wire import (
     BusyServerError,

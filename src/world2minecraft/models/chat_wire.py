@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from world2minecraft.errors import MissingExtraError, ServerError
+from world2minecraft.core.errors import MissingExtraError, ServerError
 from world2minecraft.models.chat_budget import CHARACTERS_A_TOKEN, estimated_tokens
 from world2minecraft.models.chat_endpoints import NO_KEY, Endpoint
 from world2minecraft.models.chat_messages import Question, Reply

@@ -8,10 +8,10 @@ may be helped by networks that vote for classes (``OccupyParameters``).
 from collections.abc import Iterator
 from typing import Protocol
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.registry import Registry
+from world2minecraft.core.types import GridEvidence, PointEvidence, Scan
 from world2minecraft.occupy.parameters import OccupyParameters
-from world2minecraft.registry import Registry
-from world2minecraft.types import GridEvidence, PointEvidence, Scan
 
 __all__ = ["PREDICTORS", "OccupyParameters", "Predictor", "notes_of", "predictor"]
 

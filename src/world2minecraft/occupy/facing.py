@@ -6,9 +6,9 @@ its neighbours, as far as the surface goes on without a jump. Squares at jumps h
 
 import numpy as np
 
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
 from world2minecraft.geometry.lifting import pixel_rays
-from world2minecraft.jit import njit
-from world2minecraft.types import Camera
 
 SQUARES_WIDE = 160  # 4 px at 640: the mean of 16 pixels, and 16 px from side to side.
 REACH = 2  # Squares to either side.

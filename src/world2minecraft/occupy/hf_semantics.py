@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, first_line
+from world2minecraft.core.errors import DamagedFileError, InputError, first_line
 from world2minecraft.models import hub
 from world2minecraft.models.pictures import prepared
 from world2minecraft.models.single_thread import single_thread

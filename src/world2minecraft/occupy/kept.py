@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import InputError, OutputError
-from world2minecraft.files import read_npz, write_npz
-from world2minecraft.jit import user_cache_dir
+from world2minecraft.core.errors import InputError, OutputError
+from world2minecraft.core.files import read_npz, write_npz
+from world2minecraft.core.jit import user_cache_dir
 
 FOLDER = "semantics"
 MOST_BYTES = 1 << 30  # Some 5,000 pictures.

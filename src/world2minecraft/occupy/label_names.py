@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES, class_id
-from world2minecraft.errors import DamagedFileError, UnknownNameError
-from world2minecraft.files import plain_yaml, read_bytes
+from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, class_id
+from world2minecraft.core.errors import DamagedFileError, UnknownNameError
+from world2minecraft.core.files import plain_yaml, read_bytes
 
 TABLE = Path(__file__).parent / "data" / "label_names.yaml"
 NOTHING = "nothing"  # In place of a class: outdoor things, which vote for none.

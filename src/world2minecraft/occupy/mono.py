@@ -13,9 +13,10 @@ import numpy as np
 from PIL import Image
 from scipy import ndimage
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.coordinates import apply, invert_rigid
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.coordinates import apply, invert_rigid
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera, GridEvidence, Scan, View
 from world2minecraft.geometry.lifting import lift_depth, project
 from world2minecraft.geometry.region import (
     USUAL_VOXEL_M,
@@ -25,7 +26,6 @@ from world2minecraft.geometry.region import (
 )
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
 from world2minecraft.occupy.network_file import NetworkFacts, OccupancyNetwork
-from world2minecraft.types import Camera, GridEvidence, Scan, View
 
 SHIPPED = Path(__file__).parents[1] / "weights" / "mono.onnx"
 NEAREST_M = 0.1  # Cells nearer to the camera's plane are not in the picture.

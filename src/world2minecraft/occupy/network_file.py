@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 import onnxruntime
 
-from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES
-from world2minecraft.errors import DamagedFileError, first_line
-from world2minecraft.files import read_bytes
+from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES
+from world2minecraft.core.errors import DamagedFileError, first_line
+from world2minecraft.core.files import read_bytes
 from world2minecraft.geometry.region import KINDS
 
 CONTRACT = "occupancy-1"

@@ -9,8 +9,8 @@ from typing import Protocol
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
-from world2minecraft.registry import Registry
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.registry import Registry
 
 
 class Segmenter(Protocol):

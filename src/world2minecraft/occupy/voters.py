@@ -8,15 +8,15 @@ for nothing that we know is not voted for.
 import numpy as np
 from PIL import Image
 
-from world2minecraft.classes import CLASS_COUNT
-from world2minecraft.coordinates import apply, invert_rigid
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.coordinates import apply, invert_rigid
+from world2minecraft.core.types import View
 from world2minecraft.occupy.depth import Voter
 from world2minecraft.occupy.kept import kept, key_of
 from world2minecraft.occupy.label_names import TABLE, label_classes, read_table
 from world2minecraft.occupy.mono import MonoPredictor
 from world2minecraft.occupy.parameters import OccupyParameters
 from world2minecraft.occupy.segmenters import Segmenter, segmenter
-from world2minecraft.types import View
 
 SHOWN_NAMES = 12  # Of those that no table holds.
 FULL = 255  # A whole vote, as it is kept.

@@ -12,9 +12,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from world2minecraft.classes import CLASS_COLOURS, OBJECT_CLASSES, UNKNOWN
-from world2minecraft.coordinates import grid_to_block_axes
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.classes import CLASS_COLOURS, OBJECT_CLASSES, UNKNOWN
+from world2minecraft.core.coordinates import grid_to_block_axes
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import AIR, BlockVolume, Camera, OccupancyGrid
 from world2minecraft.exchange.room import read_room
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
 from world2minecraft.paper.walked import views_of_walk
@@ -29,7 +30,6 @@ from world2minecraft.render.views.turntable import OPEN_ELEVATION_DEG
 from world2minecraft.report.placed import PlacedFrame, judge_capture_of, placed_frames, used_by
 from world2minecraft.report.scene import read_built
 from world2minecraft.scan.images import read_colour
-from world2minecraft.types import AIR, BlockVolume, Camera, OccupancyGrid
 
 VIEWS, STEPS = 3, 6  # Rows, and pictures of a walk.
 CELL_PX = (480, 360)

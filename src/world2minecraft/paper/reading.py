@@ -8,8 +8,8 @@ from typing import Any
 
 import yaml
 
-from world2minecraft.errors import DamagedFileError, UnknownNameError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.errors import DamagedFileError, UnknownNameError
+from world2minecraft.core.files import read_bytes
 from world2minecraft.paper.values import Lack, Ours, PaperRow, PaperTable
 
 TABLES = Path(__file__).with_name("tables")

@@ -4,18 +4,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
-from world2minecraft.errors import UsageError
-from world2minecraft.plans.colours import STRUCTURE, Colour
-from world2minecraft.plans.furniture import OWN_CELLS
-from world2minecraft.plans.outlines import PlacedRoom
-from world2minecraft.types import (
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import (
     OBSERVED,
     UNSEEN,
     ObjectInstance,
     OccupancyGrid,
     Placement,
 )
+from world2minecraft.plans.colours import STRUCTURE, Colour
+from world2minecraft.plans.furniture import OWN_CELLS
+from world2minecraft.plans.outlines import PlacedRoom
 
 MOST_CELLS = 400_000_000
 PAD = 3  # Cells around all rooms: a wall, and nothing known behind it.

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.types import ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.exchange.roomplan import CapturedPlan, PlanSurface
 from world2minecraft.label.morphology import grown
 from world2minecraft.plans.canvas import Canvas
@@ -17,7 +18,6 @@ from world2minecraft.plans.colours import DOOR
 from world2minecraft.plans.furniture import OWN_CELLS
 from world2minecraft.plans.outlines import PlacedRoom, placed_rooms
 from world2minecraft.plans.standing import stand
-from world2minecraft.types import ObjectInstance, OccupancyGrid, Placement
 
 REACH_M = 0.20  # How far a wall's cells may lie from the line of an opening in it.
 BEYOND_M = 0.35  # Past the wall that an opening is in: there the next room has begun.

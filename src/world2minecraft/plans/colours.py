@@ -3,7 +3,7 @@
 They part furniture from floor and walls, which one colour of wood for all would not.
 """
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 
 Colour = tuple[int, int, int]
 STRUCTURE: dict[int, Colour] = {

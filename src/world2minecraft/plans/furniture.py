@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.exchange.roomplan import PlanObject
 
 CHAIR, BED, SOFA = SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA

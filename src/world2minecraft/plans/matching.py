@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.types import FusedEvidence
 from world2minecraft.exchange.roomplan import CapturedPlan
 from world2minecraft.label.morphology import grown
 from world2minecraft.metrics.layout import inside_polygon
 from world2minecraft.plans.outlines import moved_plan, placed_rooms, straightened
-from world2minecraft.types import FusedEvidence
 
 BAND_M = (0.4, 2.0)  # Of the heights at which walls are looked for.
 UPRIGHT_SHARE = 0.35  # Of a column's layers in that band: a wall half hidden, or seen through.

@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, rotation_about_z
+from world2minecraft.core.coordinates import apply, rotation_about_z
+from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.exchange.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
 from world2minecraft.plans.furniture import class_of
-from world2minecraft.types import Layout, LayoutObject, Opening
 
 CORNER_M = 0.5  # Walls whose ends are nearer meet in a corner.
 USUAL_HEIGHT_M = 2.5  # Where a plan has a floor and no wall.

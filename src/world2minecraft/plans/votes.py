@@ -9,12 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, SemanticClass
-from world2minecraft.coordinates import cell_centers_m
+from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
+from world2minecraft.core.coordinates import cell_centers_m
+from world2minecraft.core.types import FusedEvidence, Layout, Opening
 from world2minecraft.exchange.roomplan import CapturedPlan, PlanObject
 from world2minecraft.plans.furniture import class_of
 from world2minecraft.plans.outlines import PlacedRoom, placed_rooms
-from world2minecraft.types import FusedEvidence, Layout, Opening
 
 EDGE_M = 0.02
 IN_WALL_M = (-0.02, 0.15)  # Behind a wall's face: glass and leaves stand back.

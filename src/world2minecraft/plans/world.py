@@ -9,22 +9,22 @@ from typing import Any
 import numpy as np
 
 from world2minecraft import __version__
-from world2minecraft.archive import AnyPath
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.files import write_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Layout, Scan
 from world2minecraft.exchange.layout import write_layouts
 from world2minecraft.exchange.objects import write_objects, write_placements
 from world2minecraft.exchange.paper import write_centers_json, write_occ_json
 from world2minecraft.exchange.room import write_room
 from world2minecraft.exchange.roomplan import CapturedPlan, read_roomplan
 from world2minecraft.exchange.scan import write_scan
-from world2minecraft.files import write_json
 from world2minecraft.furnish.settling import settle
 from world2minecraft.parameters import Parameters
 from world2minecraft.plans.cells import PlanCells, cells_of_plan
 from world2minecraft.plans.outlines import layouts_of, placed_rooms, straightened
-from world2minecraft.progress import Progress, silent
 from world2minecraft.run_folder import check_writable
 from world2minecraft.steps import LATER_STEPS
-from world2minecraft.types import Layout, Scan
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.types import Camera
 from world2minecraft.posing.lenses import normalised
-from world2minecraft.types import Camera
 
 CORNERS = ((0.2, 0.2), (0.8, 0.2), (0.2, 0.8), (0.8, 0.8))  # Of the picture,
 DEPTHS = (0.6, 1.6)  # and how far, by the middle depth: near for the place, far for the turn.

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.types import Camera
 from world2minecraft.posing.anchors import ANCHORS, anchor_pixels, anchored
 from world2minecraft.posing.colmap import colmap
 from world2minecraft.posing.features import Features, unit_px
 from world2minecraft.posing.lenses import Lens, each_camera, from_colmap, to_colmap
 from world2minecraft.posing.links import Links
 from world2minecraft.posing.parameters import PosingParameters
-from world2minecraft.types import Camera
 
 LEAST_DEG = 1.5  # Rays that meet at less tell no depth.
 LEAST_POINTS = 20  # A photo that sees fewer is not held by them.

@@ -4,7 +4,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Camera, SparseScene
+from world2minecraft.core.types.photos import PhotoStream
 from world2minecraft.posing import reasons
 from world2minecraft.posing.bundle import Solved, solved
 from world2minecraft.posing.colmap import PLACE
@@ -22,9 +25,6 @@ from world2minecraft.posing.parameters import PosingParameters
 from world2minecraft.posing.placing import epipolar_px, outliers, placed_anew
 from world2minecraft.posing.similarity import Similarity, align_similarity
 from world2minecraft.posing.steps import Steps
-from world2minecraft.progress import Progress, silent
-from world2minecraft.types import Camera, SparseScene
-from world2minecraft.types.photos import PhotoStream
 
 LEAST_POINTS = 50  # Fewer say nothing of poses.
 LEAST_MOUNTED = 12  # Poses for the place of another sensor on the device to be sought.

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
-from world2minecraft.errors import CaptureError, MissingExtraError
+from world2minecraft.core.errors import CaptureError, MissingExtraError
 
 PLACE = "photos"  # What an error names: a stream of photos has no path.
 

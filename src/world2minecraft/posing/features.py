@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.errors import CaptureError, LimitError
+from world2minecraft.core.errors import CaptureError, LimitError
+from world2minecraft.core.types import Camera
+from world2minecraft.core.types.photos import Photo, PhotoStream
 from world2minecraft.posing.colmap import PLACE, colmap
 from world2minecraft.posing.parameters import PosingParameters
 from world2minecraft.posing.steps import Steps
-from world2minecraft.types import Camera
-from world2minecraft.types.photos import Photo, PhotoStream
 
 MOST_PHOTOS = 3000  # 1.5 GB of features at most would be too much; 3000 photos have 1.
 PEAK = 0.0067  # COLMAP's own threshold, for images of 0 to 1.

@@ -4,6 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import SparseScene
+from world2minecraft.core.types.photos import PhotoStream
 from world2minecraft.posing import reasons
 from world2minecraft.posing.bundle import LEAST_POINTS, Solved, solved
 from world2minecraft.posing.features import Features, gather
@@ -15,9 +18,6 @@ from world2minecraft.posing.outcome import middle_depth, scene
 from world2minecraft.posing.parameters import PosingParameters
 from world2minecraft.posing.similarity import Similarity
 from world2minecraft.posing.steps import Steps
-from world2minecraft.progress import Progress, silent
-from world2minecraft.types import SparseScene
-from world2minecraft.types.photos import PhotoStream
 
 MIDDLE_DEPTH = 2.5  # What is seen in rooms is about so many metres away; only a start for scale.
 OTHER_FOCALS = (0.5, 1.2)  # By the longer side: wide lenses of phones, and long ones.

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.types import Camera
 from world2minecraft.posing.features import Features
-from world2minecraft.types import Camera
 
 GUESS = 0.8  # Focal length by the longer side: phones 0.7 to 0.9, webcams and Kinects 0.8 to 0.9.
 SAME = 0.02  # Focal lengths nearer than that are one lens that breathes with its focus.

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from world2minecraft.core.types import Camera
 from world2minecraft.posing.colmap import colmap
 from world2minecraft.posing.features import Features
 from world2minecraft.posing.lenses import Lens, to_colmap
 from world2minecraft.posing.matching import Pair, likeness, matches, threads, worth_matching
 from world2minecraft.posing.parameters import PosingParameters
 from world2minecraft.posing.steps import Steps
-from world2minecraft.types import Camera
 
 TRIALS = 2000  # Of RANSAC: finds a geometry that a fifth of the matches obey.
 NEAR = 0.004  # Of the longer side: matches of larger pictures lie that far off, 4 px at least.

@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.types import Camera
 from world2minecraft.posing.colmap import colmap
 from world2minecraft.posing.features import Features
 from world2minecraft.posing.lenses import LONGEST, MOST_BENT, SHORTEST, Lens, from_colmap, to_colmap
 from world2minecraft.posing.links import Links
 from world2minecraft.posing.parameters import PosingParameters
 from world2minecraft.posing.steps import Steps
-from world2minecraft.types import Camera
 
 Model = dict[int, tuple[np.ndarray, Camera]]
 

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from world2minecraft.machine import usable_cores
+from world2minecraft.core.machine import usable_cores
 from world2minecraft.posing.features import Features
 from world2minecraft.posing.parameters import PosingParameters
 from world2minecraft.posing.steps import Steps

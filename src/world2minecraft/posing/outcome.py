@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.types import Camera, SparseScene
 from world2minecraft.posing.bundle import Solved
 from world2minecraft.posing.features import Features
 from world2minecraft.posing.similarity import Similarity
-from world2minecraft.types import Camera, SparseScene
 
 DIGITS = 9  # What is left of rounding in sums; a nanometre.
 

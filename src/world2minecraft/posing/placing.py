@@ -2,13 +2,13 @@
 
 import numpy as np
 
+from world2minecraft.core.types import Camera
 from world2minecraft.posing.bundle import Solved
 from world2minecraft.posing.colmap import colmap
 from world2minecraft.posing.features import Features, unit_px
 from world2minecraft.posing.lenses import normalised, to_colmap
 from world2minecraft.posing.links import Links
 from world2minecraft.posing.parameters import PosingParameters
-from world2minecraft.types import Camera
 
 LEAST_SEEN = 30  # Points that a pose found anew must agree with; COLMAP's own least.
 

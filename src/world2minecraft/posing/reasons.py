@@ -4,11 +4,11 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera
 from world2minecraft.posing.colmap import PLACE
 from world2minecraft.posing.features import Features
 from world2minecraft.posing.links import Links
-from world2minecraft.types import Camera
 
 FEW_FEATURES = 60  # A photo with fewer shows a bare wall, or is out of focus.
 CHANCE = 6  # So many features match by chance.

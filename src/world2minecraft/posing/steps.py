@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from world2minecraft.progress import Progress
+from world2minecraft.core.progress import Progress
 
 STAGE = "poses"
 

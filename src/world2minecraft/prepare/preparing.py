@@ -5,20 +5,21 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import (
+from world2minecraft.core.errors import (
     CaptureError,
     DamagedFileError,
     InputError,
     UnknownNameError,
     UsageError,
 )
-from world2minecraft.files import read_json, write_json
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import SparseScene, View
 from world2minecraft.parameters import Parameters
 from world2minecraft.posing import check_poses, find_poses
 from world2minecraft.prepare.one_photo import is_one_photo, prepare_photo
 from world2minecraft.prepare.pictures import depth_views, stereo_views
 from world2minecraft.prepare.scaling import normalised, scaled_by_depth, scaled_capture
-from world2minecraft.progress import Progress, silent
 from world2minecraft.run_folder import check_writable, hash_capture
 from world2minecraft.scan.frames import Capture
 from world2minecraft.scan.images import read_header
@@ -28,7 +29,6 @@ from world2minecraft.scan.photos import CapturePhotos, judged_photos
 from world2minecraft.scan.plain import write_plain
 from world2minecraft.scan.sources import find_capture
 from world2minecraft.stereo import depth_maps, depth_model, network_maps
-from world2minecraft.types import SparseScene, View
 
 FOLDER = "capture"
 STAMP = "prepared.json"

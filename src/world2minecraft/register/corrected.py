@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.types import Corrections, Scan, View, ViewStream
+from world2minecraft.core.types import Corrections, Scan, View, ViewStream
 
 
 @dataclass(eq=False, repr=False)

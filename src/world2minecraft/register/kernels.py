@@ -8,7 +8,7 @@ weighted mean of its observations, so every sum is that of differences from the 
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 
 UNKNOWNS = 7
 

@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Corrections, Scan, View
 from world2minecraft.geometry.surface import Surface, collect_surface
-from world2minecraft.progress import Progress, silent
 from world2minecraft.register.kernels import surfel_means
 from world2minecraft.register.parameters import RegisterParameters
 from world2minecraft.register.passes import (
@@ -26,7 +27,6 @@ from world2minecraft.register.passes import (
     surfels_of,
     without_scale,
 )
-from world2minecraft.types import Corrections, Scan, View
 
 STAGE = "register"
 JUDGED_GAP_M = 0.10

@@ -8,7 +8,7 @@ and then each pixel goes on alone from the box that was reached.
 
 import numpy as np
 
-from world2minecraft.jit import inlined, lean
+from world2minecraft.core.jit import inlined, lean
 from world2minecraft.render.ray import OUTSIDE, steep, within
 from world2minecraft.render.tables import FULL, NO_FACE
 

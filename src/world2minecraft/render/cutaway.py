@@ -13,10 +13,10 @@ from itertools import pairwise
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.render.standing import entities_within, kept_entities, moved_entities
-from world2minecraft.types import BlockVolume
 
 RIM_M = 0.25  # So much of a near wall stays, to show where it is.
 HUNG_M = 0.12  # What hangs on a near wall reaches this far into the room,

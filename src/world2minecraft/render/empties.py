@@ -7,7 +7,7 @@ bundle of rays that leaves a box by one of its faces can have met nothing inside
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.render.trace import fill_distances
 
 MOST_CELLS = 96  # A side; a box of the open sky need not be larger.

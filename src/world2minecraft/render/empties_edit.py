@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.render.empties import MOST_CELLS, empty_boxes
 
 _ORPHAN = -9  # Air that has no box for a moment.

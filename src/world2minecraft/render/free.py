@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.jit import lean
+from world2minecraft.core.jit import lean
 from world2minecraft.render.ray import begin, leave_cell, ray_of_pixel, steep
 from world2minecraft.render.tables import SceneTables
 

@@ -10,7 +10,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.render.bake import AIR, Baker, kind_of
 from world2minecraft.render.elements import LookSource
 from world2minecraft.render.empties_edit import edited_boxes
@@ -19,7 +20,6 @@ from world2minecraft.render.looks import OwnLooks
 from world2minecraft.render.scene import BlockScene, bake_model, bake_scene, with_looks
 from world2minecraft.render.standing_boxes import GuestLists, list_guests, overhanging
 from world2minecraft.render.tables import BOXES, owner_of_cell
-from world2minecraft.types import BlockVolume
 
 _OWNER = 2  # Of what the baker keeps of an element.
 

@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.render.arrays import PixelArrays, draw_into, pixel_arrays
 from world2minecraft.render.free import crossed_air
 from world2minecraft.render.lamps import DAY, Paper, lamp_of
 from world2minecraft.render.light import LookLight
 from world2minecraft.render.scene import BlockScene, prepare_scene
-from world2minecraft.types import BlockVolume, Camera
 
 OUTPUTS = ("colour", "depth", "semantic", "instance", "opaque", "normal", "free")
 DEFAULT_OUTPUTS = ("colour", "depth", "semantic", "instance")

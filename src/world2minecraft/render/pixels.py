@@ -7,7 +7,7 @@ by ``render.shade``. Glass is gone through front to back, so that nothing needs 
 
 import numpy as np
 
-from world2minecraft.jit import inner, lean
+from world2minecraft.core.jit import inner, lean
 from world2minecraft.render.beam import ALONE, NOTHING, PLANE, follow
 from world2minecraft.render.planes import draw_plane
 from world2minecraft.render.ray import begin, first_hit, is_clear, ray_of_pixel, steep, within

@@ -7,7 +7,7 @@ pixel by pixel, without the search.
 
 import numpy as np
 
-from world2minecraft.jit import inner_call
+from world2minecraft.core.jit import inner_call
 from world2minecraft.render.light.lit import glow_light
 from world2minecraft.render.light.tone import finish
 from world2minecraft.render.ray import within

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, look_at
+from world2minecraft.core.coordinates import apply, look_at
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.render.cutaway import (
     side_by_side,
     storeys_of,
@@ -14,7 +15,6 @@ from world2minecraft.render.lamps import NEUTRAL, PAPER
 from world2minecraft.render.picture import MAX_PIXELS, Picture, render_parallel, render_volume
 from world2minecraft.render.plain_looks import PlainLooks
 from world2minecraft.render.scene import prepare_scene
-from world2minecraft.types import BlockVolume, Camera
 
 ELEVATION_DEG = 48.0  # Steep enough to see over the furniture, flat enough to see its fronts.
 TURN_DEG = 34.0  # Off the diagonal, so that the two far walls do not mirror each other.

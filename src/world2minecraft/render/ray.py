@@ -8,7 +8,7 @@ no time in scalar code, and the ids come out exact. Directions have no component
 
 import numpy as np
 
-from world2minecraft.jit import inlined, inner, inner_call, lean
+from world2minecraft.core.jit import inlined, inner, inner_call, lean
 from world2minecraft.render.tables import (
     ABSOLUTE,
     BOXES,

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.render.bake import AIR, Baker, ElementTable, is_pane, joins, kind_of, models_of
 from world2minecraft.render.elements import BlockModel, LookSource
 from world2minecraft.render.empties import empty_boxes
@@ -26,7 +27,6 @@ from world2minecraft.render.standing_boxes import (
     standing_things,
 )
 from world2minecraft.render.tables import BOXES, JOINS, PANE, SceneTables
-from world2minecraft.types import BlockVolume
 
 HIDDEN_LAMPS = {"minecraft:light"}
 # A build is dark where fewer of the places where one can stand have light of so many levels.

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import inlined, inner, inner_call, lean
+from world2minecraft.core.jit import inlined, inner, inner_call, lean
 from world2minecraft.render.light.background import Background, background_light
 from world2minecraft.render.light.lit import (
     LitParameters,

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from world2minecraft.coordinates import apply, look_at
+from world2minecraft.core.coordinates import apply, look_at
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.render.lamps import NEUTRAL
 from world2minecraft.render.picture import render_parallel
 from world2minecraft.render.scene import prepare_scene
-from world2minecraft.types import BlockVolume
 
 TILE_PX = 150
 COLUMNS = 4  # Cards a row.

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.minecraft.displays import display_cubes, owner_of
-from world2minecraft.types import BlockVolume, Entity
 
 MOST_CUT = 0.5  # An object goes when more than this share of its blocks does.
 

@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.displays import display_cubes
 from world2minecraft.render.bake import Baker, element_corners, is_pane, reaches_out
 from world2minecraft.render.elements import BlockModel, Element, LookSource
 from world2minecraft.render.tables import ABSOLUTE, PANE, owner_of_cell
-from world2minecraft.types import BlockVolume
 
 MOST_THINGS = 200_000  # A house in display style has some thousands.
 MOST_CELLS = 4_000_000  # That one thing is listed in.

@@ -5,7 +5,7 @@ n >= 1 air whose nearest cube is n cells away (in the Chebyshev metric), so that
 empty space in a few jumps. Coordinates, ``t`` and faces are those of ``render.ray``.
 """
 
-from world2minecraft.jit import inlined, lean, njit
+from world2minecraft.core.jit import inlined, lean, njit
 from world2minecraft.render.ray import enter_grid, onward, ray_of_pixel, steep, within
 from world2minecraft.render.tables import NO_FACE
 

@@ -5,12 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import lean
+from world2minecraft.core.jit import lean
+from world2minecraft.core.types import Camera
 from world2minecraft.render.arrays import run_bands
 from world2minecraft.render.ray import ray_of_pixel
 from world2minecraft.render.tables import NO_FACE
 from world2minecraft.render.trace import CUBE, NEAR_AIR, TILE, bundle_start, fill_distances, trace
-from world2minecraft.types import Camera
 
 
 class VoxelHits(NamedTuple):

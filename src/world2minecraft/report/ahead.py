@@ -13,12 +13,12 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from world2minecraft.coordinates import look_at
-from world2minecraft.jit import is_compiled
-from world2minecraft.machine import usable_cores
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.jit import is_compiled
+from world2minecraft.core.machine import usable_cores
+from world2minecraft.core.types import BlockVolume, Camera, Scan, View
 from world2minecraft.render.preview import plan_view, preview
 from world2minecraft.report.pictures import make_pairs
-from world2minecraft.types import BlockVolume, Camera, Scan, View
 
 LAST = "pixels.draw_rows"  # Kept last, when all that it calls is compiled.
 PATIENCE_S = 120.0  # For the process to end by itself, once the run needs what it makes.

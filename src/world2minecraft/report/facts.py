@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
-from world2minecraft.coordinates import apply, cell_centers_m, invert
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.coordinates import apply, cell_centers_m, invert
+from world2minecraft.core.types import COMPLETED, OBSERVED, BlockVolume
 from world2minecraft.geometry.planes import LevelPlane, level_planes
 from world2minecraft.report.layout import confidence_facts, layout_facts, room_rows
 from world2minecraft.report.scene import FinishedScene
-from world2minecraft.types import COMPLETED, OBSERVED, BlockVolume
 
 NEIGHBOURS = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 

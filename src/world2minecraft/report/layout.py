@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.types import UNSEEN, Layout
 from world2minecraft.metrics.layout import (
     category_integrity,
     collisions,
@@ -14,7 +15,6 @@ from world2minecraft.metrics.layout import (
     overlapping_boxes,
 )
 from world2minecraft.report.scene import FinishedScene
-from world2minecraft.types import UNSEEN, Layout
 
 
 def layout_facts(scene: FinishedScene) -> dict[str, Any]:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image
 
+from world2minecraft.core.types import BlockVolume, Camera, Scan, View
 from world2minecraft.render.lamps import NEUTRAL
 from world2minecraft.render.picture import render_volume
 from world2minecraft.render.scene import prepare_scene
-from world2minecraft.types import BlockVolume, Camera, Scan, View
 
 PAIRS = 6
 WIDTH_PX = 480

@@ -5,15 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.exchange.evidence import read_evidence
-from world2minecraft.exchange.objects import read_objects, read_placements
-from world2minecraft.exchange.room import read_room
-from world2minecraft.exchange.rooms import read_rooms
-from world2minecraft.exchange.scan import read_room_size
-from world2minecraft.exchange.scene import read_scene
-from world2minecraft.minecraft.schematics.schem import read_schem
-from world2minecraft.types import (
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import (
     BlockVolume,
     FusedEvidence,
     Layout,
@@ -21,6 +14,13 @@ from world2minecraft.types import (
     OccupancyGrid,
     Placement,
 )
+from world2minecraft.exchange.evidence import read_evidence
+from world2minecraft.exchange.objects import read_objects, read_placements
+from world2minecraft.exchange.room import read_room
+from world2minecraft.exchange.rooms import read_rooms
+from world2minecraft.exchange.scan import read_room_size
+from world2minecraft.exchange.scene import read_scene
+from world2minecraft.minecraft.schematics.schem import read_schem
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,19 +7,19 @@ from typing import Any
 import jinja2
 
 from world2minecraft import __version__
-from world2minecraft.classes import CLASS_COLOURS, CLASS_NAMES
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
+from world2minecraft.core.files import write_bytes, write_json, write_text
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Scan
 from world2minecraft.evaluate import evaluate_reconstruction
 from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.exchange.scan import read_registration
-from world2minecraft.files import write_bytes, write_json, write_text
 from world2minecraft.metrics.layout import category_integrity
-from world2minecraft.progress import Progress, silent
 from world2minecraft.render.preview import plan_view, preview
 from world2minecraft.report.facts import scene_facts
 from world2minecraft.report.layout import built_categories
 from world2minecraft.report.pictures import Pair, as_data_uri, as_png, make_pairs
 from world2minecraft.report.scene import read_finished
-from world2minecraft.types import Scan
 
 PLAN_PX = 720
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms.model import Colour, Model, Part, shade, whole
 
 TVS, OBJS = int(SemanticClass.TVS), int(SemanticClass.OBJS)

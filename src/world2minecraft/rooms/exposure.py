@@ -9,14 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
 from world2minecraft.render.tables import NO_FACE
 from world2minecraft.render.trace import TILE, bundle_start, trace
 from world2minecraft.rooms.materials import Material, heights_m, room_materials, wall_planes
 from world2minecraft.rooms.photo import PhotoScene, prepare_photos, surface_light
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.texture import FLOOR_SEED, poster, tone
-from world2minecraft.types import Camera
 
 WALL = int(Material.WALL)
 OFFSETS_PX = ((-0.25, -0.25), (0.25, 0.25), (-0.25, 0.25), (0.25, -0.25))

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.types import Camera
 from world2minecraft.render.voxels import VoxelScene
 from world2minecraft.rooms.gaze import Gaze
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.tour import eyes_m
 from world2minecraft.rooms.walk import plan_walk
-from world2minecraft.types import Camera
 
 TURN = np.radians([14.0, 6.0])  # Of yaw and pitch at most, from one photo to the next.
 LOOK_TURN = np.radians([56.0, 24.0])  # From one look to the next.

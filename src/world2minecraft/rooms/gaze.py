@@ -6,12 +6,12 @@ taken from there is a window of it, so that choosing among hundreds costs a few 
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.jit import njit
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
 from world2minecraft.render.tables import NO_FACE
 from world2minecraft.render.trace import trace
 from world2minecraft.render.voxels import VoxelScene
-from world2minecraft.types import Camera
 
 RAY_DEG = 4.0
 PITCH_DEG = (-74.0, 50.0)  # Of the look around.

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from world2minecraft.core.types import Layout, Opening
 from world2minecraft.rooms.house_gaps import Gap, house_gaps
 from world2minecraft.rooms.house_paint import paint_house
 from world2minecraft.rooms.house_plan import Cell, HousePlan, plan_house
@@ -10,7 +11,6 @@ from world2minecraft.rooms.place import Item
 from world2minecraft.rooms.room import Room, layout_object
 from world2minecraft.rooms.style import choose_style
 from world2minecraft.rooms.voxels import VOXEL_M
-from world2minecraft.types import Layout, Opening
 
 ROOMS, STOREYS = (3, 14), (1, 2)
 

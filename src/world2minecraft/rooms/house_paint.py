@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms.ground import grown
 from world2minecraft.rooms.house_gaps import Gap
 from world2minecraft.rooms.house_plan import WALL_M, Cell, HousePlan

@@ -3,10 +3,10 @@
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Layout
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.stands import is_inside
-from world2minecraft.types import Layout
 
 UNDER_CEILING_M = 0.35
 GRID_M, MAX_STEPS = 0.1, 300  # How finely a place for a lamp is looked for.

@@ -10,7 +10,7 @@ from enum import IntEnum
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.rooms.room import Room
 

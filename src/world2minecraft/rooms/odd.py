@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms.model import Bar, Colour, Model, Part, shade
 from world2minecraft.rooms.playing import bright
 from world2minecraft.rooms.small import Maker

@@ -5,11 +5,11 @@ from typing import Literal
 
 import numpy as np
 
+from world2minecraft.core.types import Opening
 from world2minecraft.rooms.decor import curtain, door
 from world2minecraft.rooms.ground import Ground
 from world2minecraft.rooms.model import Colour, whole
 from world2minecraft.rooms.place import Item, Plan
-from world2minecraft.types import Opening
 
 DOOR_M = (0.90, 2.04)
 DOOR_SWING_M = 0.9

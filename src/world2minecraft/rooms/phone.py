@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.errors import MissingExtraError
-from world2minecraft.files import write_bytes
+from world2minecraft.core.errors import MissingExtraError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.core.types import View
 from world2minecraft.rooms.exposure import TexturedScene, developed, exposed, prepare_textured
 from world2minecraft.rooms.film import Film, plan_film
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.shots import FrameTruth, Shooting, Shot, room_to_scan
-from world2minecraft.types import View
 
 PHOTO_QUALITY = 92  # What phones write.
 RATE_HZ = 24

@@ -12,13 +12,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
 from world2minecraft.render import VoxelScene, prepare_voxels
 from world2minecraft.render.tables import NO_FACE
 from world2minecraft.render.trace import TILE, bundle_start, trace
 from world2minecraft.rooms.lamps import hang_lamps, nearest_lamps
 from world2minecraft.rooms.room import Room
-from world2minecraft.types import Camera
 
 COARSE = 4  # Voxels of 2 cm a cell of the blurred grid: shadows are soft over 16 cm.
 BLUR_CELLS = 1.6

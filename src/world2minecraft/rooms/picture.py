@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import apply, look_at
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import apply, look_at
+from world2minecraft.core.types import Camera
 from world2minecraft.rooms.photo import prepare_photos, take_photo
 from world2minecraft.rooms.room import Room
-from world2minecraft.types import Camera
 
 ELEVATION_DEG = {"room": 42.0, "house": 58.0}  # Inner walls hide less from a steeper place.
 TURN_DEG = 32.0

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms.model import Colour, Model, Part, legs, shade, whole
 
 FURN, OBJS, CHAIR = (int(c) for c in (SemanticClass.FURN, SemanticClass.OBJS, SemanticClass.CHAIR))

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.errors import UnknownNameError, World2MinecraftError
+from world2minecraft.core.errors import UnknownNameError, World2MinecraftError
+from world2minecraft.core.types import Layout, LayoutObject
 from world2minecraft.rooms import voxels
 from world2minecraft.rooms.clutter import NARROW_BODY_M, WIDE_BODY_M, scatter
 from world2minecraft.rooms.kinds import BASE_KINDS, KINDS, random_size
@@ -18,7 +19,6 @@ from world2minecraft.rooms.openings import (
 from world2minecraft.rooms.place import Item, Plan, ways_are_clear
 from world2minecraft.rooms.shapes import SHAPES, open_walls, shape_of_seed, shaped_ground
 from world2minecraft.rooms.style import WHITE, choose_style
-from world2minecraft.types import Layout, LayoutObject
 
 ATTEMPTS = 80  # A recipe fits on its first tries as a rule; the worst of 500 seeds is far below.
 

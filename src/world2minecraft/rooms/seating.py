@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms.model import Colour, Model, Part, legs, shade, whole
 
 CHAIR, BED = int(SemanticClass.CHAIR), int(SemanticClass.BED)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.geometry.rotation import rotation_of_vector
 
 BASELINE_M = 0.075  # Between projector and camera, of the sensors that the model follows.

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.types import Camera, View
 from world2minecraft.geometry.rotation import rotation_of_vector
 from world2minecraft.rooms.photo import Photo, PhotoScene, prepare_photos, take_photo
 from world2minecraft.rooms.room import Room
@@ -23,7 +24,6 @@ from world2minecraft.rooms.sensor import (
     sensor,
 )
 from world2minecraft.rooms.tour import plan_tour
-from world2minecraft.types import Camera, View
 
 FOCAL_SHARE = 0.82  # Of the width: 525 px at 640, a field of view of 63 degrees.
 MAX_TILT_DEG = 27.0  # What the shared kitchen's world frame is tilted by.

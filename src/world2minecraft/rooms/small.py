@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms import decor
 from world2minecraft.rooms.model import Bar, Colour, Model, Part, shade, whole
 from world2minecraft.rooms.playing import BRIGHT

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, rotation_about_z
+from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.rooms.model import STEP_M, Bar, Model, Part, moved
 from world2minecraft.rooms.place import Item
 

@@ -1,6 +1,6 @@
 """Stairs of a house: the flight, the hole in the slab above it, and the rail around the hole."""
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms.ground import Box
 from world2minecraft.rooms.house_plan import STAIR_M, Flight, HousePlan
 from world2minecraft.rooms.model import Colour, Model, Part, shade, whole

@@ -12,8 +12,8 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
+from world2minecraft.core.types import Layout
 from world2minecraft.rooms.room import Room
-from world2minecraft.types import Layout
 
 STEP_M = 0.1  # Side of a square of floor.
 HEAD_M = 1.9  # Free height over a foot.

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.archive import UNREADABLE
-from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES, class_id
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UnknownNameError
+from world2minecraft.core.archives import UNREADABLE
+from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, class_id
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
+from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
+from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.exchange.objects import rounded
-from world2minecraft.files import read_json, read_npz, write_json, write_npz
 from world2minecraft.rooms.room import Room
-from world2minecraft.types import Layout, LayoutObject, Opening
 
 LAYOUT, TRUTH = "layout.json", "truth.npz"
 ARRAYS = ("colour", "instance", "labels", "origin_m", "voxel_m")

@@ -5,7 +5,7 @@ places see the same marks: what matching needs and what flat colours lack. Marks
 pixel fade out, as they do in a lens. Strength 1 is what real rooms look like.
 """
 
-from world2minecraft.jit import inlined, njit
+from world2minecraft.core.jit import inlined, njit
 from world2minecraft.rooms.materials import Material
 
 BARE, WALL = int(Material.BARE), int(Material.WALL)

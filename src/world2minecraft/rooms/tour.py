@@ -5,12 +5,12 @@
 
 import numpy as np
 
-from world2minecraft.coordinates import look_at
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.types import Camera
 from world2minecraft.render.voxels import VoxelScene
 from world2minecraft.rooms.gaze import Gaze
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.walk import plan_walk
-from world2minecraft.types import Camera
 
 EYE_M = (1.2, 1.7)  # Of the camera over the floor.
 SWAY_M = 0.22  # How much the camera rises and sinks along the walk.

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from world2minecraft.errors import UnknownNameError
-from world2minecraft.progress import Progress, silent
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.rooms.capture import scan_room
 from world2minecraft.rooms.house import generate_house
 from world2minecraft.rooms.room import Room, generate_room

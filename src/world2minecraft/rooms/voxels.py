@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.parts import connected_parts
 from world2minecraft.rooms.ground import Ground, Rect, Wall, grown
 from world2minecraft.rooms.model import STEP_M, Bar, Colour, Part, shade

@@ -11,9 +11,9 @@ from scipy import ndimage
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import KDTree
 
+from world2minecraft.core.types import Layout, Opening
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.stands import STEP_M, Stands, find_stands
-from world2minecraft.types import Layout, Opening
 
 STOPS_PER_M2 = 1.2  # Of free floor; four at least, so that a place is seen from several sides.
 STOPS = (4, 9)

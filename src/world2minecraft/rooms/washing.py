@@ -1,6 +1,6 @@
 """What stands in a bathroom, in the sizes that fittings are sold in."""
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms.model import Bar, Colour, Model, Part, shade, whole
 from world2minecraft.rooms.solids import modelled
 

@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.coordinates import COMPASS_OF_SIDE, rotation_about_z
+from world2minecraft.core.coordinates import COMPASS_OF_SIDE, rotation_about_z
+from world2minecraft.core.types import Scan, View
 from world2minecraft.geometry.surface import Surface, collect_surface
 from world2minecraft.scan.gravity import Ground, find_ground, frame_of_up
 from world2minecraft.scan.places import face_place_m
 from world2minecraft.scan.straighten import FACING, straightening_turn
 from world2minecraft.scan.walls import Box, find_box, find_yaw
-from world2minecraft.types import Scan, View
 
 SIDE_M = (1.2, 40.0)  # A shower room and a hall; outside, the unit is wrong or it is no room.
 HEIGHT_M = (1.5, 12.0)

@@ -11,12 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import CaptureError, InputError, LimitError
+from world2minecraft.core.errors import CaptureError, InputError, LimitError
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.depth import check_depth_kind
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import ImageHeader, ImagePlace, check_whole, read_header
 from world2minecraft.scan.poses import is_lost, mend_pose
-from world2minecraft.types import Camera
 
 MAX_DAMAGED_SHARE = 0.25  # More than one image in four cut short is a broken copy, not a slip.
 MAX_WRONG_POSES_SHARE = 0.1  # More is how the capture was exported, not a slip of tracking.

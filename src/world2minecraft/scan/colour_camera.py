@@ -13,8 +13,8 @@ import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter1d
 
-from world2minecraft.jit import njit
-from world2minecraft.types import Camera, View
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera, View
 
 WORK_WIDTH_PX = 320  # Shifts below are in pixels of a colour image of this width.
 BLUR_PX = 1.5  # So wide that the coarse steps below cannot pass a peak by.

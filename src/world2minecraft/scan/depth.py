@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.errors import CaptureError, UnknownNameError
+from world2minecraft.core.errors import CaptureError, UnknownNameError
 from world2minecraft.scan.images import ImageHeader, ImagePlace, read_header, read_raw
 
 INVALID = 65535  # Kinect drivers write 0 or 65535 where they saw nothing.

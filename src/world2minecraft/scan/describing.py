@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.images import read_header
 from world2minecraft.scan.judged import JudgedCapture, judge_capture
 from world2minecraft.scan.options import parse_options
@@ -14,7 +15,6 @@ from world2minecraft.scan.survey import Survey, survey_capture
 from world2minecraft.scan.survey.doubts import Doubt, doubts_of
 from world2minecraft.scan.survey.route import Route, route_of
 from world2minecraft.scan.telling import reconstructing
-from world2minecraft.types import Camera
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.images import ImagePlace
 from world2minecraft.scan.options import ScanOptions
-from world2minecraft.types import Camera
 
 
 @dataclass(frozen=True, eq=False)

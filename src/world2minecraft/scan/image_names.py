@@ -1,6 +1,6 @@
 """How images are called that an ``ImageSource`` takes from a file or from a place within one."""
 
-from world2minecraft.archive import AnyPath
+from world2minecraft.core.archives import AnyPath
 
 
 class NamedByFile:

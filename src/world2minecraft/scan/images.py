@@ -16,8 +16,8 @@ from typing import IO, Any, Protocol
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
-from world2minecraft.archive import AnyPath, ArchivePath
-from world2minecraft.errors import (
+from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.errors import (
     DamagedFileError,
     InputError,
     LimitError,

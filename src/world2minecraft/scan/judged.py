@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from world2minecraft.errors import CaptureError, DamagedFileError, UnknownNameError
+from world2minecraft.core.errors import CaptureError, DamagedFileError, UnknownNameError
 from world2minecraft.scan.checking import Skipped, check_frames, is_posed
 from world2minecraft.scan.depth import DepthEncoding, find_encoding, read_depth
 from world2minecraft.scan.frames import Capture, FrameFiles

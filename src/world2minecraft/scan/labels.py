@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.images import ImagePlace, read_header, read_raw
 

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from scipy import fft
 
-from world2minecraft.archive import AnyPath, ArchivePath
-from world2minecraft.errors import (
+from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.errors import (
     DamagedFileError,
     InputError,
     LimitError,

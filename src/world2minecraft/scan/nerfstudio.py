@@ -13,14 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.coordinates import opengl_to_opencv_pose
-from world2minecraft.errors import CaptureError, InputError, LimitError
-from world2minecraft.files import read_json
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.coordinates import opengl_to_opencv_pose
+from world2minecraft.core.errors import CaptureError, InputError, LimitError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import SUFFIXES, read_header
 from world2minecraft.scan.numbers import as_floats
-from world2minecraft.types import Camera
 
 _MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "PERSPECTIVE", "SIMPLE_RADIAL", "RADIAL")
 

@@ -6,13 +6,13 @@ taken is told from depth by a network, or taken to be a person's eye.
 
 import re
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.coordinates import focal_px_of_fov
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.coordinates import focal_px_of_fov
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.options import ScanOptions
 from world2minecraft.scan.photo_folder import PHOTO_SUFFIXES
 from world2minecraft.scan.upright_photo import PhotoFacts, UprightPhoto, photo_facts
-from world2minecraft.types import Camera
 
 SOURCE = "photo"
 USUAL_FOCAL = 0.8  # Of the longer side: phones 0.7 to 0.9.

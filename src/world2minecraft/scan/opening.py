@@ -5,14 +5,14 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from world2minecraft.errors import CaptureError, UsageError
-from world2minecraft.progress import Progress, silent
+from world2minecraft.core.errors import CaptureError, UsageError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Scan
 from world2minecraft.scan.align import Alignment, ImplausibleRoomError, align
 from world2minecraft.scan.colour_camera import estimate_colour_camera
 from world2minecraft.scan.judged import JudgedCapture, judge_capture, spread_over
 from world2minecraft.scan.options import parse_options
 from world2minecraft.scan.stream import CaptureViews, without_colour
-from world2minecraft.types import Scan
 
 ALIGNED_FRAMES = 24  # Of the kitchen's 40; more moved its floor by under 2 mm.
 ESTIMATING_FRAMES = 12  # Ten gave the kitchen's focal length to 0.3 %, whichever ten.

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.scan.depth import DepthEncoding
 
 OPTION_NAMES = (

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, InputError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import HEIF_SUFFIXES
 from world2minecraft.scan.options import LEAST_FRAMES, ScanOptions

@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from PIL import Image
 
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.types import Photo
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.images import ImagePlace, read_colour
 from world2minecraft.scan.judged import JudgedCapture
-from world2minecraft.types import Photo
 
 LONGEST_PX = (
     1024  # Features of a 12-megapixel photo are found as well at this size, 16 times faster.

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, UnknownNameError
-from world2minecraft.files import read_json, write_bytes, write_json
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, UnknownNameError
+from world2minecraft.core.files import read_json, write_bytes, write_json
+from world2minecraft.core.types import Camera, View, checks
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import SUFFIXES
 from world2minecraft.scan.numbers import as_floats
-from world2minecraft.types import Camera, View, checks
 
 FORMAT = "world2minecraft-capture"
 VERSION = 1

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.files import read_bytes
 from world2minecraft.scan.frames import FrameFiles
 
 ORTHONORMAL_TOLERANCE = 1e-3  # The shared kitchen is off by 4e-4; a scale of 1.001 is no slip.

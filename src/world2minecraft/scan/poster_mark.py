@@ -2,7 +2,7 @@
 
 from PIL import Image
 
-from world2minecraft.archive import AnyPath
+from world2minecraft.core.archives import AnyPath
 
 MARK = "w2m scan"  # What the PNG says of the software that wrote it.
 NAME_END = "-scan.png"

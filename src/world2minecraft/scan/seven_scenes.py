@@ -10,13 +10,13 @@ import re
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, DamagedFileError, InputError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError
+from world2minecraft.core.files import read_bytes
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import read_header
 from world2minecraft.scan.poses import read_pose
-from world2minecraft.types import Camera
 
 INTRINSICS = "camera-intrinsics.txt"
 PUBLISHED = (585.0, 585.0, 320.0, 240.0)  # fx fy cx cy at 640x480, from the data set's page.

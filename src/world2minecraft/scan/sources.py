@@ -9,9 +9,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from world2minecraft.archive import AnyPath, ArchivePath, is_zip
-from world2minecraft.errors import CaptureError
-from world2minecraft.registry import Registry
+from world2minecraft.core.archives import AnyPath, ArchivePath, is_zip
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.registry import Registry
 from world2minecraft.scan.frames import Capture, Source, TellableSource
 from world2minecraft.scan.options import ScanOptions
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.types import Scan, View
 from world2minecraft.scan.depth import DepthEncoding, read_depth
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.images import read_colour, read_raw
-from world2minecraft.types import Scan, View
 
 
 @dataclass(eq=False, repr=False)

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from world2minecraft.archive import AnyPath
+from world2minecraft.core.archives import AnyPath
 
 if TYPE_CHECKING:
     from world2minecraft.exchange.roomplan import CapturedPlan

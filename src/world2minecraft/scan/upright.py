@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.images import (
     ImageHeader,
@@ -20,7 +21,6 @@ from world2minecraft.scan.images import (
     read_header,
     read_raw,
 )
-from world2minecraft.types import Camera
 
 LEAST_LEAN = 0.3  # A camera within 17 degrees of straight up or down does not tell its roll.
 SAID = {1: "a quarter turn to the left", 2: "half a turn", 3: "a quarter turn to the right"}

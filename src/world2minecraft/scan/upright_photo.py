@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageOps
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.image_names import NamedByFile
 from world2minecraft.scan.images import ImageHeader, check_whole, opened_image
-from world2minecraft.types import Camera
 
 DIAGONAL_MM = math.hypot(36.0, 24.0)  # Of the film that 35 mm equivalents speak of.
 ORIENTATION, MAKE, EXIF_IFD = 0x0112, 0x010F, 0x8769

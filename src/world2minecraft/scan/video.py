@@ -6,8 +6,9 @@ found. They are decoded when they are read, upright, in the order of the video.
 
 from typing import Any
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, DamagedFileError, LimitError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, DamagedFileError, LimitError
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.apps.movie import MoviePicture, open_movie
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import MAX_PIXELS, ImagePlace
@@ -16,7 +17,6 @@ from world2minecraft.scan.options import LEAST_FRAMES, ScanOptions
 from world2minecraft.scan.poster_mark import lies_about
 from world2minecraft.scan.upright import TurnedImage
 from world2minecraft.scan.upright_photo import DIAGONAL_MM
-from world2minecraft.types import Camera
 
 SUFFIXES = (".mov", ".mp4", ".m4v", ".webm", ".avi", ".mkv")
 DEFAULT_FRAMES = 100  # Of one room; more cost time and tell little new.

@@ -10,12 +10,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from world2minecraft.errors import CaptureError
-from world2minecraft.progress import Progress, silent
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Camera, DepthMap, PhotoStream, SparseScene
 from world2minecraft.stereo.guide import DepthModel, laid_on_points
 from world2minecraft.stereo.parameters import StereoParameters
 from world2minecraft.stereo.small import small_photos
-from world2minecraft.types import Camera, DepthMap, PhotoStream, SparseScene
 
 TRUST = 160  # More than half, so that it is registered; less than what several photos confirm.
 WIDTH_PX = 640  # Networks see more in more pixels, and each photo costs them alone.

@@ -7,7 +7,7 @@ compared by their zero-mean normalised correlation, to which brightness and cont
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 
 
 @njit

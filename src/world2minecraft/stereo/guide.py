@@ -11,9 +11,9 @@ from typing import Literal, Protocol
 import numpy as np
 from scipy.ndimage import uniform_filter
 
-from world2minecraft.errors import UsageError
-from world2minecraft.registry import Registry
-from world2minecraft.types import Camera
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.registry import Registry
+from world2minecraft.core.types import Camera
 
 Kind = Literal["metric", "inverse"]
 

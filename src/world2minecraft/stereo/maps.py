@@ -4,10 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from world2minecraft.coordinates import invert_rigid
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import DepthMap, PhotoStream, SparseScene
 from world2minecraft.geometry.lifting import pixel_rays
-from world2minecraft.progress import Progress, silent
 from world2minecraft.render.threads import side_by_side
 from world2minecraft.stereo.agree import confirm
 from world2minecraft.stereo.flats import flattened
@@ -17,7 +18,6 @@ from world2minecraft.stereo.neighbours import DEPTH_PERCENTILES, chosen_neighbou
 from world2minecraft.stereo.parameters import StereoParameters
 from world2minecraft.stereo.small import SmallPhoto, small_photos
 from world2minecraft.stereo.sweep import depth_range, sweep
-from world2minecraft.types import DepthMap, PhotoStream, SparseScene
 
 AT_ONCE = 2  # Photos swept side by side; each needs about 60 MB.
 TRUST = np.array([30, 60, 130, 180, 255], np.uint8)  # By how many confirm it, 4 or more wholly.

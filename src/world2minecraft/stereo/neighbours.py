@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, invert_rigid
+from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.geometry.lifting import project
 from world2minecraft.stereo.small import SmallPhoto
 

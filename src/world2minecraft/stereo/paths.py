@@ -6,7 +6,7 @@ it; the plane with the least sum of all eight wins. Hirschmueller's method, with
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 
 
 @njit

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.coordinates import invert_rigid
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.progress import Progress
+from world2minecraft.core.types import Camera
+from world2minecraft.core.types.photos import PhotoStream, SparseScene
 from world2minecraft.geometry.lifting import project
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
-from world2minecraft.progress import Progress
-from world2minecraft.types import Camera
-from world2minecraft.types.photos import PhotoStream, SparseScene
 
 LEAST_SIDE_PX = 16  # So that windows lie in it.
 

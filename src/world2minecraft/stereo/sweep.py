@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.stereo.cost import sweep_costs
 from world2minecraft.stereo.parameters import StereoParameters
 from world2minecraft.stereo.paths import best_planes, sum_paths

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, invert
-from world2minecraft.errors import UsageError
+from world2minecraft.core.coordinates import apply, invert
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.landmarks import Landmark
 from world2minecraft.vln.moves import named_set
 from world2minecraft.vln.oracle import ORACLE_VERSION, Way, expert

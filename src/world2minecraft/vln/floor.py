@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.walk.graph import WalkGraph
 
 REACH = 1.5  # Spacings: places so near to a body are on its own side of any wall,

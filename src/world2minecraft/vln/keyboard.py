@@ -2,7 +2,7 @@
 
 import queue
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.values import Move
 from world2minecraft.vln.window import Window
 

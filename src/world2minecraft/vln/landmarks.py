@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES, SemanticClass
-from world2minecraft.coordinates import apply
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, SemanticClass
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.colours import colours_of, nearest_oklab
-from world2minecraft.types import BlockVolume
 
 BESIDE_M = 1.5  # What stands nearer than this is "beside".
 LEAST_M = 0.15  # What is smaller in its two longer sides is nothing to speak of.

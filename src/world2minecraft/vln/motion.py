@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.walk.body import TOUCH
 from world2minecraft.walk.columns import WET
 

@@ -6,7 +6,7 @@ on no furniture, as the walkable graph. One who slides goes on along what stops 
 
 import math
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.vln.motion import BodySize, walked
 from world2minecraft.vln.scene import VlnScene
 from world2minecraft.vln.values import MOVE_SETS, Move, MoveSet, Stance

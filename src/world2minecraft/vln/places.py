@@ -8,10 +8,10 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
-from world2minecraft.coordinates import apply
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.types import BlockVolume, Layout
 from world2minecraft.dataset.tours.rooms import TourRoom
 from world2minecraft.rooms.stands import is_inside
-from world2minecraft.types import BlockVolume, Layout
 from world2minecraft.walk.graph import WalkGraph
 
 NEAR_M = 1.5  # A place farther from all rooms than this is in none.

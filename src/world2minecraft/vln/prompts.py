@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.values import Item
 
 IMAGE = "<image>"  # The mark of LLaMA-Factory and EasyR1.

@@ -17,8 +17,8 @@ from typing import Any, NoReturn, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
-from world2minecraft.files import write_text
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.files import write_text
 from world2minecraft.vln.values import Episode, Item, Trajectory
 
 ITEMS = "items.jsonl"

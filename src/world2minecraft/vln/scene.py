@@ -12,12 +12,13 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import KDTree
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import apply, focal_px_of_fov, invert
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import apply, focal_px_of_fov, invert
+from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
+from world2minecraft.core.types import BlockVolume, Camera, Layout
 from world2minecraft.dataset.source import SceneSource, open_scene_source
 from world2minecraft.dataset.tours.rooms import TourRoom, find_rooms
 from world2minecraft.dataset.tours.values import TourRule
-from world2minecraft.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.exchange.labelled import place_of_blocks
 from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.furniture.library import TEMPLATES
@@ -26,7 +27,6 @@ from world2minecraft.render.light import LookLight
 from world2minecraft.render.picture import DEFAULT_OUTPUTS, Picture, render_volume
 from world2minecraft.render.scene import BlockScene, prepare_scene
 from world2minecraft.render.views.poses import GamePose
-from world2minecraft.types import BlockVolume, Camera, Layout
 from world2minecraft.vln.floor import Floor, distance_over, floor_of
 from world2minecraft.vln.landmarks import Landmark, landmarks_of
 from world2minecraft.vln.places import SceneRoom, rooms_of_places, scene_rooms

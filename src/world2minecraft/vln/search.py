@@ -7,7 +7,7 @@ goal is what is at least left, times a share, since the graph's own ways have co
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.vln.floor import distance_over
 from world2minecraft.vln.motion import walked
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.core.errors import InputError, UsageError
 
 INSTRUCTION_SOURCES = ("template", "human", "llm")
 LEVELS = ("goal", "route", "landmark")

@@ -5,7 +5,7 @@ Iron doors open only by a button or the like, so they stay as they are.
 
 from dataclasses import replace
 
-from world2minecraft.types import BlockVolume
+from world2minecraft.core.types import BlockVolume
 
 _OPENED = ("_door", "_fence_gate")
 _LOCKED = ("minecraft:iron_door",)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.walk.body import TOUCH
 from world2minecraft.walk.columns import Solid
 

@@ -10,10 +10,10 @@ from functools import cached_property
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.jit import njit
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.shapes import FULL_CUBE
-from world2minecraft.types import BlockVolume
 from world2minecraft.walk.body import HEIGHT, STEP_HEIGHT, WIDTH
 from world2minecraft.walk.columns import FINE, SKY, WET, Solid, Stands, stands_of
 from world2minecraft.walk.doors import doors_opened

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.walk.graph import WalkGraph
 from world2minecraft.walk.paths import pop, push
 

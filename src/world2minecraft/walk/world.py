@@ -5,8 +5,8 @@ from typing import Protocol
 
 import numpy as np
 
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.shapes import boxes_of
-from world2minecraft.types import BlockVolume
 from world2minecraft.walk.body import STEP_HEIGHT, TOUCH, WIDTH, body_box
 from world2minecraft.walk.sweep import free_way, overlapping
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COLOURS
-from world2minecraft.coordinates import apply, look_at, rotation_about_z
+from world2minecraft.core.classes import CLASS_COLOURS
+from world2minecraft.core.coordinates import apply, look_at, rotation_about_z
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.formats.boxes import cells_in_image
 from world2minecraft.dataset.formats.cameras import NYU_CAMERA
 from world2minecraft.dataset.values import FineClass, LabelRegion, OccLabels, OccSample
 from world2minecraft.render.voxels import cast_voxels
-from world2minecraft.types import Camera
 
 VOXEL_M = 0.08
 ORIGIN_M = np.array([-0.08, -0.08, -0.08])

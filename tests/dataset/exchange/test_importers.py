@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from tests.dataset.exchange import synthetic
 
+from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
 from world2minecraft.dataset.exporters import ExportRule, export_samples
 from world2minecraft.dataset.importers import open_occupancy
 from world2minecraft.dataset.importers.embodied import read_scene
-from world2minecraft.errors import DamagedFileError, InputError, UnknownNameError
 
 KEY = "house_0001-t0-00000"
 

@@ -8,11 +8,11 @@ import pytest
 from PIL import Image
 from tests.dataset.exchange import page_loader, synthetic
 
+from world2minecraft.core.errors import ConflictError, InputError, UnknownNameError, UsageError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.exporters import ExportRule, export_samples
 from world2minecraft.dataset.formats.sscnet import downsampled, read_bin
 from world2minecraft.dataset.importers import ImportedSet
-from world2minecraft.errors import ConflictError, InputError, UnknownNameError, UsageError
-from world2minecraft.types import Camera
 
 KEY = "house_0001-t0-00000"
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from tests.dataset.exchange import page_loader, synthetic
 
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.exporters import ExportRule, export_samples
 from world2minecraft.dataset.importers.embodied import open_scenes
-from world2minecraft.errors import InputError, UsageError
-from world2minecraft.types import Camera
 
 VIEWS = [
     ((2.4, 0.5, 1.5), (2.5, 4.0, 0.9), 0),

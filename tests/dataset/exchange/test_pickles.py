@@ -10,9 +10,9 @@ from collections import OrderedDict
 import numpy as np
 import pytest
 
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.dataset.formats.pickling import pickle_bytes
 from world2minecraft.dataset.formats.unpickling import parse_pickle, read_pickle
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
 
 VALUES = {
     "name": "scene0000_00/00012 é",

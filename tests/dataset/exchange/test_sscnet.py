@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.dataset.formats.sscnet import (
     CLASS_OF_CODE,
     CODE_OF_CLASS,
@@ -10,7 +11,6 @@ from world2minecraft.dataset.formats.sscnet import (
     downsampled,
     read_bin,
 )
-from world2minecraft.errors import DamagedFileError, InputError
 
 POSE = np.array([[0, 0, 1, 0.5], [-1, 0, 0, 1], [0, -1, 0, 1.5], [0, 0, 0, 1]], np.float32)
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.values import FineClass, LabelRegion, OccLabels, OccSample
-from world2minecraft.types import Camera
 
 AIR = FineClass("minecraft:air")
 PLANKS = FineClass("minecraft:oak_planks")

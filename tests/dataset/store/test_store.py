@@ -9,10 +9,7 @@ import numpy as np
 import pytest
 from occ_samples import assert_same, sample, samples
 
-from world2minecraft.dataset.store import open_store, verify_store, write_store
-from world2minecraft.dataset.store import writing as writing_module
-from world2minecraft.dataset.store.sample_files import SampleFiles
-from world2minecraft.errors import (
+from world2minecraft.core.errors import (
     ConflictError,
     DamagedFileError,
     InputError,
@@ -20,6 +17,9 @@ from world2minecraft.errors import (
     UnknownNameError,
     UsageError,
 )
+from world2minecraft.dataset.store import open_store, verify_store, write_store
+from world2minecraft.dataset.store import writing as writing_module
+from world2minecraft.dataset.store.sample_files import SampleFiles
 
 PNG = SampleFiles("png")
 

@@ -13,6 +13,9 @@ from hypothesis import strategies as st
 from occ_samples import AIR, CAMERA, CHAIR, PLANKS, SHAPE, assert_same, sample
 from PIL import Image
 
+from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.files import npz_bytes
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.store.pictures import depth_of, depth_png, picture_bytes
 from world2minecraft.dataset.store.sample_files import (
     FineTable,
@@ -21,10 +24,7 @@ from world2minecraft.dataset.store.sample_files import (
     unpack_sample,
 )
 from world2minecraft.dataset.store.tar import BLOCK, end_bytes, member_at, member_bytes
-from world2minecraft.errors import DamagedFileError, UsageError
-from world2minecraft.files import npz_bytes
 from world2minecraft.render.output.images import depth_bytes
-from world2minecraft.types import Camera
 
 TABLE = FineTable((AIR, CHAIR, PLANKS))
 

@@ -8,10 +8,10 @@ import sys
 import pytest
 from occ_samples import AIR, CHAIR, PLANKS, sample
 
+from world2minecraft.core.errors import ConflictError, OutputError
 from world2minecraft.dataset.store import shard as shard_module
 from world2minecraft.dataset.store.sample_files import FineTable, SampleFiles, pack_sample
 from world2minecraft.dataset.store.shard import ShardWriter
-from world2minecraft.errors import ConflictError, OutputError
 
 TABLE = FineTable((AIR, PLANKS, CHAIR))
 SAMPLES = [sample(n) for n in range(3)]

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.edit.scene import SceneDraft, objects_of
-from world2minecraft.types import (
+from world2minecraft.core.types import (
     Alternative,
     GridCells,
     ObjectInstance,
@@ -11,6 +10,7 @@ from world2minecraft.types import (
     Operation,
     Placement,
 )
+from world2minecraft.edit.scene import SceneDraft, objects_of
 
 SHAPE = (7, 6, 5)
 

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from world2minecraft.edit.scene import SceneDraft, Tools
-from world2minecraft.types import (
+from world2minecraft.core.types import (
     OBSERVED,
     ObjectInstance,
     OccupancyGrid,
     Placement,
     SceneObject,
 )
+from world2minecraft.edit.scene import SceneDraft, Tools
 
 VOXEL_M = 0.1
 SHAPE = (24, 20, 16)  # 2.4 x 2.0 m; the floor is the layer under z = 0, the walls are x = 0, y = 0.

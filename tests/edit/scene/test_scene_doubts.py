@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from voxel_scenes import VOXEL_M, grid_of, object_at, random_scene, seeds
 
+from world2minecraft.core.types import Alternative
 from world2minecraft.edit.scene import SceneDraft, parse_command, runs_of_cells
 from world2minecraft.edit.scene.doubts import find_doubts
-from world2minecraft.types import Alternative
 
 
 def table(iou=0.8, at=1, **changed) -> SceneDraft:

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from object_scenes import CHAIR, LAMP, TABLE, furnished_room, plain_tools, put
 from test_scene_objects import done, refusal
 
+from world2minecraft.core.types import ObjectInstance
 from world2minecraft.edit.scene import parse_command
 from world2minecraft.edit.scene.grouping import clusters_of
-from world2minecraft.types import ObjectInstance
 
 COMMANDS = (
     {"op": "relabel_objects", "ids": [CHAIR, LAMP], "class_id": 10},

@@ -6,8 +6,8 @@ from edit_scenes import random_operation, small_draft, state
 from hypothesis import given
 from hypothesis import strategies as st
 
+from world2minecraft.core.errors import ConflictError, OutputError, UsageError
 from world2minecraft.edit.scene import MemoryLog, SceneHistory
-from world2minecraft.errors import ConflictError, OutputError, UsageError
 
 SEEDS = st.integers(0, 10_000)
 

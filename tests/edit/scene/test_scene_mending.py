@@ -8,13 +8,13 @@ from box_rooms import DOOR, WINDOW, box_draft, box_room, generated_labels
 from hypothesis import given
 from voxel_scenes import TOOLS, done, grid_of, held, object_at, random_scene, seeds
 
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.edit.scene import SceneDraft, parse_command, runs_of_cells
 from world2minecraft.edit.scene.floaters import find_floaters
 from world2minecraft.edit.scene.holes import plane_gaps
 from world2minecraft.edit.scene.mending import pinholes
 from world2minecraft.edit.scene.planes import find_planes
 from world2minecraft.edit.scene.smoothing import smoothed
-from world2minecraft.errors import UnknownNameError, UsageError
 
 AROUND = [step for step in itertools.product((-1, 0, 1), repeat=3) if any(step)]
 FACES = [step for step in AROUND if sum(map(abs, step)) == 1]

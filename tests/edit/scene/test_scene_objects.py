@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from object_scenes import CHAIR, LAMP, SHAPE, TABLE, furnished_room, plain_tools
 
+from world2minecraft.core.errors import UsageError
 from world2minecraft.edit.scene import parse_command
-from world2minecraft.errors import UsageError
 
 TOOLS = plain_tools()
 COMMANDS = (

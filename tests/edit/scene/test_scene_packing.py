@@ -8,15 +8,15 @@ from edit_scenes import SHAPE, random_cells, random_operation, small_draft, stat
 from hypothesis import given
 from hypothesis import strategies as st
 
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.types.edit import each_once
 from world2minecraft.edit.scene.packing import (
     pack_objects,
     pack_operation,
     unpack_objects,
     unpack_operation,
 )
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.minecraft.nbt import read_nbt, write_nbt
-from world2minecraft.types.edit import each_once
 
 SEEDS = st.integers(0, 100_000)
 

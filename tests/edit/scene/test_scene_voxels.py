@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from voxel_scenes import TOOLS, done, grid_of, held, object_at, random_scene, seeds
 
+from world2minecraft.core.errors import UsageError
 from world2minecraft.edit.scene import SceneDraft, parse_command, runs_of_cells
 from world2minecraft.edit.scene.painting import colours_of
 from world2minecraft.edit.scene.parts import component_of, parts_of_cells
-from world2minecraft.errors import UsageError
 
 STEPS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 

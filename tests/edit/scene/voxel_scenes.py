@@ -3,9 +3,9 @@
 import numpy as np
 from hypothesis import strategies as st
 
+from world2minecraft.core.types import OccupancyGrid, Placement, SceneObject
 from world2minecraft.edit.scene import SceneDraft, Tools
 from world2minecraft.edit.scene.objects_of import facts
-from world2minecraft.types import OccupancyGrid, Placement, SceneObject
 
 VOXEL_M = 0.08
 seeds = st.integers(0, 10_000)

@@ -1,6 +1,6 @@
 """The window itself: what is seen first, keys, help, palette, legend, looking around."""
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
 
 
 def test_the_demo_room_is_whole_in_view_without_its_ceiling_and_with_three_hints(open_tab, shot):

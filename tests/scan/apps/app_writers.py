@@ -19,7 +19,7 @@ import numpy as np
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
-from world2minecraft.types import Camera
+from world2minecraft.core.types import Camera
 
 WIDE = Camera(160, 120, 130.0, 130.0, 80.0, 60.0)
 DEEP = Camera(80, 60, 65.0, 65.0, 40.0, 30.0)

@@ -11,7 +11,7 @@ import pytest
 from app_writers import ROOM_TO_ARKIT, WRITERS, shots_of, stored_lzfse, zipped
 from PIL import Image
 
-from world2minecraft.errors import InputError, MissingExtraError
+from world2minecraft.core.errors import InputError, MissingExtraError
 from world2minecraft.scan.apps.exr import ExrImage
 from world2minecraft.scan.apps.lzfse_image import LzfseImage
 from world2minecraft.scan.judged import judge_capture

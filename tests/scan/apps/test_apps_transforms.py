@@ -12,7 +12,7 @@ import pytest
 from app_writers import DEEP, FLIPPED, ROOM_TO_ARKIT, WIDE, millimetres, shots_of
 from PIL import Image
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan.judged import judge_capture
 from world2minecraft.scan.options import ScanOptions
 from world2minecraft.scan.sources import find_capture

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.errors import InputError
+from world2minecraft.core.errors import InputError
 from world2minecraft.scan import describe_capture, open_scan
 
 

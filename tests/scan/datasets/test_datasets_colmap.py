@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from writing import save, save_text, zipped
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan.judged import judge_capture
 from world2minecraft.scan.options import ScanOptions
 from world2minecraft.scan.sources import find_capture

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from writing import save, zipped
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan import open_scan
 from world2minecraft.scan.datasets.nyu_raw import _depth_to_colour
 from world2minecraft.scan.depth import DepthEncoding, read_depth

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from writing import quaternion, zipped
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan import open_scan
 from world2minecraft.scan.datasets.bag_reading import opened_bag
 from world2minecraft.scan.judged import judge_capture

@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 from writing import encoded, millimetres, save, save_text, zipped
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan import open_scan
 from world2minecraft.scan.sources import find_capture
 

@@ -10,10 +10,10 @@ import pytest
 from lz4.block import compress
 from writing import save, zipped
 
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import Camera
 from world2minecraft.scan import open_scan
 from world2minecraft.scan.sources import find_capture
-from world2minecraft.types import Camera
 
 DEPTH_CAMERA = Camera(256, 192, 208.0, 208.0, 128.0, 96.0)
 

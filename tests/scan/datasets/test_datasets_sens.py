@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from writing import encoded, millimetres, save, save_text, zipped
 
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.scan import describe_capture, open_scan
 from world2minecraft.scan.sources import find_capture
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.types import Camera
+from world2minecraft.core.types import Camera
 
 CAMERA = Camera(160, 120, 130.0, 130.0, 80.0, 60.0)  # That of box_room.
 SMALL = Camera(40, 30, 20.0, 20.0, 20.0, 15.0)

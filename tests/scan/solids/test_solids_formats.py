@@ -9,7 +9,7 @@ import solid_writers as writers
 import trimesh
 from solid_rooms import SIZE_M, room_quads
 
-from world2minecraft.errors import InputError
+from world2minecraft.core.errors import InputError
 from world2minecraft.scan.options import parse_options
 from world2minecraft.scan.solids.formats import find_solid, load_solid
 from world2minecraft.scan.sources import find_capture

@@ -7,7 +7,7 @@ import pytest
 import solid_writers as writers
 from solid_rooms import room_quads
 
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan.solids.formats import load_solid
 from world2minecraft.scan.solids.naming import class_of_name
 from world2minecraft.scan.sources import find_capture

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import solid_writers as writers
 
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.scan.solids.lists import fans
 from world2minecraft.scan.solids.ply import read_ply
 from world2minecraft.scan.solids.ply_solid import load_ply

@@ -8,7 +8,7 @@ import solid_writers as writers
 from scipy import ndimage
 from solid_rooms import Quads
 
-from world2minecraft.coordinates import apply, invert_rigid
+from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.fuse import fuse_views
 from world2minecraft.occupy import predictor
 from world2minecraft.rooms import generate_room, scan_room

@@ -3,7 +3,7 @@
 import numpy as np
 from solid_rooms import CAMERA, SMALL, rays_of, room_quads
 
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.scan.solids.blocks import surfels_in_blocks
 from world2minecraft.scan.solids.solid import Cloud
 from world2minecraft.scan.solids.splats import BLEND_M, RIM_WEIGHT, Surfels, see_points

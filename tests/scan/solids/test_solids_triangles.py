@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from solid_rooms import CAMERA, SMALL, rays_of, room_quads
 
-from world2minecraft.coordinates import invert_rigid, look_at
+from world2minecraft.core.coordinates import invert_rigid, look_at
 from world2minecraft.scan.solids.blocks import mesh_in_blocks
 from world2minecraft.scan.solids.solid import Mesh
 from world2minecraft.scan.solids.triangles import see_triangles

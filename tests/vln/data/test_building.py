@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from world2minecraft import cli
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.data import made_scenes
 from world2minecraft.vln.data.building import BuildRule, build_set, composition_of
 from world2minecraft.vln.data.crew import _Count

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from world2minecraft import cli
-from world2minecraft.errors import DamagedFileError, UsageError
+from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.vln.data.building import BuildRule, build_set
 from world2minecraft.vln.data.recorded import (
     checked_at,

@@ -11,7 +11,7 @@ from tests.models.scripted_server import BUSY, scripted
 from vln_sets import WORDS, small_set
 
 from world2minecraft import cli
-from world2minecraft.errors import BudgetError, DamagedFileError, InputError, ServerError
+from world2minecraft.core.errors import BudgetError, DamagedFileError, InputError, ServerError
 from world2minecraft.vln.data.rewording import (
     annotate_set,
     asked_by,

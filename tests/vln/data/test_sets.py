@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
-from world2minecraft.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.vln.data.album import are_apart
 from world2minecraft.vln.data.baselines import baselines
 from world2minecraft.vln.data.building import BuildRule, build_set, composition_of

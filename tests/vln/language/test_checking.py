@@ -2,7 +2,7 @@
 
 import pytest
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.language.checking import (
     Spoken,
     findings,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.errors import DamagedFileError, InputError
+from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.vln.landmarks import Landmark
 from world2minecraft.vln.language.grammar import goal_text, instructions_of, landmark_text
 from world2minecraft.vln.language.humans import read_annotations, with_annotations

@@ -21,13 +21,13 @@ from world2minecraft.build.places import LAST, in_order
 from world2minecraft.build.seats import chair_paints
 from world2minecraft.build.tops import top_cells
 from world2minecraft.build.worktops import Worktop, find_worktop, joined
-from world2minecraft.classes import OBJECT_CLASSES, SemanticClass
-from world2minecraft.coordinates import apply, cell_centers_m, invert
+from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
+from world2minecraft.core.coordinates import apply, cell_centers_m, invert
+from world2minecraft.core.types import UNSEEN, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import Part, Template, template
 from world2minecraft.metrics.solids import OWN_CELLS, own_cells
 from world2minecraft.minecraft.displays import VIEW_BLOCKS
 from world2minecraft.minecraft.glow import is_luminous
-from world2minecraft.types import UNSEEN, ObjectInstance, OccupancyGrid, Placement
 
 # Pieces over which an object is made coarser: the bounds, and the richest of the library.
 MOST_PIECES = {int(SemanticClass.FURN): 15, int(SemanticClass.OBJS): 24}

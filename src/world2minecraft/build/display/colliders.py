@@ -12,7 +12,7 @@ import numpy as np
 
 from world2minecraft.build.canvas import BARRIER, LIGHT, Canvas
 from world2minecraft.build.display.frame import Frame, Piece, boxes_in_room
-from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.minecraft.glow import is_luminous
 
 FINE = 8  # Samples along the side of a block.

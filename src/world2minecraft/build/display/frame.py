@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, room_to_block, rotation_about_z
+from world2minecraft.core.coordinates import apply, room_to_block, rotation_about_z
+from world2minecraft.core.types import Entity
 from world2minecraft.minecraft.displays import block_display
-from world2minecraft.types import Entity
 
 
 class Piece(NamedTuple):

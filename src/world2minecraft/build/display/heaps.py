@@ -7,8 +7,8 @@ from world2minecraft.build.display.pieces import heap_pieces
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.surfaces import painted
+from world2minecraft.core.types import UNSEEN, OccupancyGrid
 from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.types import UNSEEN, OccupancyGrid
 
 MOST_COLOURS = 3  # Each further one costs boxes; an object of four paints is rare.
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from world2minecraft.build.canvas import UNSEEN_BLOCKS, Canvas
 from world2minecraft.build.display.frame import Frame
-from world2minecraft.classes import SemanticClass
-from world2minecraft.types import OccupancyGrid
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
 
 STANDS_M = 0.12  # A bottom this near to the floor stands on it: one and a half cells of 8 cm.
 FLOOR_STANDS_M = 0.3  # The same of furniture that always stands on a floor.

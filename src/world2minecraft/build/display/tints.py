@@ -8,7 +8,7 @@ from world2minecraft.build.display.frame import Frame
 from world2minecraft.build.paint import FADED, costs_of
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
-from world2minecraft.coordinates import apply, invert
+from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.furniture import Part, Template
 from world2minecraft.furniture.materials import FIXED, Material, swatches
 from world2minecraft.minecraft.glow import is_luminous

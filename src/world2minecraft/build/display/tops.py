@@ -13,9 +13,9 @@ import numpy as np
 from world2minecraft.build.display.frame import Frame, Piece
 from world2minecraft.build.display.shifting import WALLS
 from world2minecraft.build.worktops import Worktop
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
 from world2minecraft.geometry.boxes import partition
-from world2minecraft.types import UNSEEN, OccupancyGrid, Placement
 
 COUNTER = "counter"
 REACHES_M = 0.2  # A row whose top is this near to a worktop's carries it.

@@ -11,9 +11,9 @@ from typing import Any
 
 from world2minecraft.compare.importers.reading import READ_ERRORS, why
 from world2minecraft.compare.values import ComparedScene
-from world2minecraft.errors import DamagedFileError, InputError
-from world2minecraft.files import read_json
-from world2minecraft.registry import Registry
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.registry import Registry
 
 MOST_BYTES = 256 << 20  # LayoutGPT's 423 bedrooms have 0.9 MB.
 PX_M = 3.5 / 256  # See layoutgpt.py.

@@ -32,7 +32,7 @@ from world2minecraft.compare.importers.reading import (
     why,
 )
 from world2minecraft.compare.values import ComparedScene
-from world2minecraft.types import LayoutObject
+from world2minecraft.core.types import LayoutObject
 
 if TYPE_CHECKING:
     from world2minecraft.compare.importers import How

@@ -31,9 +31,9 @@ from world2minecraft.compare.importers.reading import (
     why,
 )
 from world2minecraft.compare.values import ComparedScene
-from world2minecraft.errors import InputError
-from world2minecraft.files import read_json
-from world2minecraft.types import Layout, LayoutObject
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.types import Layout, LayoutObject
 
 if TYPE_CHECKING:
     from world2minecraft.compare.importers import How

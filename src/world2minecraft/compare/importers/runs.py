@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 from world2minecraft.compare.importers.reading import MOST_OBJECTS
 from world2minecraft.compare.values import ComparedScene
-from world2minecraft.errors import InputError
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.types import Layout
 from world2minecraft.evaluate.frames import truth_of_run
 from world2minecraft.evaluate.layout import in_room
 from world2minecraft.exchange.objects import read_placements
 from world2minecraft.exchange.room import read_room
 from world2minecraft.exchange.rooms import read_rooms
 from world2minecraft.metrics.layout import collisions
-from world2minecraft.types import Layout
 
 if TYPE_CHECKING:
     from world2minecraft.compare.importers import How

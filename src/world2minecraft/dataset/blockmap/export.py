@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.dataset.blockmap.rules import BlockMap, Rule
 from world2minecraft.minecraft.states import known_blocks
 

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES, UNKNOWN
+from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN
+from world2minecraft.core.errors import UsageError
 from world2minecraft.dataset.blockmap.rules import BlockMap, matches
 from world2minecraft.dataset.values import FineClass
-from world2minecraft.errors import UsageError
 
 
 def class_of_fine(fine: FineClass, rules: BlockMap) -> int | None:

@@ -9,11 +9,11 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import InputError, UnknownNameError
+from world2minecraft.core.files import plain_yaml, read_bytes
 from world2minecraft.dataset.blockmap.conditions import CONDITIONS, MEASURES, NEIGHBOURS
 from world2minecraft.dataset.blockmap.rules import BlockMap, Pattern, Rule, Span, Words, pattern_of
-from world2minecraft.errors import InputError, UnknownNameError
-from world2minecraft.files import plain_yaml, read_bytes
 
 MAPS = ("nyu", "paper")
 MAX_BYTES = 256 << 10  # The longest that is shipped has 12 kB; PyYAML reads about 100 kB a second.

@@ -11,7 +11,7 @@ from fnmatch import translate
 from functools import cached_property
 from typing import NamedTuple
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
 
 Span = tuple[float, float]
 ANY = "*"  # The namespace of words that speak of every mod.

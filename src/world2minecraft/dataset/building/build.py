@@ -9,6 +9,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.core.errors import ConflictError, OutputError, UsageError
+from world2minecraft.core.files import write_json
+from world2minecraft.core.locks import Lock
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.dataset.building.clock import STAGES, milliseconds_an_image
 from world2minecraft.dataset.building.crew import dismiss, wait_for_others
 from world2minecraft.dataset.building.scenes import SceneFacts, SceneTask, survey
@@ -35,10 +39,6 @@ from world2minecraft.dataset.store.sample_files import FORMAT, FineTable
 from world2minecraft.dataset.store.shard import PART
 from world2minecraft.dataset.store.writing import finish_store
 from world2minecraft.dataset.values import FineClass
-from world2minecraft.errors import ConflictError, OutputError, UsageError
-from world2minecraft.files import write_json
-from world2minecraft.lock import Lock
-from world2minecraft.progress import Progress, silent
 
 EMPTY = FineClass("minecraft:air")
 

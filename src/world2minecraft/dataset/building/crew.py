@@ -21,9 +21,9 @@ try:
 except ImportError:  # Windows has no shared locks; workers end with their parent there too.
     fcntl = None
 
+from world2minecraft.core.errors import ConflictError, OutputError
 from world2minecraft.dataset.engine.worker import end_if_deserted
 from world2minecraft.dataset.store.layout import CREW
-from world2minecraft.errors import ConflictError, OutputError
 
 PATIENCE_S = 60.0  # Workers notice within a second; one that writes to a slow disk takes longer.
 _PAUSE_S = 0.05

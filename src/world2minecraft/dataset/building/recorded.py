@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.plan import GivenViews
 from world2minecraft.dataset.screenshots import RecordedView, read_screenshots
 from world2minecraft.dataset.tours import PlannedView, read_views
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.types import Camera
 
 LONGEST_NAME = 30  # Of a tour, in the keys of its samples.
 

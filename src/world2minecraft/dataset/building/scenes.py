@@ -14,6 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.core.errors import ConflictError, DamagedFileError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.dataset.building.crew import of_the_crew
 from world2minecraft.dataset.building.recorded import given_views
 from world2minecraft.dataset.naming import fine_names
@@ -22,11 +25,8 @@ from world2minecraft.dataset.source import SceneSource, open_scene_source
 from world2minecraft.dataset.store.layout import SCENES
 from world2minecraft.dataset.tours import TourRule, layouts_beside, plan_views, write_views
 from world2minecraft.dataset.values import FineClass
-from world2minecraft.errors import ConflictError, DamagedFileError
-from world2minecraft.files import read_json, write_json
 from world2minecraft.render import LookLight, prepare_scene
 from world2minecraft.rooms.worlds import house_of, write_house
-from world2minecraft.types import BlockVolume
 
 USUAL_HOUR = 12.0
 

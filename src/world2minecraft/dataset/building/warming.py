@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 
+from world2minecraft.core.jit import is_compiled
 from world2minecraft.dataset.building.clock import StageClock
 from world2minecraft.dataset.building.scenes import SceneTask, survey
 from world2minecraft.dataset.building.studio import studio_of
-from world2minecraft.jit import is_compiled
 
 _LAST = "label_kernels.count_hits"  # A kernel that a sample needs last.
 

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from typing import Any, Protocol
 
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.registry import Registry
 from world2minecraft.dataset.engine.here import HereEngine
-from world2minecraft.errors import UsageError
-from world2minecraft.registry import Registry
 
 Tick = Callable[[int], None]  # Called with how many images more are done.
 Task = Callable[[Any, Tick], Any]  # At the top of a module; what it takes and gives is sent.

@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from typing import Any
 
+from world2minecraft.core.errors import MissingExtraError, WorkerError
 from world2minecraft.dataset.engine.worker import one_thread
-from world2minecraft.errors import MissingExtraError, WorkerError
 
 AHEAD = 2  # Items in Ray's hands for each process, so that none waits.
 STORE_BYTES = 128 << 20  # Of shared memory: results are small.

@@ -17,8 +17,8 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
+from world2minecraft.core.errors import WorkerError
 from world2minecraft.dataset.engine.worker import Done, Failed, Order, Ticked, serve
-from world2minecraft.errors import WorkerError
 
 MOST_DEATHS = 3  # Of workers over one item: then it is the item that kills them.
 PATIENCE_S = 5.0

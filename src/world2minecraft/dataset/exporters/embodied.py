@@ -10,15 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import write_bytes, write_text
 from world2minecraft.dataset.exporters.occscannet import OccScanNetExporter
 from world2minecraft.dataset.exporters.rules import ExportRule
 from world2minecraft.dataset.exporters.scene_names import NamedSample
 from world2minecraft.dataset.formats.pickling import pickle_bytes
 from world2minecraft.dataset.formats.scene_grid import SceneGrid, StoredFrame, stored_frame
 from world2minecraft.dataset.values import USUAL_VOXEL_M, OccSample
-from world2minecraft.errors import UsageError
-from world2minecraft.files import write_bytes, write_text
 
 OFFICIAL_CELLS = (200, 220, 90)  # EmbodiedOcc's compiled operation holds no larger scene.
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
+from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.dataset.exporters.rules import FORMATS, Exporter, ExportRule
 from world2minecraft.dataset.values import OccSample
-from world2minecraft.errors import ConflictError, UnknownNameError, UsageError
-from world2minecraft.files import read_json, write_json
-from world2minecraft.progress import Progress, silent
 
 RECORD = "export.json"  # What was chosen, in the folder's root,
 SOURCE = "sha256"  # and the sum of the data set that is exported.

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.files import write_json, write_npz
 from world2minecraft.dataset.exporters.rules import ExportRule
 from world2minecraft.dataset.formats.boxes import cells_in_image, chosen_labels
 from world2minecraft.dataset.values import OccSample
-from world2minecraft.files import write_json, write_npz
 
 SPLITS = ("train", "test", "val", "all")
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.core.files import write_bytes
 from world2minecraft.dataset.exporters.pictures import colour_of, jpeg_bytes, split_of
 from world2minecraft.dataset.exporters.rules import ExportRule
 from world2minecraft.dataset.formats.boxes import (
@@ -25,7 +26,6 @@ from world2minecraft.dataset.formats.depth_codes import depth_png
 from world2minecraft.dataset.formats.pickling import pickle_bytes
 from world2minecraft.dataset.formats.sscnet import HEADER_BYTES, bin_bytes, downsampled
 from world2minecraft.dataset.values import OccSample
-from world2minecraft.files import write_bytes
 
 FOLDERS = {"train": "NYUtrain", "test": "NYUtest"}
 AXES = (0, 2, 1)  # Ours x, y, z; theirs x, z, y. The same swap leads back.

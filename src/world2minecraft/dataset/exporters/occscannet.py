@@ -10,6 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.files import write_bytes, write_text
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.exporters.pictures import colour_of, jpeg_bytes, split_of
 from world2minecraft.dataset.exporters.rules import ExportRule
 from world2minecraft.dataset.exporters.scene_names import NamedSample, SceneNames
@@ -26,9 +29,6 @@ from world2minecraft.dataset.formats.depth_codes import depth_png
 from world2minecraft.dataset.formats.pickling import pickle_bytes
 from world2minecraft.dataset.formats.sscnet import downsampled
 from world2minecraft.dataset.values import OccSample
-from world2minecraft.errors import InputError
-from world2minecraft.files import write_bytes, write_text
-from world2minecraft.types import Camera
 
 AXES = (1, 0, 2)  # Ours x, y, z; theirs y, x, z. The same swap leads back.
 ORIGIN_DECIMALS = 4  # EmbodiedOcc's loader rounds to them, so that all loaders see one box.

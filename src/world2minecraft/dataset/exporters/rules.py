@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.dataset.values import OccSample
-from world2minecraft.errors import UnknownNameError, UsageError
 
 FORMATS = ("nyu", "occscannet", "embodied", "npz")
 UNKNOWN_CHOICES = ("keep", "empty")

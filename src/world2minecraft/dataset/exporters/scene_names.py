@@ -8,8 +8,8 @@ that an export that goes on, or grows, keeps its names.
 from dataclasses import dataclass
 from pathlib import Path
 
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import read_json, write_json
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_json, write_json
 
 TABLE = "names.json"
 SAVE_EVERY = 50  # Samples, or a twentieth of them: writing the table stays cheap as it grows.

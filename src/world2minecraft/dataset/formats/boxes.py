@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
-from world2minecraft.coordinates import apply, invert_rigid, turn_grid
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.coordinates import apply, invert_rigid, turn_grid
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.values import USUAL_SHAPE, USUAL_VOXEL_M, OccSample
-from world2minecraft.errors import InputError
-from world2minecraft.types import Camera
 
 TURN_SLACK_DEG = 0.01
 

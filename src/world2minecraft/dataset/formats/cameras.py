@@ -9,9 +9,9 @@ import math
 import numpy as np
 from PIL import Image
 
-from world2minecraft.coordinates import fov_deg_of_focal_px
-from world2minecraft.errors import InputError
-from world2minecraft.types import Camera
+from world2minecraft.core.coordinates import fov_deg_of_focal_px
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.types import Camera
 
 WIDTH_PX, HEIGHT_PX = 640, 480
 HALF_PX = 0.5

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.coordinates import cell_centers_m
+from world2minecraft.core.coordinates import cell_centers_m
+from world2minecraft.core.errors import LimitError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.formats.boxes import LabelledBox, box_in_image
 from world2minecraft.dataset.formats.cameras import HALF_PX, HEIGHT_PX, WIDTH_PX
 from world2minecraft.dataset.formats.unpickling import read_pickle
 from world2minecraft.dataset.values import USUAL_SHAPE
-from world2minecraft.errors import LimitError
-from world2minecraft.types import Camera
 
 MAX_CELLS = 100_000_000  # A hall of 64 x 64 x 12 m; its package would take 1.4 GB.
 

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, UNKNOWN
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import read_bytes
-from world2minecraft.jit import njit
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_bytes
+from world2minecraft.core.jit import njit
 
 FINE_SHAPE = (240, 144, 240)  # x, z up, y
 FINE_PER_CELL = 4

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.errors import DamagedFileError, reason_of
+from world2minecraft.core.files import read_bytes
 from world2minecraft.dataset.formats.stack import Array, Machine, Refusal
-from world2minecraft.errors import DamagedFileError, reason_of
-from world2minecraft.files import read_bytes
 
 MAX_BYTES = 512 << 20  # A scene of 220 x 220 x 90 cells with float64 centres takes 105 MB.
 MAX_OPERATIONS = 200_000  # A frame takes about a hundred.

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.dataset.formats.unpickling import read_pickle
 from world2minecraft.dataset.importers.labelled import (
     checked_labels,
@@ -20,7 +21,6 @@ from world2minecraft.dataset.importers.labelled import (
 from world2minecraft.dataset.importers.occscannet import read_frame
 from world2minecraft.dataset.importers.source import ImportedSet
 from world2minecraft.dataset.values import USUAL_VOXEL_M, OccSample
-from world2minecraft.errors import DamagedFileError, InputError
 
 _FRAME = re.compile(r"([\w-]{1,100})_(\d{1,9})_new", re.ASCII)
 MAX_SCENE_BYTES = 2 << 30

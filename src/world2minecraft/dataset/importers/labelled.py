@@ -11,8 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.formats.boxes import cells_in_image
 from world2minecraft.dataset.values import (
     USUAL_SHAPE,
@@ -22,9 +24,7 @@ from world2minecraft.dataset.values import (
     OccLabels,
     OccSample,
 )
-from world2minecraft.errors import DamagedFileError
 from world2minecraft.geometry.lifting import lift_depth
-from world2minecraft.types import Camera
 
 CLASS_KINDS = tuple(FineClass(f"nyu:{name}") for name in CLASS_NAMES)
 INTO_CELL = 0.25  # Of a cell: so far behind its depth a surface's point is taken to lie in it.

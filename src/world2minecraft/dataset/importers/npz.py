@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.files import array_names, read_npz
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.importers.source import ImportedSet
 from world2minecraft.dataset.values import FineClass, LabelRegion, OccLabels, OccSample
-from world2minecraft.errors import DamagedFileError, InputError
-from world2minecraft.files import array_names, read_npz
-from world2minecraft.types import Camera
 
 SPLITS = {"train": "train", "test": "test", "val": "val", "all": ""}
 MASKS = ("labels", "fine", "instance", "in_frustum", "hits", "free")

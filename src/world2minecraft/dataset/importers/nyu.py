@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.dataset.formats.cameras import HEIGHT_PX, NYU_CAMERA, WIDTH_PX
 from world2minecraft.dataset.formats.sscnet import downsampled, read_bin
 from world2minecraft.dataset.formats.unpickling import read_pickle
@@ -21,7 +22,6 @@ from world2minecraft.dataset.importers.labelled import (
 from world2minecraft.dataset.importers.pictures import colour_at, depth_at, resized_colour
 from world2minecraft.dataset.importers.source import ImportedSet
 from world2minecraft.dataset.values import OccSample
-from world2minecraft.errors import DamagedFileError, InputError
 
 FOLDERS = {"NYUtrain": "train", "NYUtest": "test"}
 AXES = (0, 2, 1)  # Theirs x, z up, y; ours x, y, z. The same swap leads back.

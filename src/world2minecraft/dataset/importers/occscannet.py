@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.formats.cameras import HALF_PX, HEIGHT_PX, WIDTH_PX
 from world2minecraft.dataset.formats.unpickling import read_pickle
 from world2minecraft.dataset.importers.labelled import (
@@ -22,8 +24,6 @@ from world2minecraft.dataset.importers.labelled import (
 from world2minecraft.dataset.importers.pictures import colour_at, depth_at, resized_colour
 from world2minecraft.dataset.importers.source import ImportedSet
 from world2minecraft.dataset.values import USUAL_SHAPE, OccSample
-from world2minecraft.errors import DamagedFileError, InputError
-from world2minecraft.types import Camera
 
 AXES = (1, 0, 2)  # Theirs y, x, z; ours x, y, z. The same swap leads back.
 LISTS = {

@@ -4,12 +4,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+from world2minecraft.core.errors import InputError, UnknownNameError
 from world2minecraft.dataset.importers.embodied import is_embodied, open_embodied
 from world2minecraft.dataset.importers.npz import is_npz, open_npz
 from world2minecraft.dataset.importers.nyu import is_nyu, open_nyu
 from world2minecraft.dataset.importers.occscannet import is_occscannet, open_occscannet
 from world2minecraft.dataset.importers.source import ImportedSet
-from world2minecraft.errors import InputError, UnknownNameError
 
 
 class Kind(NamedTuple):

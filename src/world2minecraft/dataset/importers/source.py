@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.dataset.values import OccSample
-from world2minecraft.errors import UnknownNameError
 
 
 @dataclass(frozen=True)

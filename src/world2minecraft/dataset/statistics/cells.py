@@ -6,7 +6,7 @@ hundred thousand pictures no more than the worlds that they show.
 
 import numpy as np
 
-from world2minecraft.coordinates import apply
+from world2minecraft.core.coordinates import apply
 from world2minecraft.dataset.values import LabelRegion
 
 SIDE = 32

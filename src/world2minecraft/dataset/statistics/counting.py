@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.dataset.importers.labelled import CLASS_KINDS
 from world2minecraft.dataset.statistics.cells import WorldCells
 from world2minecraft.dataset.statistics.values import (

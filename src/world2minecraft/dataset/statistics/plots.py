@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COLOURS, CLASS_NAMES
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
+from world2minecraft.core.errors import MissingExtraError
+from world2minecraft.core.files import write_bytes
 from world2minecraft.dataset.statistics.paper import NYU_TRAIN_VOXELS
 from world2minecraft.dataset.statistics.tables import class_shares, short
 from world2minecraft.dataset.statistics.values import DatasetStatistics
-from world2minecraft.errors import MissingExtraError
-from world2minecraft.files import write_bytes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,14 +12,14 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.core.errors import InputError, WorkerError
+from world2minecraft.core.files import read_bytes, read_json
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.dataset.importers.opening import IMPORTED, open_occupancy
 from world2minecraft.dataset.statistics.counting import StatisticsCounter, add_sample, count_samples
 from world2minecraft.dataset.statistics.values import DatasetStatistics
 from world2minecraft.dataset.store import OccStore, open_store
 from world2minecraft.dataset.store.layout import META, SCENES
-from world2minecraft.errors import InputError, WorkerError
-from world2minecraft.files import read_bytes, read_json
-from world2minecraft.progress import Progress, silent
 
 SCENE_ID = re.compile(r"[A-Za-z0-9_-]{1,90}")
 HOUSE = "house.json"

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.dataset.statistics.paper import NYU_TRAIN_VOXELS, PAPER, PUBLISHED_SETS
 from world2minecraft.dataset.statistics.values import (
     ENOUGH_PICTURES,

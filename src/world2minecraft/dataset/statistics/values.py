@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
 
 # A fine class counts once it is seen by so many pixels of so many pictures.
 ENOUGH_PIXELS, ENOUGH_PICTURES = 100, 3

@@ -11,11 +11,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import DamagedFileError, LimitError, MissingExtraError, OutputError
 from world2minecraft.dataset.store.layout import SHARD_NAME
 from world2minecraft.dataset.store.sample_files import DEPTH, FACTS, IMAGE_FORMATS, LABELS
 from world2minecraft.dataset.store.stored import StoredSample, stored_samples
-from world2minecraft.errors import DamagedFileError, LimitError, MissingExtraError, OutputError
 
 COUNTS = ("occupied", "visible", "free", "in_frustum", "occluded", "unknown", "hits", "fine")
 TEXTS = ("key", "scene_id", "tour_id", "split", "shard", "region", "sha256")

@@ -16,11 +16,11 @@ import re
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.files import read_json, write_json, write_text
 from world2minecraft.dataset.store.sample_files import FORMAT, FineTable
 from world2minecraft.dataset.values import FineClass
-from world2minecraft.errors import DamagedFileError, InputError
-from world2minecraft.files import read_json, write_json, write_text
 
 META, CLASSES, INDEX, CARD, LOCK, CREW = (
     "dataset.json",

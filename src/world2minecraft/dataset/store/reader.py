@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError, UsageError
 from world2minecraft.dataset.store.index import read_index
 from world2minecraft.dataset.store.layout import INDEX, read_classes, read_meta
 from world2minecraft.dataset.store.sample_files import (
@@ -21,7 +22,6 @@ from world2minecraft.dataset.store.sample_files import (
 )
 from world2minecraft.dataset.store.stored import StoredSample, stored_samples
 from world2minecraft.dataset.values import OccSample
-from world2minecraft.errors import DamagedFileError, InputError, UnknownNameError, UsageError
 
 MAX_SAMPLE_BYTES = 512 << 20
 MOST_LOOKED_AT = 2000  # Keys that a wrong one is compared with.

@@ -14,8 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT
-from world2minecraft.coordinates import carry_camera, invert
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.coordinates import carry_camera, invert
+from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.files import npz_arrays, npz_bytes
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.store.pictures import (
     IMAGE_FORMATS,
     QUALITY,
@@ -25,10 +28,7 @@ from world2minecraft.dataset.store.pictures import (
     picture_bytes,
 )
 from world2minecraft.dataset.values import FineClass, LabelRegion, OccLabels, OccSample
-from world2minecraft.errors import DamagedFileError, UsageError
-from world2minecraft.files import npz_arrays, npz_bytes
 from world2minecraft.render.output.images import PER_METRE
-from world2minecraft.types import Camera
 
 FORMAT = 1
 DEPTH, LABELS, FACTS = "depth.png", "occ.npz", "json"

@@ -16,9 +16,9 @@ from pathlib import Path
 
 from filelock import lock_descriptor
 
+from world2minecraft.core.errors import ConflictError, OutputError
 from world2minecraft.dataset.store.stored import stored_samples
 from world2minecraft.dataset.store.tar import end_bytes, member_bytes
-from world2minecraft.errors import ConflictError, OutputError
 
 PART = ".part"
 PATIENCE_S = 60.0  # A worker whose builder was killed ends with its sample.

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, BinaryIO
 
+from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.dataset.store.sample_files import FACTS, MAX_FACTS_BYTES, read_facts
 from world2minecraft.dataset.store.tar import Member, member_at
-from world2minecraft.errors import DamagedFileError
 
 _MOST_MEMBERS = 8
 _CHUNK = 1 << 20

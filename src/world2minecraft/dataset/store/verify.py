@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.dataset.store.index import COUNTS, read_index, shard_rows, sum_of
 from world2minecraft.dataset.store.layout import (
     CARD,
@@ -21,8 +23,6 @@ from world2minecraft.dataset.store.layout import (
     read_meta,
 )
 from world2minecraft.dataset.store.stored import is_right, stored_samples
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.progress import Progress, silent
 
 COMPARED = ("key", "offset", "size", "sha256", *(f"cells_{name}" for name in COUNTS))
 

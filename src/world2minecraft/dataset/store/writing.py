@@ -10,6 +10,10 @@ import numpy as np
 import PIL
 
 from world2minecraft import __version__
+from world2minecraft.core.errors import ConflictError, UsageError
+from world2minecraft.core.files import write_json
+from world2minecraft.core.locks import Lock
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.dataset.store.index import arrow_modules, shard_rows, write_index
 from world2minecraft.dataset.store.layout import (
     INDEX,
@@ -25,10 +29,6 @@ from world2minecraft.dataset.store.sample_files import FORMAT, FineTable, Sample
 from world2minecraft.dataset.store.shard import ShardWriter
 from world2minecraft.dataset.store.tar import LONGEST_KEY
 from world2minecraft.dataset.values import FineClass, OccSample
-from world2minecraft.errors import ConflictError, UsageError
-from world2minecraft.files import write_json
-from world2minecraft.lock import Lock
-from world2minecraft.progress import Progress, silent
 
 LONGEST_SCENE = 80  # A shard's name, with its number, has 90.
 SHARD_SAMPLES = 100  # About 100 MB at 1920x1129; a download of a shard, a unit of work.

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from world2minecraft.core.types import Layout
 from world2minecraft.exchange.layout import read_layouts
-from world2minecraft.types import Layout
 
 _NAME = "layout.json"
 

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.coordinates import eye_height_blocks
+from world2minecraft.core.coordinates import eye_height_blocks
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.tours.values import PlannedView, nyu_camera
-from world2minecraft.errors import UsageError
 from world2minecraft.render.views.cameras import camera_of
 from world2minecraft.render.views.poses import Shot
 from world2minecraft.render.views.tour_file import TourPose, read_tour, tour_line, write_lines
-from world2minecraft.types import Camera
 
 
 def write_views(

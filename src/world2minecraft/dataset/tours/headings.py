@@ -7,13 +7,13 @@ camera would see there. The best sequence of headings, in which turning costs, i
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import camera_to_block_of_game_pose, carry_camera
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import camera_to_block_of_game_pose, carry_camera
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
 from world2minecraft.dataset.tours.values import KINDS, TourRule
-from world2minecraft.jit import njit
 from world2minecraft.render.batch import render_batch
 from world2minecraft.render.scene import BlockScene
-from world2minecraft.types import Camera
 
 HEADINGS = 24  # Fifteen degrees apart.
 AROUND = Camera(24, 16, 12.0, 12.0, 12.0, 8.0)  # 90 degrees wide: four of them see all round.

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.dataset.tours.values import TourRule
 from world2minecraft.geometry.undistort import pinhole_of
 from world2minecraft.render.batch import render_batch

@@ -1,13 +1,13 @@
 """``plan_views``: walks through all rooms of a volume, and the views of them that are worth it."""
 
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.dataset.tours.rooms import TourRoom, find_rooms, shared
 from world2minecraft.dataset.tours.tourist import Kinds, Tourist
 from world2minecraft.dataset.tours.values import PlannedView, TourRule
 from world2minecraft.dataset.tours.walks import Grounds
-from world2minecraft.errors import UsageError
-from world2minecraft.progress import Progress, silent
 from world2minecraft.render.scene import BlockScene, prepare_scene
-from world2minecraft.types import BlockVolume
 from world2minecraft.walk.columns import Solid
 from world2minecraft.walk.graph import SLIM, WalkGraph, WalkRule, solid_of, walk_graph
 

@@ -13,12 +13,12 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import KDTree
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import apply
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.dataset.tours.values import TourRule
-from world2minecraft.jit import njit
 from world2minecraft.rooms.stands import is_inside
-from world2minecraft.types import BlockVolume
 from world2minecraft.walk.body import HEIGHT
 from world2minecraft.walk.columns import Solid
 from world2minecraft.walk.graph import WalkGraph

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from world2minecraft.coordinates import PLAYER_EYE_BLOCKS
+from world2minecraft.core.coordinates import PLAYER_EYE_BLOCKS
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.dataset.tours.headings import (
     best_yaws,
     drawn_kinds,
@@ -19,7 +20,6 @@ from world2minecraft.dataset.tours.values import KINDS, PlannedView, TourRule, k
 from world2minecraft.dataset.tours.walks import SAMPLE_M, Grounds, plan_walk
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.views.poses import GamePose
-from world2minecraft.types import BlockVolume
 
 WALK_M_S, TURN_DEG_S = 1.0, 60.0  # How fast one walks and turns between two frames.
 GAP_M, GAP_DEG = 0.8, 75.0  # A tour ends where the next good view is farther than this.

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.coordinates import rotation_about_z
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Placement, SceneObject
 from world2minecraft.edit.scene.draft import SceneDraft
-from world2minecraft.errors import UsageError
-from world2minecraft.types import Placement, SceneObject
 
 OWN_CELLS = "cells"  # The template of what is built from its object's own cells.
 MAX_OBJECTS = 65535

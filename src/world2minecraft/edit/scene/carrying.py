@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.coordinates import metres_to_cells
+from world2minecraft.core.coordinates import metres_to_cells
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import GridCells, Operation, SceneObject
 from world2minecraft.edit.scene.boxes import said, shifted
 from world2minecraft.edit.scene.draft import ARRAYS, SceneDraft
 from world2minecraft.edit.scene.patch import Patch
-from world2minecraft.errors import UsageError
-from world2minecraft.types import GridCells, Operation, SceneObject
 
 
 def planned_shift(draft: SceneDraft, one: SceneObject, shift: np.ndarray, kind: str) -> Operation:

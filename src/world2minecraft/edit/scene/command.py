@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import ObjectInstance, OccupancyGrid, Operation, Placement
 from world2minecraft.edit.scene.draft import SceneDraft
-from world2minecraft.errors import UsageError
-from world2minecraft.types import ObjectInstance, OccupancyGrid, Operation, Placement
 
 MAX_RUNS = 200_000
 

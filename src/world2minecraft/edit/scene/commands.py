@@ -4,12 +4,12 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.edit.scene.command import Command
 from world2minecraft.edit.scene.mending import FillHoles, RemoveFloaters, Smooth
 from world2minecraft.edit.scene.object_commands import OBJECT_COMMANDS
 from world2minecraft.edit.scene.voxels import DeleteComponent, FillBox, Paste, SetCells
 from world2minecraft.edit.scene.whole_class import DeleteClass, RelabelClass
-from world2minecraft.errors import UnknownNameError, UsageError
 
 COMMANDS: dict[str, type[Command]] = {
     kind.model_fields["op"].default: kind

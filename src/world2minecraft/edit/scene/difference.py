@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.edit.scene.draft import SceneDraft
-from world2minecraft.errors import UsageError
-from world2minecraft.types import OccupancyGrid
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import COMPLETED, Placement, SceneObject
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.floaters import find_floaters
 from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.progress import Progress, silent
-from world2minecraft.types import COMPLETED, Placement, SceneObject
 
 LOW_IOU = 0.5  # Under this the furniture and the cells have less in common than not.
 TIE = 0.03  # Nearer than this, noise decides between two.

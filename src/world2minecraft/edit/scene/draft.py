@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.errors import ConflictError
+from world2minecraft.core.types import GridCells, OccupancyGrid, Operation, SceneObject
 from world2minecraft.edit.scene.objects_of import same_object
-from world2minecraft.errors import ConflictError
-from world2minecraft.types import GridCells, OccupancyGrid, Operation, SceneObject
 
 ARRAYS = ("labels", "confidence", "colour", "source", "instance")
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import STRUCTURE_CLASSES
+from world2minecraft.core.classes import STRUCTURE_CLASSES
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.planes import WALL_M2
 from world2minecraft.geometry.parts import connected_parts

@@ -5,7 +5,9 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from world2minecraft.classes import CLASS_NAMES
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Operation, Placement, SceneObject
 from world2minecraft.edit.scene.boxes import (
     OWN_CELLS,
     boxed,
@@ -20,9 +22,7 @@ from world2minecraft.edit.scene.objects import Id, Ids, Point, QuarterTurns
 from world2minecraft.edit.scene.objects_of import instance_of, object_of
 from world2minecraft.edit.scene.patch import Patch
 from world2minecraft.edit.scene.standing import standing_box
-from world2minecraft.errors import UsageError
 from world2minecraft.furniture import Template, cells_of, template, templates_of
-from world2minecraft.types import Operation, Placement, SceneObject
 
 ObjectClass = Annotated[int, Field(ge=5, le=11)]
 TemplateName = Annotated[str, Field(min_length=1, max_length=200)]

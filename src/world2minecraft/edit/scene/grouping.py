@@ -6,6 +6,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import OccupancyGrid, Operation, SceneObject
 from world2minecraft.edit.scene.boxes import free_number, object_named, objects_named, said
 from world2minecraft.edit.scene.command import Command, Tools
 from world2minecraft.edit.scene.draft import SceneDraft
@@ -13,8 +15,6 @@ from world2minecraft.edit.scene.furnishing import ObjectClass
 from world2minecraft.edit.scene.objects import Id, Ids, Metre
 from world2minecraft.edit.scene.objects_of import instance_of, object_of
 from world2minecraft.edit.scene.patch import Patch
-from world2minecraft.errors import UsageError
-from world2minecraft.types import OccupancyGrid, Operation, SceneObject
 
 ROUNDS = 50  # Of two to eight clusters of an object's cells; most need ten.
 

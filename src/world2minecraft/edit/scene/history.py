@@ -6,9 +6,9 @@ is in the log, which may be a file, before the scene changes.
 
 from typing import NamedTuple, Protocol
 
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Operation
 from world2minecraft.edit.scene.draft import SceneDraft
-from world2minecraft.errors import UsageError
-from world2minecraft.types import Operation
 
 
 class Log(Protocol):

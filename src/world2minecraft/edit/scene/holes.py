@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
+from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.planes import WALL_CLASSES, Plane
 from world2minecraft.geometry.parts import connected_parts

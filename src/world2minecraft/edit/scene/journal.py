@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import Operation
 from world2minecraft.edit.records import Record, RecordFile
 from world2minecraft.edit.scene.history import Line
 from world2minecraft.edit.scene.packing import OPERATION_LIMITS, pack_operation, unpack_operation
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.types import Operation
 
 MARK = b"w2m scene 1\n"
 START, DO, UNDO, REDO = b"@", b"+", b"-", b"*"

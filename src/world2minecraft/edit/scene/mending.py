@@ -5,7 +5,9 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.types import Operation
 from world2minecraft.edit.scene.command import MAX_RUNS, Tools
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.floaters import MAX_CELLS, find_floaters
@@ -15,8 +17,6 @@ from world2minecraft.edit.scene.planes import Plane, find_planes
 from world2minecraft.edit.scene.runs import cells_of_runs
 from world2minecraft.edit.scene.smoothing import smoothed
 from world2minecraft.edit.scene.voxels import Cell, CellCommand, Runs, check_cell
-from world2minecraft.errors import UnknownNameError, UsageError
-from world2minecraft.types import Operation
 
 
 class RemoveFloaters(CellCommand):

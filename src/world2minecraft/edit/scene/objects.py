@@ -5,6 +5,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Operation, SceneObject
 from world2minecraft.edit.scene.boxes import (
     common_class,
     copied,
@@ -32,8 +34,6 @@ from world2minecraft.edit.scene.carrying import (
 from world2minecraft.edit.scene.command import Command, Tools
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.patch import Patch
-from world2minecraft.errors import UsageError
-from world2minecraft.types import Operation, SceneObject
 
 Id = Annotated[int, Field(ge=1, le=65535)]
 Ids = Annotated[tuple[Id, ...], Field(min_length=1, max_length=65535)]

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from world2minecraft.types import ObjectInstance, Placement, SceneObject
+from world2minecraft.core.types import ObjectInstance, Placement, SceneObject
 
 
 def objects_of(

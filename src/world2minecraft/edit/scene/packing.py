@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.types import Alternative, GridCells, Operation, Placement, SceneObject
 from world2minecraft.edit.scene.runs import cells_of_runs, runs_of_cells
-from world2minecraft.errors import DamagedFileError, UsageError
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, write_nbt
-from world2minecraft.types import Alternative, GridCells, Operation, Placement, SceneObject
 
 OPERATION_LIMITS = NbtLimits(depth=12, values=4_000_000, bytes=1 << 30)
 Shape = tuple[int, int, int]

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
-from world2minecraft.classes import OBJECT_CLASSES, UNKNOWN
+from world2minecraft.core.classes import OBJECT_CLASSES, UNKNOWN
+from world2minecraft.core.types import OBSERVED, GridCells, Operation, SceneObject
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.parts import box_of, parts_of_cells, shifted
-from world2minecraft.types import OBSERVED, GridCells, Operation, SceneObject
 
 MAX_IDS = 1 << 16
 FEW = 16

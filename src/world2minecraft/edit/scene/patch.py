@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.core.types import OBSERVED, GridCells, Operation
 from world2minecraft.edit.scene.draft import ARRAYS, SceneDraft
-from world2minecraft.types import OBSERVED, GridCells, Operation
 
 
 class Patch:

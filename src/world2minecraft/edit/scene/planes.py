@@ -17,7 +17,7 @@ from typing import cast
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
+from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.geometry.parts import connected_parts
 

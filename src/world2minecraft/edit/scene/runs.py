@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 
 def runs_of_cells(cells: np.ndarray, shape: tuple[int, int, int]) -> np.ndarray:

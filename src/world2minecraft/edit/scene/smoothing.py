@@ -10,7 +10,7 @@ Walls, floors, ceilings, windows and unseen cells stay as they are.
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import OBJECT_CLASSES
+from world2minecraft.core.classes import OBJECT_CLASSES
 
 FLAT_FACES = 4  # So many other faces has a cell within a sheet.
 PIT = 17  # Of 26: one below a flat surface. An inner edge, as of seat and back, has 15 and stays.

@@ -4,15 +4,15 @@ from typing import Literal
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Operation, SceneObject
 from world2minecraft.edit.scene.boxes import object_named, plan_extent_m, said
 from world2minecraft.edit.scene.carrying import planned_shift
 from world2minecraft.edit.scene.command import Command, Tools
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.objects import Id
 from world2minecraft.edit.scene.standing import floor_layer
-from world2minecraft.errors import UsageError
-from world2minecraft.types import Operation, SceneObject
 
 WALLS = (SemanticClass.WALL, SemanticClass.WINDOW)
 WALL_SHARE = 0.5  # Of a side's face before which a wall must stand: a corner post is no wall.

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.coordinates import metres_to_cells
+from world2minecraft.core.coordinates import metres_to_cells
+from world2minecraft.core.errors import UsageError
 from world2minecraft.edit.scene.draft import SceneDraft
-from world2minecraft.errors import UsageError
 from world2minecraft.furniture import Template, facing, size_in_cells, surroundings
 
 

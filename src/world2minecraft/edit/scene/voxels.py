@@ -5,14 +5,14 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES, UNKNOWN
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, UNKNOWN
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Operation
 from world2minecraft.edit.scene.command import MAX_RUNS, Command, Tools
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.painting import planned_cells
 from world2minecraft.edit.scene.parts import component_of
 from world2minecraft.edit.scene.runs import box_cells, cells_of_runs
-from world2minecraft.errors import UsageError
-from world2minecraft.types import Operation
 
 Run = tuple[Annotated[int, Field(ge=0)], Annotated[int, Field(ge=1)]]
 Runs = Annotated[list[Run], Field(max_length=MAX_RUNS)]

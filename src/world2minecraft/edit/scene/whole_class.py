@@ -6,14 +6,14 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from world2minecraft.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Operation, SceneObject
 from world2minecraft.edit.scene.command import Tools
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.objects_of import instance_of
 from world2minecraft.edit.scene.painting import planned_cells
 from world2minecraft.edit.scene.voxels import CellCommand
-from world2minecraft.errors import UsageError
-from world2minecraft.types import Operation, SceneObject
 
 OccupiedId = Annotated[int, Field(ge=1, le=11)]
 

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
-from world2minecraft.errors import CaptureError, InputError
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.files import write_json, write_npz
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.evaluate.scannet.mesh import labelled_meshes, read_labelled_mesh
 from world2minecraft.evaluate.scannet.seen import seen_free
 from world2minecraft.evaluate.scannet.surface import surface_voxels
 from world2minecraft.evaluate.truth import Truth
-from world2minecraft.files import write_json, write_npz
-from world2minecraft.progress import Progress, silent
 from world2minecraft.rooms.capture import stated_object
 from world2minecraft.scan.sources import SOURCES
 

@@ -8,12 +8,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from world2minecraft.coordinates import invert_rigid
-from world2minecraft.errors import CaptureError, DamagedFileError
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.errors import CaptureError, DamagedFileError
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.evaluate.frames import UsedFrame
 from world2minecraft.evaluate.reach import CROSSED, Believed, reached_cells
 from world2minecraft.evaluate.truth import Truth
-from world2minecraft.progress import Progress, silent
 from world2minecraft.scan.depth import DepthEncoding, read_depth
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.judged import judge_capture, spread_over

@@ -12,8 +12,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN, SemanticClass
-from world2minecraft.errors import LimitError
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.errors import LimitError
 from world2minecraft.evaluate.reach import MAX_CELLS
 from world2minecraft.evaluate.scannet.mesh import LabelledMesh
 

@@ -9,7 +9,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.forge.annotation.desk import AnnotationDesk
 from world2minecraft.forge.failures import ANSWERS
 from world2minecraft.forge.guard import Guard

@@ -9,8 +9,8 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import InputError, UsageError
-from world2minecraft.files import read_bytes, write_text
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.files import read_bytes, write_text
 from world2minecraft.vln.language.checking import findings, goal_of, names_of
 from world2minecraft.vln.language.humans import read_annotations
 from world2minecraft.vln.records import read_trajectories

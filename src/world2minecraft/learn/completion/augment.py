@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.classes import UNKNOWN
+from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.label.channels import Sight
 from world2minecraft.learn.completion.samples import Sample, cut
 

@@ -9,7 +9,7 @@ import onnxruntime
 import torch
 from torch import nn
 
-from world2minecraft.files import write_bytes
+from world2minecraft.core.files import write_bytes
 from world2minecraft.label.channels import CHANNELS
 from world2minecraft.learn.completion.network import CompletionNet
 from world2minecraft.learn.weight_storage import SMALL, with_stored_weights

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.label.channels import CHANNELS, HINT, KINDS, VOTES
 
 TRUST = 2.0  # What a geometric label or a whole vote adds to its class before anything is learnt.

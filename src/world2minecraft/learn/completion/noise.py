@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT, SemanticClass
+from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
 from world2minecraft.rooms.sensor import SENSORS, Sensor
 
 MISFIT_M = {"walk": 0.016, "few": 0.045, "single": 0.048}  # Of a quarter false, measured.

@@ -6,7 +6,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from world2minecraft.errors import InputError
+from world2minecraft.core.errors import InputError
 from world2minecraft.label.channels import network_input
 from world2minecraft.learn.completion.augment import augmented
 from world2minecraft.learn.completion.samples import Sample, read_samples

@@ -6,7 +6,7 @@ Training takes seeds from 10,000 on, so that no seed of a benchmark (1000 to 104
 
 import numpy as np
 
-from world2minecraft.errors import World2MinecraftError
+from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.rooms import generate_house, generate_room
 from world2minecraft.rooms.room import Room
 

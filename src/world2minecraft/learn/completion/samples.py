@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import UNKNOWN
-from world2minecraft.coordinates import apply, rotation_about_z
-from world2minecraft.errors import CaptureError, DamagedFileError
-from world2minecraft.files import array_names, read_npz, write_npz
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.coordinates import apply, rotation_about_z
+from world2minecraft.core.errors import CaptureError, DamagedFileError
+from world2minecraft.core.files import array_names, read_npz, write_npz
+from world2minecraft.core.types import Camera, FusedEvidence
 from world2minecraft.fuse import CleanParameters, read_out, remove_floaters
 from world2minecraft.label.channels import Sight, sight_of
 from world2minecraft.label.completion import hint_of
@@ -31,7 +32,6 @@ from world2minecraft.metrics.truth import carry_truth
 from world2minecraft.rooms.photo import prepare_photos
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.tour import plan_tour
-from world2minecraft.types import Camera, FusedEvidence
 
 LOOKS: tuple[LookKind, ...] = ("walk", "few", "single", "single", "single")
 SHELL_CELLS = 2  # Cells of wall, slab and ceiling around a room that count as its own.

@@ -12,7 +12,7 @@ import numpy as np
 import torch
 from safetensors.torch import load_file, save_file
 
-from world2minecraft.files import write_text
+from world2minecraft.core.files import write_text
 from world2minecraft.learn.completion.augment import CROP
 from world2minecraft.learn.completion.losses import completion_loss
 from world2minecraft.learn.completion.network import CompletionNet, CompletionSize

@@ -14,13 +14,13 @@ from typing import Protocol
 
 import numpy as np
 
+from world2minecraft.core.errors import OutputError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.jit import user_cache_dir
+from world2minecraft.core.locks import Lock
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.dataset.importers.source import ImportedSet
-from world2minecraft.errors import OutputError
-from world2minecraft.files import read_json, write_json
-from world2minecraft.jit import user_cache_dir
 from world2minecraft.learn.data.frames import Frame, FrameRule, frame_of
-from world2minecraft.lock import Lock
-from world2minecraft.progress import Progress, silent
 
 VERSION = 1  # Of what lies in the folder.
 ARRAYS = ("image", "depth", "intrinsics", "camera_to_grid", "grid_to_room", "labels", "masks")

@@ -10,8 +10,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.errors import UnknownNameError
 
 BOUND = 1.02  # ENet's: the rarest class weighs 50 times what one of all cells would.
 EMPTY_WEIGHT = 0.05  # MonoScene's.

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.dataset.importers import open_occupancy
 from world2minecraft.dataset.importers.source import ImportedSet
 from world2minecraft.learn.config import RunConfig
@@ -17,7 +18,6 @@ from world2minecraft.learn.data.cache import Frames, StreamedFrames, cached_fram
 from world2minecraft.learn.data.classes import class_counts
 from world2minecraft.learn.data.frames import FrameRule
 from world2minecraft.learn.data.splits import Split, counted, evenly, split_rows
-from world2minecraft.progress import Progress, silent
 
 COUNTED_FRAMES = 1000  # Of each set, for the classes' frequencies; spread evenly.
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.learn.data.cache import Frames
 from world2minecraft.learn.data.frames import Frame
 

@@ -8,7 +8,7 @@ import hashlib
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 
 class Split(NamedTuple):

@@ -3,7 +3,7 @@
 import torch
 from torch import Tensor
 
-from world2minecraft.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.learn.batch import OccInput
 from world2minecraft.learn.networks.parts.projection import sight_of
 

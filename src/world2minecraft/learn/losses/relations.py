@@ -3,7 +3,7 @@
 import torch
 from torch import Tensor
 
-from world2minecraft.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.learn.networks.parts.context import RELATIONS
 
 FACTOR = 4  # From the grid to its coarsest level.

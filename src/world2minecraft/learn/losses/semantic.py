@@ -6,7 +6,7 @@ Cells of 255 count in none. Where nothing is left to count, a loss is 0 and its 
 import torch
 from torch import Tensor
 
-from world2minecraft.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 
 LEAST = 1e-6  # Of a share whose logarithm is taken: a loss of 13.8 at most.
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from world2minecraft.classes import CLASS_COUNT
-from world2minecraft.errors import UsageError
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.errors import UsageError
 from world2minecraft.learn.batch import OccInput, OccOutput, OccTarget
 from world2minecraft.learn.losses.depth import depth_loss
 from world2minecraft.learn.losses.frusta import frustum_loss

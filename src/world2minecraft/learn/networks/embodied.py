@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.learn.batch import OccInput, OccOutput
 from world2minecraft.learn.networks.parts.backbones import NORMS, make_backbone
 from world2minecraft.learn.networks.parts.ddr import axis_blocks

@@ -3,8 +3,8 @@
 import torch
 from torch import nn
 
-from world2minecraft.errors import UnknownNameError, UsageError
-from world2minecraft.registry import Registry
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.registry import Registry
 
 SIZES = ("tiny", "small", "full")
 LEAST_SIDE = 8  # Cells; the coarsest level has a quarter of them, in mega-voxels of two.

@@ -11,7 +11,7 @@ from itertools import product
 import torch
 from torch import Tensor, nn
 
-from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.learn.batch import OccInput
 from world2minecraft.learn.networks.embodied import Embodied
 from world2minecraft.learn.networks.parts.evidence import FEATURES_AT, SceneEvidence

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.learn.batch import OccInput, OccOutput
 from world2minecraft.learn.networks.parts.aspp import Reaches
 from world2minecraft.learn.networks.parts.attention import AfterAttention, DeformableAttention

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.types import checks
+from world2minecraft.core.types import checks
 
 BITS = 15
 WEIGHTS = (9798, 19235, 3735)  # Red, green, blue of ITU-R BT.601, of 2**15: OpenCV's integers.

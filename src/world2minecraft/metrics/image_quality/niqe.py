@@ -12,10 +12,10 @@ import numpy as np
 from PIL import Image
 from scipy import linalg
 
+from world2minecraft.core.types import checks
 from world2minecraft.metrics.image_quality.asymmetric import fit_asymmetric
 from world2minecraft.metrics.image_quality.grey import to_grey
 from world2minecraft.metrics.image_quality.normalised import Edges, normalise
-from world2minecraft.types import checks
 
 PATCH_PX = 96
 FEATURES = 36

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 from scipy.io import loadmat, whosmat
 
-from world2minecraft.errors import DamagedFileError, MissingExtraError, UnknownNameError
-from world2minecraft.files import read_bytes, read_json
+from world2minecraft.core.errors import DamagedFileError, MissingExtraError, UnknownNameError
+from world2minecraft.core.files import read_bytes, read_json
 from world2minecraft.metrics.image_quality.niqe import (
     AUTHORS,
     FEATURES,

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.nbt import DEFAULT_LIMITS, NbtLimits, NbtReader
 from world2minecraft.minecraft.nbt_tags import INT, INTS, LIST, array_layouts, number_layouts
 from world2minecraft.minecraft.nbt_writing import NbtWriter

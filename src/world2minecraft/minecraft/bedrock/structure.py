@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, UsageError
-from world2minecraft.files import read_bytes, write_bytes
+from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.files import read_bytes, write_bytes
+from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
 from world2minecraft.minecraft.bedrock.block_data import (
     bedrock_data,
     is_told,
@@ -29,7 +30,6 @@ from world2minecraft.minecraft.nbt import NbtLimits
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.schematics.unlabelled import check_size, palette_of, unlabelled
 from world2minecraft.minecraft.states import complete, parse_state
-from world2minecraft.types import AIR, BlockEntity, BlockVolume
 
 FORMAT_VERSION = 1
 MAX_BYTES = 96 << 20  # 12 million blocks, eight bytes each; the numbers are read in place.

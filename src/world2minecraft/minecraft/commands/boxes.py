@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 
 MAX_FILL = 32_768  # The game's default limit of one fill command.
 

@@ -8,8 +8,9 @@ import json
 import re
 from pathlib import Path
 
-from world2minecraft.errors import UsageError
-from world2minecraft.files import write_bytes
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.commands.sizes import (
     function_files,
     pack_mcmeta,
@@ -27,7 +28,6 @@ from world2minecraft.minecraft.commands.writing import (
 from world2minecraft.minecraft.displays import check_displays
 from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.versions import GameVersion, game_version, game_versions
-from world2minecraft.types import BlockVolume
 
 MAX_COMMANDS = 60_000  # Below maxCommandChainLength, 65,536, which counts a whole chain.
 WAIT_TICKS = 10

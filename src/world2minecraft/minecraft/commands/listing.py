@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from world2minecraft.files import write_text
+from world2minecraft.core.files import write_text
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.commands.reading import read_command_list
 from world2minecraft.minecraft.commands.writing import (
     block_commands,
@@ -17,7 +18,6 @@ from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.game_names import count_unknown
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.versions import GameVersion, game_version
-from world2minecraft.types import BlockVolume
 
 CHAIN_LIMIT = 65_536  # The most commands that the game runs of one function.
 

@@ -17,8 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
-from world2minecraft.files import UNREADABLE, read_bytes
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.files import UNREADABLE, read_bytes
+from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.commands.snbt import SnbtReader
 from world2minecraft.minecraft.game_names import read_state
 from world2minecraft.minecraft.losses import Losses
@@ -30,7 +31,6 @@ from world2minecraft.minecraft.schematics.unlabelled import (
 )
 from world2minecraft.minecraft.sign_texts import signs_of_commands
 from world2minecraft.minecraft.states import parse_state
-from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
 # Commands that load chunks, order the parts of a pack, or clear the place of its entities.
 ORDERING = ("forceload ", "schedule ", "kill @e[tag=w2m_")

@@ -11,7 +11,7 @@ import zipfile
 from collections.abc import Mapping
 from typing import Any
 
-from world2minecraft.files import FIXED_DATE
+from world2minecraft.core.files import FIXED_DATE
 from world2minecraft.minecraft.versions import GameVersion, game_versions
 
 NAMESPACE = "w2m"

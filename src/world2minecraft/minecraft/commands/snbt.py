@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 
 MAX_DEPTH = 100

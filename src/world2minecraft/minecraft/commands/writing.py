@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.commands.boxes import MAX_FILL, merge_boxes
 from world2minecraft.minecraft.entities import entity_tags
 from world2minecraft.minecraft.game_names import written_state
@@ -19,7 +20,6 @@ from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.versions import GameVersion
-from world2minecraft.types import BlockVolume
 
 MAX_LOADED_CHUNKS = 256  # What one forceload command takes.
 _CONTROLS = re.compile(r"[\x00-\x1f\x7f]")

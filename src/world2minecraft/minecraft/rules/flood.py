@@ -13,7 +13,7 @@ leaves them. ``kinds`` names for each cell its row in ``words``, which says what
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 
 SHUT = 0xFFFFFF
 DIMS = 1 << 24

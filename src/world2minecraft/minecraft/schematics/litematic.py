@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
-from world2minecraft.files import read_bytes, write_bytes
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.files import read_bytes, write_bytes
+from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.losses import Losses
@@ -48,7 +49,6 @@ from world2minecraft.minecraft.worlds.straddled import (
     unpack_straddled,
     words_for,
 )
-from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
 LIMITS = NbtLimits()
 MAX_REGIONS = 4096

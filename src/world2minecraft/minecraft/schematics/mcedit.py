@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.files import read_bytes
+from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, unpack
 from world2minecraft.minecraft.packing import read_keys
@@ -32,7 +33,6 @@ from world2minecraft.minecraft.schematics.unlabelled import (
     palette_of,
     unlabelled,
 )
-from world2minecraft.types import AIR, BlockEntity, BlockVolume
 
 LIMITS = NbtLimits()
 MAX_JOINED_CELLS = 8 << 20  # Looking at all neighbours takes several times a volume's memory.

@@ -7,8 +7,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, UsageError
-from world2minecraft.files import read_bytes, write_bytes
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.files import read_bytes, write_bytes
+from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.game_names import read_state, written_state
@@ -33,7 +34,6 @@ from world2minecraft.minecraft.schematics.unlabelled import (
 from world2minecraft.minecraft.sign_texts import signs_of_today
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.versions import GameVersion, game_version
-from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
 LIMITS = NbtLimits()
 Corner = tuple[int, int, int]

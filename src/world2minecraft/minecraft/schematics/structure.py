@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, LimitError, UsageError
-from world2minecraft.files import read_bytes, write_bytes
+from world2minecraft.core.errors import DamagedFileError, LimitError, UsageError
+from world2minecraft.core.files import read_bytes, write_bytes
+from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.block_list import BlockList, BlockListReader, block_list_bytes
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.game_data import in_game
@@ -31,7 +32,6 @@ from world2minecraft.minecraft.schematics.unlabelled import (
 from world2minecraft.minecraft.sign_texts import signs_of_today
 from world2minecraft.minecraft.versions import GameVersion, game_version
 from world2minecraft.minecraft.worlds.entries import palette_texts, state_entry
-from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
 
 LIMITS = NbtLimits()
 DEFAULT_GAME = 3465  # 1.20.1, for a file that does not say its game.

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
-from world2minecraft.files import UNREADABLE, write_bytes
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.files import UNREADABLE, write_bytes
+from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.minecraft.commands.datapack import job_files, namespace_of
 from world2minecraft.minecraft.commands.sizes import pack_mcmeta, pack_zip, size_functions
 from world2minecraft.minecraft.commands.writing import entity_tag
@@ -21,7 +22,6 @@ from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.schematics.structure import structure_bytes, structure_of
 from world2minecraft.minecraft.schematics.unlabelled import MAX_CELLS, joined
 from world2minecraft.minecraft.versions import GameVersion, game_version
-from world2minecraft.types import BlockVolume, Entity
 
 PIECE = 48  # What a structure block loads and saves, since 1.16.
 PACK_SUFFIX = "_pieces.zip"

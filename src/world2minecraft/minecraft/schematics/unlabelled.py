@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.errors import DamagedFileError, LimitError
-from world2minecraft.types import AIR, BlockEntity, BlockVolume, Entity
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import DamagedFileError, LimitError
+from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
 
 MAX_CELLS = 64 << 20  # 400 blocks a side; a volume of this size takes 340 MB.
 MAX_STATES = 0xFFFF

@@ -4,7 +4,7 @@ import hashlib
 import re
 from pathlib import Path
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 PORT = 25575
 _ADDRESS = re.compile(r"(?P<host>\[[0-9A-Fa-f:.%]+\]|[A-Za-z0-9.-]+)(?::(?P<port>[0-9]{1,5}))?")
@@ -25,7 +25,7 @@ def parse_address(text: str) -> tuple[str, int]:
 
 def note_of(server: str, digest: str) -> Path:
     """Return the file that remembers how far a build on a server is."""
-    from world2minecraft.jit import user_cache_dir  # noqa: PLC0415  # It loads numba.
+    from world2minecraft.core.jit import user_cache_dir  # noqa: PLC0415  # It loads numba.
 
     name = hashlib.sha256(f"{server} {digest}".encode()).hexdigest()[:24]
     return user_cache_dir() / "rcon" / f"{name}.json"

@@ -8,11 +8,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from world2minecraft.errors import InputError, ServerError, one_line
-from world2minecraft.files import read_json, write_json
+from world2minecraft.core.errors import InputError, ServerError, one_line
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.minecraft.server.plan import BuildPlan, Probe
 from world2minecraft.minecraft.server.rcon import RconClient
-from world2minecraft.progress import Progress, silent
 
 NOTE_EVERY_S = 0.5
 LOAD_TRIES, LOAD_WAIT_S = 60, 0.5  # Half a minute for the chunks to come.

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.commands.writing import (
     air_commands,
     block_commands,
@@ -21,7 +22,6 @@ from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES
 from world2minecraft.minecraft.states import BlockState, parse_state
 from world2minecraft.minecraft.versions import GameVersion
-from world2minecraft.types import BlockVolume
 
 PROBE_STEP = 64  # Blocks between the places at which it is asked whether chunks are loaded.
 Probe = tuple[int, int, int, str]  # x, y, z and what must be there of a state

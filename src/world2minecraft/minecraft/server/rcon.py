@@ -10,7 +10,7 @@ import socket
 import struct
 from types import TracebackType
 
-from world2minecraft.errors import ServerError, UsageError
+from world2minecraft.core.errors import ServerError, UsageError
 
 MAX_COMMAND_BYTES = 1446  # 1,460 of the server's buffer, less the header and the zeros.
 MAX_REPLY_BYTES = 1 << 20  # What a server may send as one packet before it is taken for a mistake.

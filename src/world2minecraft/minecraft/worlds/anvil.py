@@ -9,8 +9,8 @@ from typing import BinaryIO
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.files import read_bytes
 from world2minecraft.minecraft.nbt import pack_gzip, unpack
 from world2minecraft.minecraft.worlds.lz4_blocks import pack_lz4, unpack_lz4
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UsageError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.minecraft.nbt import (
     BYTE,
     COMPOUND,

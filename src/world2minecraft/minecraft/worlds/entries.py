@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import DamagedFileError, UsageError
+from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.minecraft.game_names import read_state, written_state
 from world2minecraft.minecraft.states import MAX_TEXT, BlockState, parse_state
 

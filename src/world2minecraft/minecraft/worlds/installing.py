@@ -6,8 +6,8 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from world2minecraft.errors import InputError, OutputError, UsageError
-from world2minecraft.files import read_bytes, write_bytes
+from world2minecraft.core.errors import InputError, OutputError, UsageError
+from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.minecraft.nbt import pack_gzip, read_nbt, unpack, write_nbt
 from world2minecraft.minecraft.versions import game_versions
 from world2minecraft.minecraft.worlds.launchers import Game

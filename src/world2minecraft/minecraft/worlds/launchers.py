@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import InputError
-from world2minecraft.files import read_bytes, read_json
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.files import read_bytes, read_json
 
 MAX_SETTINGS_BYTES = 4 << 20
 MAX_INSTANCES = 500

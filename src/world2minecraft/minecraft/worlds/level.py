@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import InputError
+from world2minecraft.core.errors import InputError
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
 from world2minecraft.minecraft.versions import GameVersion
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import lz4.block
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, LimitError
-from world2minecraft.jit import njit
+from world2minecraft.core.errors import DamagedFileError, LimitError
+from world2minecraft.core.jit import njit
 
 MAGIC = b"LZ4Block"
 RAW, PACKED = 0x10, 0x20

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.minecraft.nbt import Byte, Long, write_nbt
 from world2minecraft.minecraft.versions import GameVersion
 from world2minecraft.minecraft.worlds.section_words import words_before_1_16

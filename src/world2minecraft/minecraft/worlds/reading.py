@@ -6,8 +6,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.files import read_bytes
+from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
 from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, tree_bytes, unpack
 from world2minecraft.minecraft.packing import SECTION, unpack_section
 from world2minecraft.minecraft.schematics.unlabelled import (
@@ -22,7 +23,6 @@ from world2minecraft.minecraft.worlds.anvil import read_region, region_position
 from world2minecraft.minecraft.worlds.chunks import read_chunk
 from world2minecraft.minecraft.worlds.level import no_world
 from world2minecraft.minecraft.worlds.sections import Section
-from world2minecraft.types import BlockEntity, BlockVolume, Entity
 
 MAX_SECTIONS = MAX_CELLS // SECTION  # Held before the volume's size is known.
 MAX_UNPACKED_BYTES = 512 << 20  # All chunks that are read together.

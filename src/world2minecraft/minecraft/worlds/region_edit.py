@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_bytes
 from world2minecraft.minecraft.worlds.anvil import (
     EXTERNAL,
     MAX_CHUNK_BYTES,

@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import ConflictError, OutputError
+from world2minecraft.core.errors import ConflictError, OutputError
 from world2minecraft.minecraft.worlds.level import no_world
 
 try:

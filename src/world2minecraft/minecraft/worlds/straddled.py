@@ -5,7 +5,7 @@ Number i takes the bits from i * bits on, lowest first, and may go over from one
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 
 
 def bits_for(count: int, least: int) -> int:

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import InputError, OutputError, UsageError
-from world2minecraft.files import write_bytes
+from world2minecraft.core.errors import InputError, OutputError, UsageError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.minecraft.commands.sizes import size_pack
 from world2minecraft.minecraft.entities import entity_nbt
 from world2minecraft.minecraft.game_data import in_game
@@ -26,7 +27,6 @@ from world2minecraft.minecraft.worlds.old_chunks import (
     OldChunkWriter,
 )
 from world2minecraft.minecraft.worlds.reading import Place, read_level, read_world
-from world2minecraft.types import BlockVolume, Entity
 
 __all__ = ["read_level", "read_world", "write_world"]
 

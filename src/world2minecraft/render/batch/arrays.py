@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.render.arrays import WANTED
 from world2minecraft.render.batch.kernel import ManyPixels
 from world2minecraft.render.picture import MAX_PIXELS, MOST_SAMPLES, Picture

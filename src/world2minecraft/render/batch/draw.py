@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Camera
 from world2minecraft.render.arrays import PixelArrays, pixel_arrays
 from world2minecraft.render.batch.arrays import (
     BatchArrays,
@@ -26,7 +27,6 @@ from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.shade import Lamp
 from world2minecraft.render.tables import SceneTables
 from world2minecraft.render.threads import bands, side_by_side
-from world2minecraft.types import Camera
 
 LARGE_PX = 200_000  # From here on threads share each picture and not the poses: less scratch.
 

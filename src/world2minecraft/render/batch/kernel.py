@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import inlined, lean
+from world2minecraft.core.jit import inlined, lean
 from world2minecraft.render.arrays import PixelArrays
 from world2minecraft.render.pixels import draw_rows
 

@@ -19,8 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import UsageError, WorkerError
-from world2minecraft.machine import usable_cores
+from world2minecraft.core.errors import UsageError, WorkerError
+from world2minecraft.core.machine import usable_cores
+from world2minecraft.core.types import Camera
 from world2minecraft.render.batch.arrays import (
     PICTURE_OUTPUTS,
     BatchArrays,
@@ -43,7 +44,6 @@ from world2minecraft.render.light import LookLight
 from world2minecraft.render.picture import DEFAULT_OUTPUTS
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.tables import SceneTables
-from world2minecraft.types import Camera
 
 MOST_WORKERS = 256
 WAITING = 2  # Tasks that each worker has, so that it never waits for the next.

@@ -5,12 +5,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
+from world2minecraft.core.types import Camera
 from world2minecraft.render.batch.arrays import BatchArrays, Room
 from world2minecraft.render.batch.draw import Views
 from world2minecraft.render.batch.shared import Block, placed
 from world2minecraft.render.batch.worker import Reply, Task
 from world2minecraft.render.picture import Picture
-from world2minecraft.types import Camera
 
 TASK_PX = 1 << 16  # A task has so many pixels at least: a message takes 0.1 ms.
 MOST_A_TASK = 64  # Pictures.

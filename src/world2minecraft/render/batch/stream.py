@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.coordinates import apply
-from world2minecraft.errors import UsageError
-from world2minecraft.progress import Progress, silent
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.render.batch.ahead import SPARE, ahead_of, done_behind
 from world2minecraft.render.batch.pool import MOST_WORKERS, RenderPool
 from world2minecraft.render.lamps import DAY, Paper, exposure_of

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import Any
 
-from world2minecraft.errors import WorkerError
+from world2minecraft.core.errors import WorkerError
 from world2minecraft.render.batch.arrays import PICTURE_OUTPUTS, BatchArrays
 from world2minecraft.render.batch.draw import Stage, Views, draw_views
 from world2minecraft.render.batch.shared import Block, BlockPlan, Place

@@ -14,7 +14,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
-from world2minecraft.errors import MissingExtraError, UsageError
+from world2minecraft.core.errors import MissingExtraError, UsageError
 
 VARIABLE = "W2M_GPU_ADAPTER"
 SOFTWARE = "software"

@@ -11,7 +11,8 @@ from typing import Protocol
 
 import numpy as np
 
-from world2minecraft.errors import MissingExtraError, UnknownNameError
+from world2minecraft.core.errors import MissingExtraError, UnknownNameError
+from world2minecraft.core.types import Camera
 from world2minecraft.render.gpu.adapters import GpuError, find_adapter, info_of
 from world2minecraft.render.gpu.renderer import GpuRenderer
 from world2minecraft.render.lamps import DAY, Paper
@@ -23,7 +24,6 @@ from world2minecraft.render.picture import (
     render_volume,
 )
 from world2minecraft.render.scene import BlockScene
-from world2minecraft.types import Camera
 
 DEVICES = ("auto", "cpu", "gpu")
 # On Linux a card shows itself as one of these files; the last is Windows' card within WSL.

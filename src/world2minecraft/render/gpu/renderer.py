@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from world2minecraft.core.types import Camera
 from world2minecraft.render.arrays import PixelArrays, pixel_arrays
 from world2minecraft.render.free import crossed_air
 from world2minecraft.render.gpu.adapters import GpuError, find_adapter
@@ -29,7 +30,6 @@ from world2minecraft.render.light import LookLight
 from world2minecraft.render.picture import DEFAULT_OUTPUTS, Picture, check_request, picture_of
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.shade import Lamp
-from world2minecraft.types import Camera
 
 AHEAD = 2  # Submissions under way: one is drawn while another is read.
 MOST_FREE = AHEAD  # Sets of buffers that are kept for the next call.

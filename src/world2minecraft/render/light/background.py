@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from world2minecraft.jit import inlined
+from world2minecraft.core.jit import inlined
 
 HALO = 0.35  # The sun's share in the sky around it.
 DISC_COSINE = 0.9990  # 2.6 degrees: larger than the true sun, as in the game.

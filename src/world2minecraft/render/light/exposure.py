@@ -7,7 +7,7 @@ them were grey.
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.rules.flood import SHUT, SOLID, steps_of
 from world2minecraft.render.light.field import LightField
 from world2minecraft.render.light.flood import BRIGHTEST, units

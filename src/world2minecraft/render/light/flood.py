@@ -9,7 +9,7 @@ as far: in a room of 4 blocks per metre a lamp then lights more than its own cor
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.rules.flood import DIMS, SHUT, spread, steps_of
 
 BRIGHTEST = 15

@@ -12,7 +12,7 @@ that are not solid. Bits 6 to 11 hold block light alike. Bits 12 and 13 count th
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.rules.flood import SOLID
 
 BLOCK_SHIFT, COUNT_SHIFT = 6, 12

@@ -5,7 +5,7 @@ All colours here are linear multipliers of a surface's linear colour.
 
 from typing import NamedTuple
 
-from world2minecraft.jit import inlined
+from world2minecraft.core.jit import inlined
 
 SCREEN_MOST = 2.0  # Beyond, where all is white anyway, the polynomial of ``to_linear`` turns.
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import inlined
+from world2minecraft.core.jit import inlined
 
 SCREEN_POWER = 2.2  # Products of colours then equal products of screen values.
 ENCODE_STEPS = 4096  # The darkest step of sRGB is 0.8 of a screen value.

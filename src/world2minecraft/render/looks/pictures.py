@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.render.looks.recipes import PREFIX, spell, split_recipe
 from world2minecraft.render.texture import Texture
 from world2minecraft.render.textures import GENERATORS, texture_of

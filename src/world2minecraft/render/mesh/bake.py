@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.displays import display_cubes
 from world2minecraft.render.atlas import Atlas, to_srgb
 from world2minecraft.render.bake import Baker, joins, kind_of, models_of
@@ -23,7 +24,6 @@ from world2minecraft.render.mesh.quads import INSIDE, Quads, covered, joined, qu
 from world2minecraft.render.scene import bake_model
 from world2minecraft.render.standing_boxes import standing_things
 from world2minecraft.render.tables import ABSOLUTE, FULL
-from world2minecraft.types import BlockVolume
 
 NO_STATE = NO_COVER = 65_535
 

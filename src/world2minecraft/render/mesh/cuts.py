@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.displays import display_cubes
 from world2minecraft.render.cutaway import (
     without_ceiling,
     without_near_walls,
     without_partitions,
 )
-from world2minecraft.types import BlockVolume
 
 # Bits 0 to 3: the walls near an eye that stands towards (block x, block z) of these signs.
 CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))

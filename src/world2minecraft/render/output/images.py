@@ -11,7 +11,7 @@ import io
 import numpy as np
 from PIL import Image
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.render.output.exr import exr_bytes
 
 COLOUR_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")

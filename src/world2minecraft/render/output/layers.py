@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.render.output.images import (
     PER_METRE,
     QUALITY,
@@ -21,7 +22,6 @@ from world2minecraft.render.output.images import (
     number_bytes,
 )
 from world2minecraft.render.picture import Picture
-from world2minecraft.types import BlockVolume
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from typing import IO
 import numpy as np
 from PIL import Image
 
-from world2minecraft.errors import LimitError, MissingExtraError, OutputError, UsageError
+from world2minecraft.core.errors import LimitError, MissingExtraError, OutputError, UsageError
 
 PILLOW_KINDS = {".gif": "GIF", ".apng": "PNG", ".webp": "WEBP"}
 VIDEO_SUFFIXES = (".mp4", ".webm")

@@ -12,9 +12,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from world2minecraft.archive import UNREADABLE
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.archives import UNREADABLE
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.files import read_bytes
 
 MOST_FILES = 400_000  # A client jar has about 30,000; a large pack of mods 150,000.
 MOST_DIRECTORY_BYTES = 128 << 20  # Of a zip's own list of files.

@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.minecraft.glow import is_luminous
 from world2minecraft.minecraft.states import BlockState, complete, parse_state
 from world2minecraft.render.elements import BlockModel, Element

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import InputError
+from world2minecraft.core.errors import InputError
 from world2minecraft.render.packs.archive import PackFiles, open_pack
 from world2minecraft.render.packs.checks import number, resource
 

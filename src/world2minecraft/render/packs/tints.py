@@ -7,7 +7,7 @@ colour maps where it has them.
 import re
 from collections.abc import Callable, Mapping
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraft.states import BlockState
 
 Colour = tuple[int, int, int]

@@ -7,7 +7,7 @@ against each other, and no light is counted twice.
 
 import numpy as np
 
-from world2minecraft.jit import inlined
+from world2minecraft.core.jit import inlined
 from world2minecraft.render.photo.sources import BRICK
 
 UNSEEN_SOFT = 2.5  # Cells: nearer to a lamp that is not seen, its light hardly grows.

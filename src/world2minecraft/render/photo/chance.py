@@ -7,7 +7,7 @@ where evenness is lost anyway, are plain hashes.
 
 import numpy as np
 
-from world2minecraft.jit import inlined
+from world2minecraft.core.jit import inlined
 
 EVEN_USES = 12  # Pairs of numbers that are spread evenly over the samples of a pixel.
 _U = np.uint32

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from world2minecraft.jit import inlined, lean
+from world2minecraft.core.jit import inlined, lean
 from world2minecraft.render.photo.film import SAME_NORMAL, SAME_PLANE, SAME_PLANE_FAR, luminance
 
 SWEEPS = 5  # The last reaches 32 pixels to each side.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.jit import lean
+from world2minecraft.core.jit import lean
 from world2minecraft.render.light import Tone, finish
 from world2minecraft.render.light.exposure import LUMINANCE
 from world2minecraft.render.photo.denoise import (

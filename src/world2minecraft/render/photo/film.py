@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import inlined
+from world2minecraft.core.jit import inlined
 
 SAME_NORMAL = 0.9  # Cosine of two normals of one surface.
 SAME_PLANE, SAME_PLANE_FAR = 0.02, 0.002  # Cells off its plane, and the more per cell of distance.

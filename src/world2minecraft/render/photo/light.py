@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import inlined
+from world2minecraft.core.jit import inlined
 from world2minecraft.render.light.background import (
     DISC,
     DISC_COSINE,

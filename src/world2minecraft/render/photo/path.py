@@ -5,7 +5,7 @@ Lengths are cells of the grid, directions unit vectors, colours linear.
 
 import numpy as np
 
-from world2minecraft.jit import inlined
+from world2minecraft.core.jit import inlined
 
 # Where the light of a path goes: found at its first surface that is no glass.
 UNDECIDED, SPREAD, GLOSS = 0, 1, 2

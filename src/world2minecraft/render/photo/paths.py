@@ -7,7 +7,7 @@ densities. Glass is passed, tinting what lies behind, or mirrors where it is see
 
 import numpy as np
 
-from world2minecraft.jit import inlined, lean
+from world2minecraft.core.jit import inlined, lean
 from world2minecraft.render.light.background import background_light
 from world2minecraft.render.photo.aim import aim_at_lamp, density_of_aim, lamp_row
 from world2minecraft.render.photo.chance import mixed, pair

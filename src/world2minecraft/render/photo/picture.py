@@ -8,7 +8,8 @@ from multiprocessing.pool import ThreadPool
 
 import numpy as np
 
-from world2minecraft.progress import Progress, silent
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Camera
 from world2minecraft.render.lamps import DAY
 from world2minecraft.render.light import LookLight
 from world2minecraft.render.light.exposure import LUMINANCE
@@ -25,7 +26,6 @@ from world2minecraft.render.photo.paths import trace_rows
 from world2minecraft.render.photo.sources import Lamps, lamps_of
 from world2minecraft.render.picture import MAX_PIXELS, Picture, render_volume
 from world2minecraft.render.scene import BlockScene
-from world2minecraft.types import Camera
 
 OUTPUTS = ("depth", "semantic", "instance", "opaque", "normal")
 MOST_SAMPLES = 4096

@@ -7,7 +7,7 @@ would cost rays and show nothing.
 
 import numpy as np
 
-from world2minecraft.jit import inlined
+from world2minecraft.core.jit import inlined
 from world2minecraft.render.photo.light import around
 
 LEAST_WIDTH = 0.02  # Of the glossy lobe: what is smoother is followed as if it were this.

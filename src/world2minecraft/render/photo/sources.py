@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.render.atlas import to_linear
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.tables import ABSOLUTE, FACE_NORMALS, FLAGS, FULL, TURN, SceneTables

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.jit import inlined
+from world2minecraft.core.jit import inlined
 from world2minecraft.render.photo.path import put
 from world2minecraft.render.ray import SOLID, carried, texel_at
 from world2minecraft.render.shade import normal_of

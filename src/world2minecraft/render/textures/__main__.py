@@ -2,8 +2,8 @@
 
 import sys
 
-from world2minecraft.errors import UsageError, World2MinecraftError
-from world2minecraft.files import write_bytes
+from world2minecraft.core.errors import UsageError, World2MinecraftError
+from world2minecraft.core.files import write_bytes
 from world2minecraft.render.textures.sheet import page_png, texture_sheet
 
 USAGE = "write: python -m world2minecraft.render.textures OUT.png [SIZE_PX [REPEAT]]"

@@ -2,7 +2,7 @@
 
 from functools import lru_cache
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.render.texture import Texture
 from world2minecraft.render.textures.canvas import canvas_of
 from world2minecraft.render.textures.catalogue import GENERATORS

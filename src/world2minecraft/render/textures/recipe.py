@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 
 PREFIX = "own:"
 MOST_LETTERS = 400  # A longer recipe is a mistake or a trap.

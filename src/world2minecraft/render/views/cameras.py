@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.coordinates import focal_px_of_fov, fov_deg_of_focal_px
-from world2minecraft.errors import UsageError
-from world2minecraft.types import Camera
+from world2minecraft.core.coordinates import focal_px_of_fov, fov_deg_of_focal_px
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Camera
 
 GAME_FOV_DEG = 70.0  # The game's usual field of view; the game's is vertical.
 WIDEST_DEG = 170.0  # Wider, and a flat picture shows little but its edges.

@@ -14,15 +14,15 @@ from types import ModuleType
 
 import numpy as np
 
-from world2minecraft.coordinates import apply
-from world2minecraft.errors import UsageError
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Camera
 from world2minecraft.render.batch.pool import RenderPool
 from world2minecraft.render.lamps import DAY, Paper, exposure_of
 from world2minecraft.render.light import LookLight
 from world2minecraft.render.picture import Picture, render_volume
 from world2minecraft.render.scene import BlockScene
 from world2minecraft.render.views.poses import Shot
-from world2minecraft.types import Camera
 
 GPU = "world2minecraft.render.gpu"  # Loaded late: most machines have no use for it.
 LEAST_A_JOB = 16  # Pictures: a process takes some seconds to begin.

@@ -6,7 +6,7 @@ too, is found exactly by going through the places once.
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.render.views.hiding import Hiding
 from world2minecraft.render.views.sight import look_around
 

@@ -8,9 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.shapes import boxes_of
 from world2minecraft.minecraft.visual import visual_boxes_of
-from world2minecraft.types import BlockVolume
 from world2minecraft.walk.doors import is_door
 
 ROOF = 0.2  # Blocks: what is lower, such as a carpet, is no roof.

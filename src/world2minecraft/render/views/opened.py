@@ -4,8 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
-from world2minecraft.coordinates import carry_camera, invert
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import carry_camera, invert
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.render.cutaway import (
     side_by_side,
     storeys_of,
@@ -18,7 +19,6 @@ from world2minecraft.render.scene import prepare_scene
 from world2minecraft.render.views.cameras import camera_of
 from world2minecraft.render.views.frames import DrawOptions, frames_of
 from world2minecraft.render.views.orbit import TURN_DEG, orbit_shots
-from world2minecraft.types import BlockVolume, Camera
 
 SCOUT_PX, SCOUT_FOV_DEG = (96, 72), 24.0
 

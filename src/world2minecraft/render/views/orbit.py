@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, invert_rigid, look_at
+from world2minecraft.core.coordinates import apply, invert_rigid, look_at
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.render.views.poses import Shot
-from world2minecraft.types import BlockVolume, Camera
 
 ELEVATION_DEG = 28.0  # One sees the roof and the walls of a house.
 TURN_DEG = 34.0  # Where the circle begins: off the diagonal, so that two sides differ.

@@ -5,15 +5,15 @@ from typing import Literal
 
 import numpy as np
 
-from world2minecraft.coordinates import (
+from world2minecraft.core.coordinates import (
     PLAYER_EYE_BLOCKS,
     camera_to_block_of_game_pose,
     carry_camera,
     game_pose_of_camera_to_block,
     invert,
 )
-from world2minecraft.errors import UsageError
-from world2minecraft.types import Camera
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Camera
 
 MOST_BLOCKS = 30_000_000  # The game's world ends there.
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from world2minecraft.coordinates import invert
-from world2minecraft.types import BlockVolume, Camera
+from world2minecraft.core.coordinates import invert
+from world2minecraft.core.types import BlockVolume, Camera
 
 GROUND = (233.0, 231.0, 227.0)  # A warm light grey, darker towards the picture's corners.
 CORNER_SHADE = 0.10

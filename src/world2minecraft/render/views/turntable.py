@@ -6,6 +6,7 @@ from itertools import groupby
 
 import numpy as np
 
+from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.render.elements import LookSource
 from world2minecraft.render.lamps import NEUTRAL
 from world2minecraft.render.scene import prepare_scene
@@ -14,7 +15,6 @@ from world2minecraft.render.views.opened import OpenedBuild, has_ceiling
 from world2minecraft.render.views.orbit import TURN_DEG, orbit_shots
 from world2minecraft.render.views.poses import Shot
 from world2minecraft.render.views.studio import Studio, studio_of
-from world2minecraft.types import BlockVolume, Camera
 
 FOV_DEG = 24.0  # Narrow: nearly parallel edges read as a model.
 OPEN_ELEVATION_DEG = 44.0  # Into a room, over its furniture.

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-from world2minecraft.coordinates import eye_height_blocks
+from world2minecraft.core.coordinates import eye_height_blocks
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.render.views.hiding import Hiding
 from world2minecraft.render.views.sight import FAR_M, look_around
-from world2minecraft.types import BlockVolume
 from world2minecraft.walk.graph import WalkGraph, walk_graph
 from world2minecraft.walk.paths import elbow_room_m
 

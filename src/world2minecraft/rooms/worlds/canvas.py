@@ -7,9 +7,9 @@ import numpy as np
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.connect import settle
 from world2minecraft.build.lattice import Lattice
-from world2minecraft.coordinates import ROOM_CORNER_BLOCK, grid_to_block_axes
+from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK, grid_to_block_axes
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.rooms.worlds.house import BlockHouse
-from world2minecraft.types import BlockVolume
 
 MARGIN = 1  # The wall; what lies before it comes on top.
 UNDER = 2  # Layers under the lowest rooms: their floor, and the ground.

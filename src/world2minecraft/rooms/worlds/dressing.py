@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms.worlds.furnishing import Furnisher
 from world2minecraft.rooms.worlds.house import BlockGap, BlockRoom
 

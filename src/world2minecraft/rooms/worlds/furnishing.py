@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.furniture import Idiom, template
 from world2minecraft.furniture.idiom import block_size, laid
 from world2minecraft.rooms.place import Item

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import UNKNOWN
+from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.rooms.worlds.canvas import WorldCanvas
 from world2minecraft.rooms.worlds.house import BlockHouse
 from world2minecraft.rooms.worlds.wares import Deck

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms.kinds import KINDS
 from world2minecraft.rooms.worlds.house import BlockHouse
 from world2minecraft.rooms.worlds.recipes import PICTURES

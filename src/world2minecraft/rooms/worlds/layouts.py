@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.rooms.worlds.furnishing import Thing
 from world2minecraft.rooms.worlds.house import BlockGap, BlockHouse, BlockRoom
-from world2minecraft.types import Layout, LayoutObject, Opening
 
 
 def house_layouts(house: BlockHouse, things: tuple[Thing, ...]) -> tuple[Layout, ...]:

@@ -8,7 +8,8 @@ import numpy as np
 
 from world2minecraft.build.lights import put_lights
 from world2minecraft.build.spawn import Spawn
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.rooms.house import check_house
 from world2minecraft.rooms.house_rooms import furnish_cells
 from world2minecraft.rooms.place import Item
@@ -27,7 +28,6 @@ from world2minecraft.rooms.worlds.showing import Show
 from world2minecraft.rooms.worlds.task import Task
 from world2minecraft.rooms.worlds.wares import Deck
 from world2minecraft.rooms.worlds.ways import Ways
-from world2minecraft.types import BlockVolume
 
 # 0.24 m a block: three of the cells that pictures are labelled with, so no cell holds two blocks.
 BLOCKS_PER_METRE = 25 / 6

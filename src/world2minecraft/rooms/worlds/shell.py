@@ -3,7 +3,7 @@
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms.worlds.canvas import WorldCanvas
 from world2minecraft.rooms.worlds.house import (
     RAIL,

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.classes import SemanticClass
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.rooms.worlds.furnishing import Furnisher, Thing
 from world2minecraft.rooms.worlds.house import BlockRoom
 from world2minecraft.rooms.worlds.shell import FACINGS

@@ -12,12 +12,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, InputError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.types import Camera
 from world2minecraft.geometry.rotation import rotation_of_vector
 from world2minecraft.scan.apps.stated import camera, files_by_stem, read_text
 from world2minecraft.scan.frames import Capture, FrameFiles
-from world2minecraft.types import Camera
 
 TRAJECTORY = "lowres_wide.traj"
 SAME_S = 0.009  # Half a frame at 60 Hz; stamps of one frame differ by about a millisecond.

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError, LimitError, MissingExtraError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, LimitError, MissingExtraError
+from world2minecraft.core.files import read_bytes
 from world2minecraft.scan.image_names import NamedByFile
 from world2minecraft.scan.images import MAX_PIXELS, ImageHeader
 

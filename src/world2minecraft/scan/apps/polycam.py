@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, InputError
-from world2minecraft.files import read_json
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.files import read_json
 from world2minecraft.scan.apps.stated import (
     ARKIT_UP,
     arkit_pose,

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, InputError
-from world2minecraft.files import read_bytes, read_json
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.files import read_bytes, read_json
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.apps.exr import ExrImage
 from world2minecraft.scan.apps.lzfse_image import MAX_FILE_BYTES, LzfseImage, unpacked_bytes
 from world2minecraft.scan.apps.stated import (
@@ -28,7 +29,6 @@ from world2minecraft.scan.apps.stated import (
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import ImagePlace
 from world2minecraft.scan.quaternions import pose_of
-from world2minecraft.types import Camera
 
 _PICTURES = (".jpg", ".jpeg", ".png")
 _STILL = 1e-6  # Poses that differ by less were never tracked.

@@ -9,9 +9,9 @@ of the frames have a picture, ``frame_00000.jpg``: those are taken.
 import re
 from pathlib import Path
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, InputError
-from world2minecraft.files import read_json
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.files import read_json
 from world2minecraft.scan.apps.exr import ExrImage
 from world2minecraft.scan.apps.stated import ARKIT_UP, arkit_pose, camera, numbers
 from world2minecraft.scan.frames import Capture, FrameFiles

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.coordinates import opengl_to_opencv_pose
-from world2minecraft.errors import CaptureError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.coordinates import opengl_to_opencv_pose
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.files import read_bytes
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.numbers import as_floats
 from world2minecraft.scan.quaternions import pose_of
-from world2minecraft.types import Camera
 
 ARKIT_UP = np.array([0.0, 1.0, 0.0])
 MOST_M = 1e9

@@ -11,8 +11,9 @@ import io
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.apps.movie import MoviePicture, open_movie
 from world2minecraft.scan.apps.stated import (
     ARKIT_UP,
@@ -23,7 +24,6 @@ from world2minecraft.scan.apps.stated import (
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import ImagePlace, read_header
 from world2minecraft.scan.quaternions import pose_of
-from world2minecraft.types import Camera
 
 ODOMETRY = "odometry.csv"
 MATRIX = "camera_matrix.csv"

@@ -15,8 +15,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath, ArchivePath
-from world2minecraft.errors import (
+from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.errors import (
     DamagedFileError,
     InputError,
     LimitError,

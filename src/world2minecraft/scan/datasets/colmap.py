@@ -6,8 +6,8 @@ The model lies in ``sparse/0`` (or ``sparse``, or here), the photos in ``images/
 from collections import Counter
 from pathlib import PurePosixPath
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan.datasets.colmap_model import ModelImage, read_model
 from world2minecraft.scan.datasets.tables import checked_inside
 from world2minecraft.scan.frames import Capture, FrameFiles

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, InputError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.images import ImagePlace, read_header
-from world2minecraft.types import Camera
 
 PRIMESENSE = (525.0, 525.0, 319.5, 239.5)  # fx fy cx cy at 640x480: the default of OpenNI and ROS.
 VGA = (640, 480)

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.classes import UNKNOWN, class_id
-from world2minecraft.errors import CaptureError
-from world2minecraft.files import read_bytes, read_json
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.classes import UNKNOWN, class_id
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.files import read_bytes, read_json
 from world2minecraft.scan.image_names import NamedByFile
 from world2minecraft.scan.images import ImageHeader, check_whole, read_header, read_raw
 

@@ -10,8 +10,8 @@ import re
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan.datasets.lenses import VGA, stated_camera
 from world2minecraft.scan.datasets.pairing import pair_times
 from world2minecraft.scan.frames import Capture, FrameFiles

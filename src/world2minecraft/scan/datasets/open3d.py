@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, InputError
-from world2minecraft.files import read_json
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.datasets.lenses import PRIMESENSE, VGA, matrix_camera, stated_camera
 from world2minecraft.scan.datasets.tables import by_number, read_rows, to_floats
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import SUFFIXES
 from world2minecraft.scan.numbers import as_floats
-from world2minecraft.types import Camera
 
 COLOUR_FOLDERS = ("color", "colour", "rgb", "image", "images")
 MAX_JSON_BYTES = 64 << 20

@@ -8,13 +8,13 @@ import math
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError
-from world2minecraft.files import read_json
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.datasets.lenses import stated_camera
 from world2minecraft.scan.datasets.tables import read_rows, to_floats
 from world2minecraft.scan.frames import Capture, FrameFiles
-from world2minecraft.types import Camera
 
 PARAMETERS = "cam_params.json"
 # w h fx fy cx cy scale: the one camera of this data set.

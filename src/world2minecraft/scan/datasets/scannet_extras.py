@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath, ArchivePath, is_zip
-from world2minecraft.errors import CaptureError, InputError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.archives import AnyPath, ArchivePath, is_zip
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.files import read_bytes
 from world2minecraft.scan.datasets.nyu40 import TABLE, MappedLabels, find_table
 from world2minecraft.scan.datasets.tables import to_floats
 from world2minecraft.scan.images import read_header

@@ -7,8 +7,9 @@ were recorded; many people make the exported ones smaller. Depth is in millimetr
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, InputError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.datasets.lenses import VGA, first_size, matrix_camera, size_meant
 from world2minecraft.scan.datasets.nyu40 import MappedLabels
 from world2minecraft.scan.datasets.scannet_extras import find_labels, read_facts, upright
@@ -16,7 +17,6 @@ from world2minecraft.scan.datasets.tables import read_matrix
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import SUFFIXES
 from world2minecraft.scan.poses import read_pose
-from world2minecraft.types import Camera
 
 RECORDED = (1296, 968)  # The iPad's colour images; the depth images are VGA.
 

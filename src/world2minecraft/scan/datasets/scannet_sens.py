@@ -18,9 +18,11 @@ from typing import IO
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.coordinates import invert_rigid
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import Camera
+from world2minecraft.core.types.capture import MAX_SIDE_PX
 from world2minecraft.scan.datasets.lenses import matrix_camera, stated_camera
 from world2minecraft.scan.datasets.scannet_extras import (
     find_labels,
@@ -31,8 +33,6 @@ from world2minecraft.scan.datasets.scannet_extras import (
 from world2minecraft.scan.datasets.slices import EncodedImage, RawImage, opened_file
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import ImageSource
-from world2minecraft.types import Camera
-from world2minecraft.types.capture import MAX_SIDE_PX
 
 VERSION = 4
 MAX_NAME_BYTES = 4096

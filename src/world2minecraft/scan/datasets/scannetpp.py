@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError, DamagedFileError
-from world2minecraft.files import read_json
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, DamagedFileError
+from world2minecraft.core.files import read_json
 from world2minecraft.scan.apps.movie import MoviePicture
 from world2minecraft.scan.datasets.lenses import first_size, matrix_camera
 from world2minecraft.scan.datasets.slices import FileSlice, opened_file

@@ -13,9 +13,9 @@ from typing import IO
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath, ArchivePath
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.files import read_bytes
 from world2minecraft.scan.image_names import NamedByFrame
 from world2minecraft.scan.images import MAX_PIXELS, ImageHeader, opened_image
 

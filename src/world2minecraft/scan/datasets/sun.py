@@ -9,8 +9,8 @@ import re
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan.datasets.lenses import first_size, matrix_camera
 from world2minecraft.scan.datasets.pairing import pair_times
 from world2minecraft.scan.datasets.tables import by_number, read_matrix, read_rows, to_floats

@@ -6,9 +6,9 @@ from pathlib import PurePosixPath
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.files import read_bytes
 
 _DIGITS = re.compile(r"(\d+)")
 MAX_TEXT_BYTES = 64 << 20  # An hour of motion capture at 300 Hz takes 60 MB.

@@ -11,8 +11,9 @@ import re
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.datasets.lenses import (
     PRIMESENSE,
     VGA,
@@ -23,7 +24,6 @@ from world2minecraft.scan.datasets.lenses import (
 from world2minecraft.scan.datasets.pairing import pair_times, pose_between
 from world2minecraft.scan.datasets.tables import checked_inside, read_rows, to_floats
 from world2minecraft.scan.frames import Capture, FrameFiles
-from world2minecraft.types import Camera
 
 WITHIN_S = 0.02  # The bound of the benchmark's own script.
 MAX_GAP_S = 0.2  # Between two measured poses; a hand turns by a few degrees in that time.

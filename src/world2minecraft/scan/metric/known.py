@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.types import View
 from world2minecraft.scan.metric.measures import Measures
-from world2minecraft.types import View
 
 LEVELS = ("table height", "counter height", "seat height", "bed height")
 LENGTHS_M: dict[str, tuple[float, float]] = {

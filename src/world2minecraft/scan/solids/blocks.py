@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.solids.solid import Cloud, Mesh
 from world2minecraft.scan.solids.surfels import Surfels, cells_of
-from world2minecraft.types import Camera
 
 BLOCK_M = 0.5
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError, LimitError, reason_of
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, LimitError, reason_of
 from world2minecraft.scan.solids.optional import library
 from world2minecraft.scan.solids.solid import MAX_POINTS, Loaded
 from world2minecraft.scan.solids.thinning import Thinner

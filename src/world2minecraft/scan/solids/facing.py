@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from world2minecraft.coordinates import apply, invert_rigid
+from world2minecraft.core.coordinates import apply, invert_rigid
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.solids.solid import Mesh
 from world2minecraft.scan.solids.triangles import NO_FACE, faces_seen
-from world2minecraft.types import Camera
 
 LOOKS = 12
 SMALL = 8  # Times smaller images tell it as well.

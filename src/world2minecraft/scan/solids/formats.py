@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from world2minecraft.archive import AnyPath, ArchivePath
-from world2minecraft.errors import CaptureError
-from world2minecraft.registry import Registry
+from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.registry import Registry
 from world2minecraft.scan.solids.s3dis import load_s3dis
 from world2minecraft.scan.solids.solid import Loaded
 

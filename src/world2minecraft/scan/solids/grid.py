@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 from world2minecraft.scan.solids.solid import Mesh, Solid
 
 CELL_M = 0.10

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 
 MOST_CORNERS = 1 << 16  # Of one polygon.
 

@@ -6,14 +6,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COLOURS
-from world2minecraft.coordinates import invert_rigid
+from world2minecraft.core.classes import CLASS_COLOURS
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.images import ImageHeader
 from world2minecraft.scan.solids.blocks import Blocks
 from world2minecraft.scan.solids.solid import Mesh
 from world2minecraft.scan.solids.splats import Surfels, see_points
 from world2minecraft.scan.solids.triangles import GREY, see_triangles
-from world2minecraft.types import Camera
 
 KEPT_BYTES = 192 << 20  # All 120 views of 480 x 360: 1.4 MB each.
 MODES = {"colour": "RGB", "depth": "float32", "labels": "L"}

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_NAMES, UNKNOWN, class_id
-from world2minecraft.files import read_json
+from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN, class_id
+from world2minecraft.core.files import read_json
 
 TABLE = Path(__file__).parent / "data" / "names.json"
 

@@ -7,10 +7,10 @@ where none is over 11, of S3DIS's 13 where none is over 12, else of NYU40.
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.classes import CLASS_NAMES, UNKNOWN
-from world2minecraft.errors import CaptureError
-from world2minecraft.files import read_json
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.files import read_json
 from world2minecraft.scan.datasets.nyu40 import nyu40_classes
 from world2minecraft.scan.solids.naming import class_of_name, own_classes
 

@@ -4,8 +4,8 @@ import warnings
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError
 
 
 def parse_numbers(place: AnyPath, text: bytes) -> np.ndarray:

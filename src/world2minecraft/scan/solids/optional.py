@@ -3,7 +3,7 @@
 from importlib import import_module
 from typing import Any
 
-from world2minecraft.errors import MissingExtraError
+from world2minecraft.core.errors import MissingExtraError
 
 
 def library(name: str, doing: str, extra: str = "capture") -> Any:

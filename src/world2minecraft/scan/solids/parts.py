@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, LimitError
 from world2minecraft.scan.images import MAX_PIXELS
 from world2minecraft.scan.solids.solid import MAX_FACES, MAX_VERTICES, Mesh
 from world2minecraft.scan.solids.triangles import GREY

@@ -10,9 +10,9 @@ from typing import NoReturn
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError, LimitError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, LimitError
+from world2minecraft.core.files import read_bytes
 from world2minecraft.scan.solids.lists import (
     MOST_CORNERS,
     fans,

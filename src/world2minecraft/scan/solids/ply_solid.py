@@ -6,9 +6,9 @@ from collections.abc import Mapping
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError, InputError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.files import read_bytes
 from world2minecraft.scan.solids.numbering import classes_of_numbers
 from world2minecraft.scan.solids.parts import Part, joined
 from world2minecraft.scan.solids.ply import PlyFile, read_ply

@@ -1,7 +1,7 @@
 """Rooms of S3DIS: ``Annotations/chair_1.txt`` and its like, a cloud for each thing."""
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan.solids.solid import Loaded
 from world2minecraft.scan.solids.text import add_text, label_of_file
 from world2minecraft.scan.solids.thinning import Thinner

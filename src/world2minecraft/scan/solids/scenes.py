@@ -8,9 +8,9 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, reason_of
-from world2minecraft.files import read_bytes
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, reason_of
+from world2minecraft.core.files import read_bytes
 from world2minecraft.geometry.colour import srgb_of_linear
 from world2minecraft.scan.solids.naming import class_of_name
 from world2minecraft.scan.solids.optional import library

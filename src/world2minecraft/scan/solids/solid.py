@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from world2minecraft.types import checks
+from world2minecraft.core.types import checks
 
 # What is read of one file: a scanned flat at full detail has about five million of each.
 MAX_FACES = 20_000_000

@@ -4,9 +4,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.coordinates import apply
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import CaptureError
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.options import ScanOptions
 from world2minecraft.scan.solids.blocks import mesh_in_blocks, surfels_in_blocks

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.solids.solid import Cloud
 from world2minecraft.scan.solids.triangles import GREY, NEAR_M, lens_of
-from world2minecraft.types import Camera
 
 BLEND_M = 0.02  # Twice the noise of good scanners and thrice that of a phone's cleaned cloud.
 RIM_WEIGHT = 0.3  # What a pixel has that no disc's middle is nearer to than 2/3 of the radius.

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, LimitError
 from world2minecraft.scan.solids.naming import class_of_name
 from world2minecraft.scan.solids.numbering import classes_of_numbers
 from world2minecraft.scan.solids.numbers import parse_numbers

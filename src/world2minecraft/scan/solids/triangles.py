@@ -8,9 +8,9 @@ of a triangle are seen.
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.solids.solid import Mesh
-from world2minecraft.types import Camera
 
 NEAR_M = 0.01
 NO_FACE = -1

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
-from world2minecraft.archive import AnyPath
-from world2minecraft.errors import DamagedFileError, LimitError
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, LimitError
 from world2minecraft.geometry.colour import srgb_of_linear
 from world2minecraft.scan.solids.clouds import on_disk
 from world2minecraft.scan.solids.lists import fans

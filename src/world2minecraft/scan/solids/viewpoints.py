@@ -8,11 +8,11 @@ quarter.
 
 import numpy as np
 
-from world2minecraft.coordinates import look_at
-from world2minecraft.jit import njit
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
 from world2minecraft.scan.solids.grid import Grid
 from world2minecraft.scan.solids.interior import Interior
-from world2minecraft.types import Camera
 
 CAMERA = Camera(480, 360, 240.0, 240.0, 240.0, 180.0)  # 90 degrees wide.
 HEIGHTS_M = (1.55, 0.6, 1.1, 2.0)  # Of eyes, a child's, a desk's, an arm's reach.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.types import Camera
+from world2minecraft.core.types import Camera
 
 STEP_DEG = 10
 HEADINGS, PITCHES = 360 // STEP_DEG, 180 // STEP_DEG

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from world2minecraft.errors import MissingExtraError
+from world2minecraft.core.errors import MissingExtraError
 from world2minecraft.scan.survey.gathering import Survey
 from world2minecraft.scan.survey.pictures import Picture
 from world2minecraft.scan.survey.route import Route

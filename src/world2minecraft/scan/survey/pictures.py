@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image
 
-from world2minecraft.errors import InputError
+from world2minecraft.core.errors import InputError
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.images import ImagePlace, read_header, read_small
 from world2minecraft.scan.judged import spread_over

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.coordinates import apply
-from world2minecraft.errors import CaptureError
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import View
 from world2minecraft.geometry.lifting import lift_depth, project
 from world2minecraft.scan.align import Alignment, ImplausibleRoomError, align
 from world2minecraft.scan.frames import FrameFiles
@@ -19,7 +20,6 @@ from world2minecraft.scan.judged import JudgedCapture, spread_over
 from world2minecraft.scan.opening import ALIGNED_FRAMES
 from world2minecraft.scan.stream import CaptureViews
 from world2minecraft.scan.survey.directions import up_of_cameras
-from world2minecraft.types import View
 
 POINTS_EACH = 60_000
 CELLS = 560  # Along the longer side of the plan.

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import DamagedFileError, UnknownNameError
-from world2minecraft.files import read_bytes
+from world2minecraft.core.errors import DamagedFileError, UnknownNameError
+from world2minecraft.core.files import read_bytes
 from world2minecraft.models.chat import ChatModel
 from world2minecraft.models.chat_forms import ask_form
 from world2minecraft.models.chat_messages import Picture, Turn

@@ -2,11 +2,11 @@
 
 from collections.abc import Callable
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.registry import Registry
 from world2minecraft.models.chat import ChatModel
 from world2minecraft.models.chat_endpoints import ENDPOINTS, is_endpoint
 from world2minecraft.models.chat_pictures import MOST_PX
-from world2minecraft.registry import Registry
 from world2minecraft.vln.agents.model import HISTORY, ModelAgent
 from world2minecraft.vln.agents.step_form import MOST_MOVES
 from world2minecraft.vln.agents.values import Agent

@@ -2,7 +2,7 @@
 
 from itertools import product
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.agents.values import Decision, Guide, Sight, Task
 from world2minecraft.vln.values import Move
 

@@ -8,7 +8,7 @@ they went.
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.agents.values import Decision, Sight, Task
 from world2minecraft.vln.keyboard import PATIENCE_S, pressed_move
 from world2minecraft.vln.values import Episode, Move, Stance

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.models.chat import ChatModel
 from world2minecraft.models.chat_forms import Try, ask_form
 from world2minecraft.models.chat_messages import Picture

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.files import write_bytes
+from world2minecraft.core.files import write_bytes
 from world2minecraft.vln.data.pictures import Shot, hash_distance
 from world2minecraft.vln.data.stream import wrapped_deg
 from world2minecraft.vln.values import Stance

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, UnknownNameError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
 from world2minecraft.vln.data.next_view import GRADES
 from world2minecraft.vln.scores import Rate, rate
 from world2minecraft.vln.values import TASKS, Item

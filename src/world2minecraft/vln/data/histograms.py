@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.errors import MissingExtraError
-from world2minecraft.files import write_bytes
+from world2minecraft.core.errors import MissingExtraError
+from world2minecraft.core.files import write_bytes
 from world2minecraft.vln.data.statistics import PARTS
 from world2minecraft.vln.values import TASKS, Item
 

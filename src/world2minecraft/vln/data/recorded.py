@@ -12,8 +12,8 @@ from typing import Literal
 import numpy as np
 from scipy.spatial import KDTree
 
-from world2minecraft.coordinates import eye_height_blocks
-from world2minecraft.errors import UsageError
+from world2minecraft.core.coordinates import eye_height_blocks
+from world2minecraft.core.errors import UsageError
 from world2minecraft.render.views.tour_file import read_tour
 from world2minecraft.vln.data.stream import StreamFrame, frame_of, timed
 from world2minecraft.vln.running.trace import TRACE_FILE, read_trace, stances_of, traces_in

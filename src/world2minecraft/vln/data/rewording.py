@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from world2minecraft.errors import BudgetError, ServerError
-from world2minecraft.files import read_json
-from world2minecraft.progress import Progress, silent
+from world2minecraft.core.errors import BudgetError, ServerError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.vln.language.humans import read_annotations, with_annotations
 from world2minecraft.vln.language.reading import told_in
 from world2minecraft.vln.language.rewriting import Ask, Rewriting, rewritten

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.types import Camera
+from world2minecraft.core.types import Camera
 from world2minecraft.vln.data.album import Album, Pictured
 from world2minecraft.vln.data.candidates import Candidate, Maker
 from world2minecraft.vln.data.discretise import VERSION, Guide, Walker

@@ -8,7 +8,7 @@ import hashlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.values import Trajectory
 
 UNSEEN_SHARE = 0.2  # Of the scenes of each composition: the paper's test share of items is 0.21.

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from world2minecraft.coordinates import apply, invert
+from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.vln.data.stream import StreamFrame, wrapped_deg
 from world2minecraft.vln.landmarks import Landmark
 from world2minecraft.vln.language.naming import told_apart

@@ -5,7 +5,7 @@ from typing import Any, Protocol
 import numpy as np
 from gymnasium import spaces
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.moves import moved, wrapped_yaw
 from world2minecraft.vln.scene import VlnScene
 from world2minecraft.vln.values import Move, MoveSet, Stance

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.vln.episodes import Target, random_episode, target_of, targets_of
 from world2minecraft.vln.records import read_episodes
 from world2minecraft.vln.scene import VlnScene

@@ -8,7 +8,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.vln.environment.acting import Acting, Continuous, Discrete
 from world2minecraft.vln.environment.drawing import Drawing
 from world2minecraft.vln.environment.senses import USUAL, Eyes, Senses

@@ -3,7 +3,7 @@
 import webbrowser
 from typing import Any
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.environment.env import VlnEnv
 from world2minecraft.vln.keyboard import PATIENCE_S, pressed_move
 

@@ -1,6 +1,6 @@
 """Tells gymnasium of the environment; the environment itself is imported when one is made."""
 
-from world2minecraft.errors import MissingExtraError
+from world2minecraft.core.errors import MissingExtraError
 
 ENV_ID = "World2Minecraft-VLN-v0"
 SERVER_ENV_ID = "World2Minecraft-VLN-Server-v0"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.render.lamps import DAY
 from world2minecraft.render.light import LookLight
 from world2minecraft.vln.moves import wrapped_yaw

@@ -12,8 +12,8 @@ from typing import Any
 
 import jinja2
 
-from world2minecraft.errors import DamagedFileError, InputError, MissingExtraError, UsageError
-from world2minecraft.files import read_bytes, read_json
+from world2minecraft.core.errors import DamagedFileError, InputError, MissingExtraError, UsageError
+from world2minecraft.core.files import read_bytes, read_json
 from world2minecraft.vln.prompts import IMAGE
 from world2minecraft.vln.records import check_image_name
 

@@ -17,8 +17,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import UsageError
-from world2minecraft.files import write_bytes, write_text
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import write_bytes, write_text
 from world2minecraft.vln.handoff.contracts import check_easyr1, parquet_modules
 from world2minecraft.vln.handoff.parts import TRAIN, Part, held_out
 from world2minecraft.vln.handoff.pictures import Pictures

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft import __version__
-from world2minecraft.errors import ConflictError, UnknownNameError, UsageError
-from world2minecraft.files import read_json, write_json, write_text
-from world2minecraft.progress import Progress, silent
+from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
+from world2minecraft.core.files import read_json, write_json, write_text
+from world2minecraft.core.progress import Progress, silent
 from world2minecraft.vln.handoff import easyr1, llamafactory
 from world2minecraft.vln.handoff.parts import parts_of
 from world2minecraft.vln.handoff.pictures import Pictures

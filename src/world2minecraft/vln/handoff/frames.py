@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.coordinates import ROOM_AXES_TO_BLOCK, apply
-from world2minecraft.errors import DamagedFileError
-from world2minecraft.files import read_json
+from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK, apply
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import read_json
 from world2minecraft.vln.records import scene_place
 from world2minecraft.vln.values import Stance
 

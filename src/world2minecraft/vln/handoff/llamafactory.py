@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.files import write_json, write_text
+from world2minecraft.core.files import write_json, write_text
 from world2minecraft.vln.handoff.contracts import check_llamafactory
 from world2minecraft.vln.handoff.parts import TRAIN, Part
 from world2minecraft.vln.handoff.pictures import Pictures

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from PIL import Image
 
-from world2minecraft.errors import DamagedFileError, LimitError
-from world2minecraft.files import read_bytes, write_bytes
+from world2minecraft.core.errors import DamagedFileError, LimitError
+from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.vln.records import check_image_name
 
 MAX_BYTES = 32 << 20

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.files import write_json
+from world2minecraft.core.files import write_json
 from world2minecraft.vln.handoff.rules import Written
 from world2minecraft.vln.values import SPLITS, Keyframe, Trajectory
 

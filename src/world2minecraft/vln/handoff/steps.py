@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 
 # Of the paper's tables.
 SFT_EPOCHS, SFT_BATCH, SFT_ACCUMULATED = 5, 1, 2

@@ -8,7 +8,7 @@ import math
 import unicodedata
 from collections.abc import Iterable
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.handoff.pictures import Pictures
 from world2minecraft.vln.prompts import IMAGE, Question
 from world2minecraft.vln.values import Item

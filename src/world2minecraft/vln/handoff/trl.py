@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.files import write_text
+from world2minecraft.core.files import write_text
 from world2minecraft.vln.handoff.contracts import check_trl
 from world2minecraft.vln.handoff.easyr1 import GPUS, RESPONSE_TOKENS
 from world2minecraft.vln.handoff.llamafactory import rows_left_out

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.files import write_bytes, write_json
+from world2minecraft.core.files import write_bytes, write_json
 from world2minecraft.vln.handoff.frames import block_to_habitat, positions, rotation
 from world2minecraft.vln.handoff.rules import Written
 from world2minecraft.vln.values import SPLITS, Episode, Move

@@ -11,8 +11,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
-from world2minecraft.files import json_rows, read_bytes
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.files import json_rows, read_bytes
 from world2minecraft.vln.prompts import mark_in
 from world2minecraft.vln.values import LEVELS, Instruction, Trajectory
 

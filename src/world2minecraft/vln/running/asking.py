@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.errors import InputError, UsageError
+from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.vln.episodes import target_of
 from world2minecraft.vln.landmarks import Landmark
 from world2minecraft.vln.moves import wrapped_yaw

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.files import write_json
+from world2minecraft.core.files import write_json
 from world2minecraft.vln.agents import AGENTS, BESIDE, Agent
 from world2minecraft.vln.running.evaluating import RESULT_FILE
 from world2minecraft.vln.running.ground import Ground

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from world2minecraft.errors import ServerError, UsageError
-from world2minecraft.files import write_json, write_text
-from world2minecraft.progress import Progress
+from world2minecraft.core.errors import ServerError, UsageError
+from world2minecraft.core.files import write_json, write_text
+from world2minecraft.core.progress import Progress
 from world2minecraft.vln.agents.answering import Answer
 from world2minecraft.vln.running.lines import json_line
 from world2minecraft.vln.scores import rate

@@ -3,7 +3,7 @@
 import random
 from collections.abc import Sequence
 
-from world2minecraft.errors import UnknownNameError, UsageError
+from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.vln.running.evaluating import COMPOSITIONS
 from world2minecraft.vln.values import SPLITS, TASKS, Item
 

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from world2minecraft.types import Camera
+from world2minecraft.core.types import Camera
 from world2minecraft.vln.moves import forward_blocks, moved, named_set
 from world2minecraft.vln.oracle import expert
 from world2minecraft.vln.running.ground import Ground

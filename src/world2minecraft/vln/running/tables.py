@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, InputError, UsageError
-from world2minecraft.files import read_json
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.files import read_json
 from world2minecraft.vln.agents.choice import BESIDE
 from world2minecraft.vln.running.evaluating import COMPOSITIONS, RESULT_FILE, TRAININGS
 from world2minecraft.vln.scores import RADII_M, paired_p

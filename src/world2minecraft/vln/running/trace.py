@@ -13,8 +13,8 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from world2minecraft.errors import DamagedFileError, OutputError
-from world2minecraft.files import json_rows, read_bytes, write_bytes
+from world2minecraft.core.errors import DamagedFileError, OutputError
+from world2minecraft.core.files import json_rows, read_bytes, write_bytes
 from world2minecraft.vln.agents.model import jpeg
 from world2minecraft.vln.agents.values import Decision, Sight
 from world2minecraft.vln.agents.words import MOVE_NAMES

@@ -6,7 +6,7 @@ lines. nDTW is of Ilharco et al. (2019), CLS of Jain et al. (2019).
 
 import numpy as np
 
-from world2minecraft.jit import njit
+from world2minecraft.core.jit import njit
 
 THRESHOLD_M = 3.0  # Of both scores, as they were published; a distance that counts as near.
 

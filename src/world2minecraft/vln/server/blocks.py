@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.coordinates import block_to_room
-from world2minecraft.errors import ServerError, UnknownNameError, UsageError
+from world2minecraft.core.coordinates import block_to_room
+from world2minecraft.core.errors import ServerError, UnknownNameError, UsageError
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.game_names import read_state
 from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.versions import game_version, game_versions
-from world2minecraft.types import AIR, BlockVolume
 
 MAX_CELLS = 1 << 24  # 256 x 256 blocks and 256 high.
 MAX_PALETTE = 1 << 15  # The game has 26,000 states or so.

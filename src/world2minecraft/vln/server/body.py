@@ -11,8 +11,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple
 
-from world2minecraft.errors import ServerError, UsageError
-from world2minecraft.types import BlockVolume
+from world2minecraft.core.errors import ServerError, UsageError
+from world2minecraft.core.types import BlockVolume
 from world2minecraft.vln.server.blocks import checked_box, data_version_of, read_blocks, state_of
 from world2minecraft.vln.server.bridge import Bridge
 from world2minecraft.vln.server.installing import body_folder, node, script

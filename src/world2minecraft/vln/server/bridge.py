@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any, NoReturn
 
-from world2minecraft.errors import ServerError
+from world2minecraft.core.errors import ServerError
 
 MAX_LINE = 8 << 20  # Bytes: the blocks of a chunk column take up to 1 MB.
 MAX_WAITING = 16  # Lines that nobody asked for.

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.vln.environment.acting import Acting
 from world2minecraft.vln.environment.env import VlnEnv
 from world2minecraft.vln.server.acting import KeysOnServer, MovesOnServer

@@ -1,6 +1,6 @@
 """A scene on a server as the ground of episodes: moves are made by its player."""
 
-from world2minecraft.types import Camera
+from world2minecraft.core.types import Camera
 from world2minecraft.vln.running.ground import Ground
 from world2minecraft.vln.running.scene_ground import SceneGround
 from world2minecraft.vln.server.acting import MovesOnServer

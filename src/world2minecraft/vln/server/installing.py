@@ -7,9 +7,9 @@ import subprocess
 from importlib.resources import files
 from pathlib import Path
 
-from world2minecraft.errors import ServerError, UsageError
-from world2minecraft.files import write_text
-from world2minecraft.jit import user_cache_dir
+from world2minecraft.core.errors import ServerError, UsageError
+from world2minecraft.core.files import write_text
+from world2minecraft.core.jit import user_cache_dir
 
 LEAST_NODE = 18
 LIMIT_S = 900.0

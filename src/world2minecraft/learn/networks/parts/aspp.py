@@ -3,7 +3,7 @@
 import torch
 from torch import Tensor, nn
 
-from world2minecraft.classes import CLASS_COUNT
+from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.learn.networks.parts.norms import Norm, conv3d
 
 

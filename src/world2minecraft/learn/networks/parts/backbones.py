@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from torch import nn
 
-from world2minecraft.errors import UsageError
+from world2minecraft.core.errors import UsageError
 from world2minecraft.learn.networks.parts.norms import Norm
 from world2minecraft.learn.networks.parts.unet2d import Decoder, Encoder, PictureWidths, UNet2D
 

@@ -13,7 +13,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from world2minecraft.errors import InputError, MissingExtraError
+from world2minecraft.core.errors import InputError, MissingExtraError
 from world2minecraft.learn.networks.parts.unet2d import STRIDES, PictureWidths
 
 MODEL_NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)?", re.ASCII)

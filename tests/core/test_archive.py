@@ -7,9 +7,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from world2minecraft.archive import ArchivePath, is_zip
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, World2MinecraftError
-from world2minecraft.files import read_bytes, read_json
+from world2minecraft.core.archives import ArchivePath, is_zip
+from world2minecraft.core.errors import (
+    DamagedFileError,
+    InputError,
+    LimitError,
+    World2MinecraftError,
+)
+from world2minecraft.core.files import read_bytes, read_json
 from world2minecraft.scan.images import check_whole, read_colour, read_header, read_raw
 
 FILES = {

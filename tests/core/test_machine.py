@@ -2,7 +2,7 @@
 
 import os
 
-from world2minecraft.machine import usable_cores
+from world2minecraft.core.machine import usable_cores
 
 
 def test_a_limit_of_the_system_counts(monkeypatch):

@@ -31,9 +31,9 @@ def kernel_sources_digest() -> str:
     another; so each state of the sources has its own folder.
     """
     digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.rglob("*.py")):
+    for path in sorted(Path(__file__).parents[1].rglob("*.py")):
         source = path.read_bytes()
-        if b"world2minecraft.jit import" in source:
+        if b"world2minecraft.core.jit import" in source:
             digest.update(path.name.encode() + source)
     return digest.hexdigest()[:16]
 

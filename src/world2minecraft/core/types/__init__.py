@@ -4,15 +4,15 @@ Arrays are held as read-only views; a stage that changes something makes a new v
 ``dataclasses.replace``. Conventions (frames, axes, angles) are in ``coordinates``.
 """
 
-from world2minecraft.types.capture import Camera, Scan, View, ViewStream
-from world2minecraft.types.corrections import Corrections
-from world2minecraft.types.edit import BlockEdit, Blocks, GridCells, Operation, SceneObject
-from world2minecraft.types.evidence import FusedEvidence, GridEvidence, PointEvidence
-from world2minecraft.types.grid import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
-from world2minecraft.types.layout import Layout, LayoutObject, Opening
-from world2minecraft.types.objects import Alternative, ObjectInstance, Placement
-from world2minecraft.types.photos import DepthMap, Photo, PhotoStream, SparseScene
-from world2minecraft.types.volume import AIR, BlockEntity, BlockVolume, Entity
+from world2minecraft.core.types.capture import Camera, Scan, View, ViewStream
+from world2minecraft.core.types.corrections import Corrections
+from world2minecraft.core.types.edit import BlockEdit, Blocks, GridCells, Operation, SceneObject
+from world2minecraft.core.types.evidence import FusedEvidence, GridEvidence, PointEvidence
+from world2minecraft.core.types.grid import COMPLETED, OBSERVED, UNSEEN, OccupancyGrid
+from world2minecraft.core.types.layout import Layout, LayoutObject, Opening
+from world2minecraft.core.types.objects import Alternative, ObjectInstance, Placement
+from world2minecraft.core.types.photos import DepthMap, Photo, PhotoStream, SparseScene
+from world2minecraft.core.types.volume import AIR, BlockEntity, BlockVolume, Entity
 
 __all__ = [
     "AIR",

@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from world2minecraft.types import checks
+from world2minecraft.core.types import checks
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,11 +5,11 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
-from world2minecraft import registry
-from world2minecraft.errors import UnknownNameError
-from world2minecraft.registry import Registry
+from world2minecraft.core import registry
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.registry import Registry
 
-BUILTINS = {"geometric": "world2minecraft.classes:class_id", "json": "json:loads"}
+BUILTINS = {"geometric": "world2minecraft.core.classes:class_id", "json": "json:loads"}
 
 
 @pytest.fixture

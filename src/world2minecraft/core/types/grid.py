@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.types import checks
+from world2minecraft.core.types import checks
 
 UNSEEN, OBSERVED, COMPLETED = 0, 1, 2
 

@@ -6,8 +6,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from world2minecraft.types import checks
-from world2minecraft.types.capture import Camera
+from world2minecraft.core.types import checks
+from world2minecraft.core.types.capture import Camera
 
 
 @dataclass(frozen=True, eq=False)

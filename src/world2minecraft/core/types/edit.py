@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.types import checks
-from world2minecraft.types.grid import UNSEEN
-from world2minecraft.types.objects import ObjectInstance, Placement
-from world2minecraft.types.volume import BlockEntity, Entity
+from world2minecraft.core.types import checks
+from world2minecraft.core.types.grid import UNSEEN
+from world2minecraft.core.types.objects import ObjectInstance, Placement
+from world2minecraft.core.types.volume import BlockEntity, Entity
 
 COUNTED = ("add", "delete", "orient", "move", "relabel", "other")
 

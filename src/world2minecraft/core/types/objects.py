@@ -6,8 +6,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from world2minecraft.classes import OBJECT_CLASSES
-from world2minecraft.types import checks
+from world2minecraft.core.classes import OBJECT_CLASSES
+from world2minecraft.core.types import checks
 
 
 @dataclass(frozen=True, eq=False)

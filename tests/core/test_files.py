@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from world2minecraft import files
-from world2minecraft.errors import DamagedFileError, InputError, LimitError, OutputError
+from world2minecraft.core import files
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, OutputError
 
 arrays = hnp.arrays(
     st.sampled_from([np.uint8, np.int32, np.float16, np.float64, np.bool_]),

@@ -6,7 +6,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from world2minecraft.types import checks
+from world2minecraft.core.types import checks
 
 MAX_SIDE_PX = 20_000
 IDENTITY = np.eye(4)

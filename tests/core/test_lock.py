@@ -5,13 +5,13 @@ import sys
 
 import pytest
 
-from world2minecraft.errors import ConflictError
-from world2minecraft.lock import Lock
+from world2minecraft.core.errors import ConflictError
+from world2minecraft.core.locks import Lock
 
 HOLD = """
 import sys
 from pathlib import Path
-from world2minecraft.lock import Lock
+from world2minecraft.core.locks import Lock
 Lock(Path(sys.argv[1])).take()
 print("held", flush=True)
 sys.stdin.read()

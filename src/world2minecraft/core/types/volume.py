@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.types import checks
+from world2minecraft.core.types import checks
 
 AIR = "minecraft:air"
 

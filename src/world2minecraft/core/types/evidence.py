@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.classes import CLASS_COUNT
-from world2minecraft.types import checks
+from world2minecraft.core.classes import CLASS_COUNT
+from world2minecraft.core.types import checks
 
 
 @dataclass(frozen=True, eq=False)

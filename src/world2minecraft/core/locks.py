@@ -12,7 +12,7 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from world2minecraft.errors import ConflictError, OutputError
+from world2minecraft.core.errors import ConflictError, OutputError
 
 _held: set[FileLock] = set()  # filelock lets go of those that nothing refers to.
 

@@ -6,7 +6,7 @@ legend that the paper prints beside its result tables.
 
 from enum import IntEnum
 
-from world2minecraft.errors import UnknownNameError
+from world2minecraft.core.errors import UnknownNameError
 
 
 class SemanticClass(IntEnum):

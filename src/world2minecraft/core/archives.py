@@ -18,7 +18,7 @@ from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from types import SimpleNamespace
 
-from world2minecraft.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 
 # What zipfile and numpy raise over a damaged archive; RuntimeError is an encrypted member.
 UNREADABLE = (

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from world2minecraft import jit
+from world2minecraft.core import jit
 
 
 def test_the_cache_lies_in_the_users_folder(monkeypatch, tmp_path):
@@ -24,12 +24,12 @@ def test_a_folder_that_cannot_be_made_gives_a_fresh_passing_one(monkeypatch, tmp
 def test_the_digest_follows_the_sources_of_kernels_alone(monkeypatch, tmp_path):
     monkeypatch.setattr(jit, "__file__", str(tmp_path / "jit.py"))
     kernel, plain = tmp_path / "kernel.py", tmp_path / "plain.py"
-    kernel.write_text("from world2minecraft.jit import njit")
+    kernel.write_text("from world2minecraft.core.jit import njit")
     plain.write_text("")
     first = jit.kernel_sources_digest()
     plain.write_text("changed = 1")
     assert jit.kernel_sources_digest() == first
-    kernel.write_text("from world2minecraft.jit import njit  # changed")
+    kernel.write_text("from world2minecraft.core.jit import njit  # changed")
     assert jit.kernel_sources_digest() != first
 
 

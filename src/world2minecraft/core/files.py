@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.archive import UNREADABLE, ArchivePath
-from world2minecraft.errors import (
+from world2minecraft.core.archives import UNREADABLE, ArchivePath
+from world2minecraft.core.errors import (
     DamagedFileError,
     InputError,
     LimitError,

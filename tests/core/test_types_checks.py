@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft import types
+from world2minecraft.core import types
 
 EYE = np.eye(4)
 MIRROR = np.diag([-1.0, 1.0, 1.0, 1.0])

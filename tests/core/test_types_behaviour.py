@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from test_types_checks import GOOD
-from world2minecraft import coordinates as co
-from world2minecraft import types
+
+from world2minecraft.core import coordinates as co
+from world2minecraft.core import types
 
 
 def make(kind, **change):

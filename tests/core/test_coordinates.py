@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from world2minecraft import coordinates as co
+from world2minecraft.core import coordinates as co
 
 metres = st.floats(-20, 20, allow_nan=False, width=32)
 degrees = st.floats(-720, 720, allow_nan=False, width=32)

@@ -6,8 +6,8 @@ import re
 
 import pytest
 
-from world2minecraft import errors
-from world2minecraft.classes import CLASS_COLOURS, CLASS_COUNT, CLASS_NAMES, class_id
+from world2minecraft.core import errors
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_COUNT, CLASS_NAMES, class_id
 
 GOLDEN = [
     (

@@ -1,0 +1,1 @@
+"""What everything else stands on: value types, coordinates, classes, errors, files, compilation."""
