@@ -18,7 +18,7 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Camera, DepthMap, SparseScene
 from world2minecraft.core.types.photos import PhotoStream
-from world2minecraft.geometry.lifting import pixel_rays
+from world2minecraft.geometry.unprojection import pixel_rays
 from world2minecraft.prepare import preparing
 from world2minecraft.stereo.maps import confirmed
 from world2minecraft.stereo.neighbours import DEPTH_PERCENTILES, chosen_neighbours

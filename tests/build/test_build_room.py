@@ -13,11 +13,11 @@ from world2minecraft.build import BuildParameters, build_volume, find_spawn
 from world2minecraft.build.connect import settle
 from world2minecraft.build.lamps import WALK_BLOCKS
 from world2minecraft.build.lights import LEAST_CORNER
-from world2minecraft.build.morphology import beside, grown, parts_of
 from world2minecraft.build.plaque import FAR
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.errors import UsageError
+from world2minecraft.geometry.padded_morphology import beside, grown, parts_of
 from world2minecraft.minecraft.rules.light import block_light
 from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.minecraft.shapes import is_full_cube

@@ -6,7 +6,7 @@ from house_of_blocks import Blocks, cottage
 
 from world2minecraft.core.classes import CLASS_NAMES, class_id
 from world2minecraft.dataset.source import open_scene_source
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import write_blocks
 

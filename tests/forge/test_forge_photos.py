@@ -15,8 +15,8 @@ from world2minecraft.core.types import Camera
 from world2minecraft.exchange.room import read_room
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.photos import find_capture_of, ideal_camera, read_photos
-from world2minecraft.geometry.lifting import project
 from world2minecraft.geometry.undistort import undistorted
+from world2minecraft.geometry.unprojection import project
 from world2minecraft.scan.depth import read_depth
 
 

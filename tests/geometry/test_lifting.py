@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.lifting import lift_depth, pixel_rays, project
+from world2minecraft.geometry.unprojection import lift_depth, pixel_rays, project
 
 LENSES = [(0, 0, 0, 0, 0), (0.1, -0.2, 0.001, -0.002, 0.05), (-0.25, 0.08, 0, 0, 0)]
 

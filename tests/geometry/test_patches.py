@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.types import Camera, View
-from world2minecraft.geometry.lifting import pixel_rays
-from world2minecraft.geometry.patches import patches_of_depth
-from world2minecraft.geometry.surface import collect_surface
+from world2minecraft.geometry.oriented_points import collect_surface
+from world2minecraft.geometry.planar_patches import patches_of_depth
+from world2minecraft.geometry.unprojection import pixel_rays
 
 CAMERA = Camera(320, 240, 260.0, 260.0, 160.0, 120.0)
 

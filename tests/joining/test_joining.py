@@ -12,7 +12,7 @@ from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.exchange.layout import read_layouts, write_layouts
 from world2minecraft.exchange.objects import read_objects, write_objects, write_placements
 from world2minecraft.exchange.room import read_room, write_room
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.joining import Move, merged, moved, parse_place, place_runs, read_runs
 from world2minecraft.joining.fits import fits
 

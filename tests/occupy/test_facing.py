@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.lifting import lift_depth, pixel_rays
+from world2minecraft.geometry.unprojection import lift_depth, pixel_rays
 from world2minecraft.occupy.facing import facing_of_depth
 
 CAMERA = Camera(320, 240, 262.0, 262.0, 160.0, 120.0)

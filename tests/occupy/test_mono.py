@@ -13,7 +13,7 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.dataset.region import RegionRule, region_of
 from world2minecraft.fuse import fuse_views, read_out
-from world2minecraft.geometry.lifting import lift_depth, project
+from world2minecraft.geometry.unprojection import lift_depth, project
 from world2minecraft.occupy import mono, predictor
 from world2minecraft.occupy.mono import (
     MonoPredictor,

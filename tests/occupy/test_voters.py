@@ -11,7 +11,7 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera, Scan, View
 from world2minecraft.fuse import EvidenceMap
-from world2minecraft.geometry.lifting import project
+from world2minecraft.geometry.unprojection import project
 from world2minecraft.occupy import OccupyParameters, kept, notes_of, predictor, voters
 from world2minecraft.occupy.depth import DepthPredictor
 from world2minecraft.occupy.mono import MonoPredictor

@@ -17,7 +17,7 @@ from world2minecraft.core.types import FusedEvidence
 from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.exchange.objects import read_objects, read_placements
 from world2minecraft.exchange.room import read_room
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.making import make_from_plan
 from world2minecraft.parameters import Parameters
 from world2minecraft.plans import (

@@ -11,7 +11,7 @@ from tests.exact_room import BoxRoom
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera, DepthMap, SparseScene, View
-from world2minecraft.geometry.lifting import lift_depth, project
+from world2minecraft.geometry.unprojection import lift_depth, project
 from world2minecraft.parameters import Parameters
 from world2minecraft.prepare import open_prepared, prepared, preparing
 from world2minecraft.prepare.scaling import clicked, depth_ratios, normalised, scaled_capture

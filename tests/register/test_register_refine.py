@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera, Corrections, Scan, View
-from world2minecraft.geometry.surface import Surface, collect_surface
+from world2minecraft.geometry.oriented_points import Surface, collect_surface
 from world2minecraft.register import RegisterParameters, corrected, register, told
 from world2minecraft.register.refine import register_surface
 

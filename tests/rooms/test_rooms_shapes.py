@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.errors import UnknownNameError
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.metrics.layout import collisions, out_of_bounds
 from world2minecraft.rooms import KINDS, SHAPES, generate_room
 from world2minecraft.rooms.clutter import MAX_ASKEW_DEG

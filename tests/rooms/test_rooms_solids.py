@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.rooms.model import Bar, Model, Part
 from world2minecraft.rooms.place import Item
 from world2minecraft.rooms.solids import is_plain, modelled, solid_cells

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from world2minecraft.core.coordinates import apply, invert_rigid, rotation_about_z
 from world2minecraft.core.types import Scan
-from world2minecraft.geometry.surface import collect_surface
+from world2minecraft.geometry.oriented_points import collect_surface
 from world2minecraft.scan.align import ImplausibleRoomError, align, align_surface, realigned
 from world2minecraft.scan.gravity import find_ground, frame_of_up
 from world2minecraft.scan.surface import profile

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.coordinates import apply, rotation_about_z
-from world2minecraft.geometry.lifting import lift_depth
+from world2minecraft.geometry.unprojection import lift_depth
 from world2minecraft.scan import describe_capture, open_scan
 from world2minecraft.scan.judged import spread_over
 from world2minecraft.scan.opening import ALIGNED_FRAMES

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from world2minecraft.geometry.surface import Surface, collect_surface
+from world2minecraft.geometry.oriented_points import Surface, collect_surface
 from world2minecraft.scan.align import align_surface
 from world2minecraft.scan.places import face_place_m, looks
 from world2minecraft.scan.straighten import find_faces, straightening_turn

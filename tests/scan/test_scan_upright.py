@@ -8,7 +8,7 @@ from PIL import Image
 
 from world2minecraft.core.coordinates import apply, look_at
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.lifting import project
+from world2minecraft.geometry.unprojection import project
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.images import check_whole, read_colour, read_header, read_raw
 from world2minecraft.scan.upright import (

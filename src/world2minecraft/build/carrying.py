@@ -8,7 +8,7 @@ import numpy as np
 
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.core.classes import OBJECT_CLASSES, STRUCTURE_CLASSES, SemanticClass
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 REACH_M = 1.25  # A cord is no longer than this,
 SIDE_M = 0.5  # nor a bracket than this.

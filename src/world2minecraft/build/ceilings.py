@@ -4,10 +4,10 @@ import numpy as np
 
 from world2minecraft.build.faces import blocks_behind, find_faces, straighten, vote
 from world2minecraft.build.lattice import Lattice
-from world2minecraft.build.morphology import closed, grown
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
+from world2minecraft.geometry.padded_morphology import closed, grown
 
 CEILING = int(SemanticClass.CEILING)
 CEILING_SHARE = 0.4  # Of a storey's plan; of less, most of the ceiling would be made up.

@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.build.morphology import beside
 from world2minecraft.build.tops import top_cells
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
+from world2minecraft.geometry.padded_morphology import beside
 
 
 class Hues(NamedTuple):

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.build.lattice import Lattice
-from world2minecraft.build.morphology import parts_of
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
+from world2minecraft.geometry.padded_morphology import parts_of
 
 NARROWEST_M, WIDEST_M = 0.5, 1.8  # A wider gap is open at any scale.
 THICKEST_M = 0.45  # A gap that goes on for longer is a corridor.

@@ -4,12 +4,12 @@ import numpy as np
 
 from world2minecraft.build.canvas import BARRIER, Canvas
 from world2minecraft.build.lattice import Lattice
-from world2minecraft.build.morphology import grown, without_holes
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.structure import STANDING_M, WALL, WINDOW
 from world2minecraft.build.surfaces import painted
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
+from world2minecraft.geometry.padded_morphology import grown, without_holes
 
 
 def put_cells_exactly(

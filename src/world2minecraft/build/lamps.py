@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.build.canvas import AIR, Canvas
-from world2minecraft.build.morphology import nearest_of
 from world2minecraft.build.palettes import Palette
 from world2minecraft.core.classes import SemanticClass
+from world2minecraft.geometry.padded_morphology import nearest_of
 
 LAMP_M = 0.3  # A shade's width.
 CORD_M = 0.35

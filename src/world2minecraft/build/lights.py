@@ -7,7 +7,7 @@ dark, more are set. Lamps and glowing furniture that stand already count.
 import numpy as np
 
 from world2minecraft.build.canvas import AIR, LIGHT, Canvas
-from world2minecraft.build.morphology import parts_of
+from world2minecraft.geometry.padded_morphology import parts_of
 from world2minecraft.minecraft.rules.light import (
     BRIGHTEST,
     lets_light_through,

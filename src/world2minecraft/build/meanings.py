@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 LONGEST_WORD = 60
 MOST_OBJECTS = 65_535

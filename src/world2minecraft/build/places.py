@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
-from world2minecraft.build.morphology import grown
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
+from world2minecraft.geometry.padded_morphology import grown
 from world2minecraft.metrics.solids import OWN_CELLS
 
 LAST = {int(SemanticClass.CHAIR): 1, int(SemanticClass.TVS): 2, int(SemanticClass.OBJS): 3}

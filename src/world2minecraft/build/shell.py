@@ -4,12 +4,12 @@ import numpy as np
 
 from world2minecraft.build.canvas import BARRIER, Canvas
 from world2minecraft.build.hues import spread
-from world2minecraft.build.morphology import grown
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.standout import PICTURE, RUG, standing_out
 from world2minecraft.build.structure import CEILING, FLOOR, WALL, WINDOW, Shell
 from world2minecraft.build.surfaces import block_colours, painted, put_painted
+from world2minecraft.geometry.padded_morphology import grown
 
 STAND_OUT = {WALL: PICTURE, FLOOR: RUG}
 LEAST_PATCH = 12  # Blocks; smaller patches take their colours from the walls as a whole.

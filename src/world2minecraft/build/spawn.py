@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.build.canvas import AIR, LIGHT
-from world2minecraft.build.morphology import nearest_of, parts_of, shrunk
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.coordinates import PLAYER_EYE_BLOCKS, ROOM_CORNER_BLOCK
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.geometry.padded_morphology import nearest_of, parts_of, shrunk
 
 PLAYER_BLOCKS = 2  # 1.8 high.
 CLEARANCE = 3.0  # Blocks to the nearest thing beyond which more room is worth no more. A guess.

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 ROUNDS = 4
 SCALE = 0.05  # Oklab distance at which a block counts half in the fit.

@@ -12,7 +12,10 @@ from world2minecraft.build.ceilings import close_ceiling, cover_with_glass, find
 from world2minecraft.build.doorways import open_doorways
 from world2minecraft.build.faces import blocks_behind, find_faces, see_through, straighten, vote
 from world2minecraft.build.lattice import Lattice, face_shares, overlaps, volume_shares
-from world2minecraft.build.morphology import (
+from world2minecraft.build.parameters import BuildParameters
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import UNSEEN, OccupancyGrid
+from world2minecraft.geometry.padded_morphology import (
     beside,
     closed,
     grown,
@@ -21,9 +24,6 @@ from world2minecraft.build.morphology import (
     shrunk,
     without_holes,
 )
-from world2minecraft.build.parameters import BuildParameters
-from world2minecraft.core.classes import SemanticClass
-from world2minecraft.core.types import UNSEEN, OccupancyGrid
 
 CEILING, FLOOR, WALL, WINDOW = (
     int(SemanticClass[name]) for name in ("CEILING", "FLOOR", "WALL", "WINDOW")

@@ -6,8 +6,8 @@ above unseen ones. Such a step, level with the rim of an object and joined to it
 
 import numpy as np
 
-from world2minecraft.build.morphology import grown, grown_within, nearest_of
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
+from world2minecraft.geometry.padded_morphology import grown, grown_within, nearest_of
 
 RIM_LAYERS = 1  # A top lies within a cell of the rim that it joins.
 REACH_M = 0.7  # How far from the rim: the depth of a worktop.

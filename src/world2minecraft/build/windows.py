@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.build.canvas import Canvas
-from world2minecraft.build.morphology import beside
 from world2minecraft.core.classes import SemanticClass
+from world2minecraft.geometry.padded_morphology import beside
 
 
 class Window(NamedTuple):

@@ -11,9 +11,9 @@ import numpy as np
 
 from world2minecraft.build.halves import FULL, LOWER
 from world2minecraft.build.lattice import Lattice, overlaps
-from world2minecraft.build.morphology import closed, grown
 from world2minecraft.build.tops import step_cells
 from world2minecraft.core.types import OccupancyGrid
+from world2minecraft.geometry.padded_morphology import closed, grown
 
 LEAST_M2 = 0.3  # Of unseen top; less is a hole that the object's own blocks close.
 LEAST_M, MOST_M = 0.6, 1.3  # Heights at which one works standing or sitting.

@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.exchange.cutting import Box
 from world2minecraft.exchange.source import around_spawn, spawn_of
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.minecraft.worlds.anvil import read_region
 from world2minecraft.minecraft.worlds.chunks import read_chunk
 from world2minecraft.minecraft.worlds.reading import read_level, region_files

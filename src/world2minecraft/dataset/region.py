@@ -1,13 +1,13 @@
 """The region of a view of a scene: on its cells, from the floor under the camera on.
 
-The rule itself is that of ``geometry/region.py``.
+The rule itself is that of ``geometry/view_region.py``.
 """
 
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.dataset.values import SceneVoxels
-from world2minecraft.geometry.region import LabelRegion, RegionRule, region_of, view_yaw_deg
+from world2minecraft.geometry.view_region import LabelRegion, RegionRule, region_of, view_yaw_deg
 
 __all__ = ["RegionRule", "floor_under", "region_in", "region_of", "view_yaw_deg"]
 

@@ -9,7 +9,7 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.edit.draft import Draft
 from world2minecraft.edit.sight import blocks_in, free_cells, structure_of
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 HOLE_M = 0.5  # A hole is no larger than a square of this side.
 SHELLS = (SemanticClass.WALL, SemanticClass.FLOOR, SemanticClass.CEILING)

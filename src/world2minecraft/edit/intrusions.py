@@ -10,7 +10,7 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.edit.draft import Draft
 from world2minecraft.edit.sight import crumb_blocks, structure_of, take_away, things_of
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.minecraft.shapes import is_full_cube
 
 CUT_SHARE = 0.25  # A piece of at most this share of its object is what was cut off.

@@ -17,7 +17,7 @@ from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
 from world2minecraft.evaluate.frames import UsedFrame
 from world2minecraft.evaluate.truth import Truth
-from world2minecraft.geometry.lifting import pixel_rays
+from world2minecraft.geometry.unprojection import pixel_rays
 from world2minecraft.render.tables import FACE_NORMALS
 from world2minecraft.render.voxels import cast_voxels, prepare_voxels
 

@@ -4,7 +4,7 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.find.heap import Heap
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 LOWEST_M = 1.0  # What begins below this stands: a shelf of a bookcase, a drawer.
 GAP_M = 0.24  # So much free air under a piece; over a counter it is 0.5 m.

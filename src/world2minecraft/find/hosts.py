@@ -14,7 +14,7 @@ from world2minecraft.find.heap import floor_below
 from world2minecraft.find.owned import cells_by_owner
 from world2minecraft.find.sheets import NEAR_CELLS, UNLIKE, Scene, hung_plans, joined_in_air
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 LEAST_COLUMNS = 3  # What stands with fewer cells leans over, or is noise: a vase has four.
 LEAST_CELLS = 8  # Of a part, as of any object.

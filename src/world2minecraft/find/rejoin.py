@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
 STANDING_BIT = 4  # Times ``min_cells``: 32 cells are the star of a chair's foot.

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 NEAR_CELLS = 2  # A curtain hangs this near its wall.
 LEAST_CELLS = 12  # At 0.08 m, a picture of 0.3 m side.

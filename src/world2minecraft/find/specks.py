@@ -4,7 +4,7 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import OBJECT_CLASSES
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 SPECK_CELLS = 6  # At 0.08 m less than a sheet of paper, and less than any object has.
 NEARLY_ALL = 0.8  # The share of the occupied cells around it that are of the class around it.

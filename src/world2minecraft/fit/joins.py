@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.fit.problem import WAYS, Problem
 from world2minecraft.fit.shapes import ShapeSet
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 BROKEN = 60.0  # Sub-cells given up for a joint: a plate half a block lower, not a whole block.
 LEG_BROKEN = 160.0  # The same for a leg: a corner of a table may become a stair for it.

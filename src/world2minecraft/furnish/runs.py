@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.furnish.evidence import AGAINST, OWN, Evidence
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 THIN_LAYER = 0.35  # A layer with less of the plan than this parts what is under it from above.
 SAME_TOP = 1  # Columns whose tops differ by at most this many cells belong to one run.

@@ -12,7 +12,7 @@ from scipy import ndimage
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import COMPLETED, OccupancyGrid
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 MOST_HOLE_M = 10.0  # Wider than any room's floor has holes; closing takes the square of it.
 

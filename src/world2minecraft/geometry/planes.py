@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 SAME_HEIGHT_M = 0.03  # Two columns of one plane differ by sensor noise, about 1 cm.
 MIN_AREA_M2 = 0.08  # A chair's seat has 0.16 m2, a screen's foot 0.05.

@@ -4,7 +4,7 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.lifting import pixel_rays, project
+from world2minecraft.geometry.unprojection import pixel_rays, project
 
 
 def pinhole_of(camera: Camera, width_px: int) -> Camera:

@@ -15,7 +15,7 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
 from world2minecraft.core.types import COMPLETED, UNSEEN, FusedEvidence, OccupancyGrid
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.label.channels import sight_of
 from world2minecraft.label.completion_net import CompletionModel
 from world2minecraft.label.geometric import GeometricLabeller

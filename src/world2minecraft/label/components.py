@@ -6,9 +6,9 @@ from typing import cast
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.label.parameters import PieceParameters
-from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
 
 PLANE_GATE_M = 0.03

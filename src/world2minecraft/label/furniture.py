@@ -4,9 +4,9 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.morphology import grown, plan_of
 from world2minecraft.label.components import Piece, find_pieces
-from world2minecraft.label.morphology import grown, plan_of
 from world2minecraft.label.parameters import GeometricParameters, PlateParameters
 from world2minecraft.label.plates import Plate, find_plates
 from world2minecraft.label.rules import Seat, Table, class_of_piece, class_of_plate

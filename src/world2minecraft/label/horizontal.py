@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.label.parameters import StructureParameters
-from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
 
 

@@ -7,8 +7,8 @@ lintels were seen, and behind what stands before them.
 import numpy as np
 
 from world2minecraft.core.types import FusedEvidence, Layout, OccupancyGrid, Opening
-from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.label.morphology import grown
+from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.morphology import grown
 from world2minecraft.label.openings import Gap
 from world2minecraft.label.outline import outline_of
 from world2minecraft.label.parameters import GeometricParameters

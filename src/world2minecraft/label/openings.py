@@ -13,8 +13,8 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.label.morphology import grown, opened
+from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.morphology import grown, opened
 from world2minecraft.label.parameters import StructureParameters, within
 from world2minecraft.label.relief import Relief
 from world2minecraft.label.surface import Surface

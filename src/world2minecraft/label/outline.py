@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 MERGE_M = 0.09  # Lines nearer than a cell and a bit are one wall.
 NEAR_WALL_M = 0.35  # A region ends at a wall this near; else it ends where it was seen to.

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.geometry.parts import connected_parts
-from world2minecraft.label.morphology import filled, grown, plan_of, shrunk
+from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.histogram_peaks import highest_peak
+from world2minecraft.geometry.morphology import filled, grown, plan_of, shrunk
 from world2minecraft.label.parameters import PlateParameters
-from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
 
 MAX_HEIGHTS = 40

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.label.peaks import highest_peak
+from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.label.surface import Surface, turned
 
 SOLID_M = 0.008  # SSCNet's 4 of 64: about this much matter makes a cell of 8 cm solid.

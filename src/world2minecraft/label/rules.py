@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
+from world2minecraft.geometry.morphology import grown, shrunk
 from world2minecraft.label.components import Piece
-from world2minecraft.label.morphology import grown, shrunk
 from world2minecraft.label.parameters import PieceParameters, PlateParameters, within
 from world2minecraft.label.plates import Plate
 from world2minecraft.label.screens import screen_share

@@ -9,9 +9,9 @@ from typing import cast
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.label.parameters import PieceParameters, within
-from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface, turned
 from world2minecraft.label.walls import WallRun
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.label.morphology import plan_of
+from world2minecraft.geometry.morphology import plan_of
 from world2minecraft.label.parameters import PlateParameters, within
 from world2minecraft.label.plates import Plate
 from world2minecraft.label.surface import Surface

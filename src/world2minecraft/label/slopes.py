@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
+from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.label.parameters import StructureParameters
-from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
 
 STEEPNESS_DEG = np.arange(20.0, 62.0, 2.0)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 NEIGHBOURHOOD = np.argwhere(np.ones((3, 3, 3), bool))
 

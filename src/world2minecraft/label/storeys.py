@@ -10,9 +10,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.label.horizontal import find_ceiling
 from world2minecraft.label.parameters import StructureParameters
-from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.surface import Surface
 
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
+from world2minecraft.geometry.histogram_peaks import highest_peak
 from world2minecraft.label.parameters import StructureParameters
-from world2minecraft.label.peaks import highest_peak
 from world2minecraft.label.relief import Relief, relief_of
 from world2minecraft.label.surface import Surface, turned
 

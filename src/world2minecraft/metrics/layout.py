@@ -23,7 +23,7 @@ import numpy as np
 from world2minecraft.core.classes import OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import BlockVolume, Layout, ObjectInstance, OccupancyGrid, Placement
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.metrics.solids import depth_m, solids_m
 
 OVERLAP_M = 0.04  # Half a default cell: less than what reading a size from cells can tell.

@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.types import Camera, PointEvidence, Scan, View
-from world2minecraft.geometry.lifting import lift_depth, pixel_rays, project
+from world2minecraft.geometry.unprojection import lift_depth, pixel_rays, project
 from world2minecraft.occupy.facing import facing_of_depth
 
 MAX_DEPTH_M = 6.0  # Consumer depth cameras err by over 6 cm beyond; a room rarely needs more.

@@ -8,7 +8,7 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.lifting import pixel_rays
+from world2minecraft.geometry.unprojection import pixel_rays
 
 SQUARES_WIDE = 160  # 4 px at 640: the mean of 16 pixels, and 16 px from side to side.
 REACH = 2  # Squares to either side.

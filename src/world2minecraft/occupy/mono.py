@@ -1,7 +1,7 @@
 """The paper's F_mono: what a network says of the cells before the camera, from one picture.
 
 Each view's box of cells is the one by whose rule the labels of training pictures were cut
-(``geometry/region.py``), on the cells of the room and from its floor on. The network speaks for
+(``geometry/view_region.py``), on the cells of the room and from its floor on. The network speaks for
 the cells that fall into the picture, up to the first wall; what it says of hidden ones is a guess
 as all of it, and fusion takes it softly.
 """
@@ -17,14 +17,14 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, GridEvidence, Scan, View
-from world2minecraft.geometry.lifting import lift_depth, project
-from world2minecraft.geometry.region import (
+from world2minecraft.geometry.undistort import pinhole_of, undistorted
+from world2minecraft.geometry.unprojection import lift_depth, project
+from world2minecraft.geometry.view_region import (
     USUAL_VOXEL_M,
     LabelRegion,
     RegionRule,
     region_of,
 )
-from world2minecraft.geometry.undistort import pinhole_of, undistorted
 from world2minecraft.occupy.network_file import NetworkFacts, OccupancyNetwork
 
 SHIPPED = Path(__file__).parents[1] / "weights" / "mono.onnx"

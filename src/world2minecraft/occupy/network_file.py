@@ -17,7 +17,7 @@ import onnxruntime
 from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, first_line
 from world2minecraft.core.files import read_bytes
-from world2minecraft.geometry.region import KINDS
+from world2minecraft.geometry.view_region import KINDS
 
 CONTRACT = "occupancy-1"
 INPUTS = {"image": (1, 3, 0, 0), "intrinsics": (1, 3, 3), "camera_to_grid": (1, 4, 4)}

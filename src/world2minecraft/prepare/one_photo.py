@@ -14,8 +14,8 @@ import numpy as np
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, View
-from world2minecraft.geometry.region import USUAL_SHAPE, USUAL_VOXEL_M
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
+from world2minecraft.geometry.view_region import USUAL_SHAPE, USUAL_VOXEL_M
 from world2minecraft.parameters import Parameters
 from world2minecraft.scan.judged import JudgedCapture
 from world2minecraft.scan.one_photo import SOURCE

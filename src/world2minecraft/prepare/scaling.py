@@ -10,7 +10,7 @@ from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, InputError, UnknownNameError, UsageError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import SparseScene, View
-from world2minecraft.geometry.lifting import project
+from world2minecraft.geometry.unprojection import project
 from world2minecraft.parameters import Parameters
 from world2minecraft.prepare.pictures import posed_frame
 from world2minecraft.scan.align import ImplausibleRoomError

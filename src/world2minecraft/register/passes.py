@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.geometry.surface import Surface
+from world2minecraft.geometry.oriented_points import Surface
 from world2minecraft.register.kernels import UNKNOWNS, move_patches, surfel_means
 from world2minecraft.register.parameters import RegisterParameters
 from world2minecraft.register.solve import Observations, Step, solve

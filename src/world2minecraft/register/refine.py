@@ -16,7 +16,7 @@ import numpy as np
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Corrections, Scan, View
-from world2minecraft.geometry.surface import Surface, collect_surface
+from world2minecraft.geometry.oriented_points import Surface, collect_surface
 from world2minecraft.register.kernels import surfel_means
 from world2minecraft.register.parameters import RegisterParameters
 from world2minecraft.register.passes import (

@@ -15,7 +15,7 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.render.standing import entities_within, kept_entities, moved_entities
 
 RIM_M = 0.25  # So much of a near wall stays, to show where it is.

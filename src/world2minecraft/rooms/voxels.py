@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.rooms.ground import Ground, Rect, Wall, grown
 from world2minecraft.rooms.model import STEP_M, Bar, Colour, Part, shade
 from world2minecraft.rooms.openings import RECESS_M, Hole

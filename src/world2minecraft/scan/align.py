@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import COMPASS_OF_SIDE, rotation_about_z
 from world2minecraft.core.types import Scan, View
-from world2minecraft.geometry.surface import Surface, collect_surface
+from world2minecraft.geometry.oriented_points import Surface, collect_surface
 from world2minecraft.scan.gravity import Ground, find_ground, frame_of_up
 from world2minecraft.scan.places import face_place_m
 from world2minecraft.scan.straighten import FACING, straightening_turn

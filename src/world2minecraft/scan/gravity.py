@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.geometry.surface import Surface
+from world2minecraft.geometry.oriented_points import Surface
 from world2minecraft.scan.surface import profile
 
 DIRECTIONS = 2000  # Fibonacci points on the sphere: about 4.5 degrees apart.

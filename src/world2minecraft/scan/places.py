@@ -6,7 +6,7 @@ behind it, a picture or a wardrobe's back before it. The one with the most surfa
 
 import numpy as np
 
-from world2minecraft.geometry.surface import Surface
+from world2minecraft.geometry.oriented_points import Surface
 from world2minecraft.scan.surface import CELL_M, profile
 
 REACH_M = 0.08  # A door's leaf lies up to 5 cm behind its wall.

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from world2minecraft.geometry.oriented_points import Surface
 from world2minecraft.geometry.rotation import rotation_of_vector
-from world2minecraft.geometry.surface import Surface
 from world2minecraft.scan.places import BIN_M, LIFT_M, looks
 from world2minecraft.scan.surface import Profile, profile
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.coordinates import rotation_about_z
-from world2minecraft.geometry.surface import Surface
+from world2minecraft.geometry.oriented_points import Surface
 from world2minecraft.scan.places import face_place_m
 from world2minecraft.scan.surface import profile
 

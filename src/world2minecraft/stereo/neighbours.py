@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.coordinates import apply, invert_rigid
-from world2minecraft.geometry.lifting import project
+from world2minecraft.geometry.unprojection import project
 from world2minecraft.stereo.small import SmallPhoto
 
 ASKED = 7  # A grid of 7x7 rays, each at three depths, stands for what a photo sees.

@@ -9,8 +9,8 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import PhotoStream, SparseScene
-from world2minecraft.geometry.lifting import project
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
+from world2minecraft.geometry.unprojection import project
 
 LEAST_SIDE_PX = 16  # So that windows lie in it.
 

@@ -6,11 +6,11 @@ from scipy.spatial.transform import Rotation, Slerp
 from writing import quaternion, save, save_text, zipped
 
 from world2minecraft.core.types import Camera
+from world2minecraft.geometry.quaternions import rotation_of
 from world2minecraft.scan import open_scan
 from world2minecraft.scan.datasets.pairing import pair_times, pose_between
 from world2minecraft.scan.judged import judge_capture
 from world2minecraft.scan.options import ScanOptions
-from world2minecraft.scan.quaternions import rotation_of
 from world2minecraft.scan.sources import find_capture
 
 

@@ -14,7 +14,6 @@ from world2minecraft.build.display.pieces import pieces_of
 from world2minecraft.build.display.shifting import Settler
 from world2minecraft.build.display.tints import nearest_state, role_colours, states_of_parts
 from world2minecraft.build.display.tops import COUNTER, as_counter, deepened, plate_pieces
-from world2minecraft.build.morphology import beside
 from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.places import LAST, in_order
@@ -25,6 +24,7 @@ from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.coordinates import apply, cell_centers_m, invert
 from world2minecraft.core.types import UNSEEN, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import Part, Template, template
+from world2minecraft.geometry.padded_morphology import beside
 from world2minecraft.metrics.solids import OWN_CELLS, own_cells
 from world2minecraft.minecraft.displays import VIEW_BLOCKS
 from world2minecraft.minecraft.glow import is_luminous

@@ -8,7 +8,7 @@ from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.surfaces import painted
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 MOST_COLOURS = 3  # Each further one costs boxes; an object of four paints is rare.
 

@@ -8,7 +8,7 @@ from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.types import BlockVolume, Entity
 from world2minecraft.dataset.blockmap.context import Context
 from world2minecraft.dataset.blockmap.rules import BlockMap, matches
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 MOST_OBJECTS = 65_535
 EMPTY = CLASS_NAMES[0]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 OUTSIDE, FLOOR, CEILING, WALL, INSIDE = range(5)
 HEAD_M = 1.8  # A person stands under it; doors are 2 m.

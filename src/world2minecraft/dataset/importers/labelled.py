@@ -24,7 +24,7 @@ from world2minecraft.dataset.values import (
     OccLabels,
     OccSample,
 )
-from world2minecraft.geometry.lifting import lift_depth
+from world2minecraft.geometry.unprojection import lift_depth
 
 CLASS_KINDS = tuple(FineClass(f"nyu:{name}") for name in CLASS_NAMES)
 INTO_CELL = 0.25  # Of a cell: so far behind its depth a surface's point is taken to lie in it.

@@ -16,7 +16,7 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import COMPLETED, Placement, SceneObject
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.floaters import find_floaters
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 LOW_IOU = 0.5  # Under this the furniture and the cells have less in common than not.
 TIE = 0.03  # Nearer than this, noise decides between two.

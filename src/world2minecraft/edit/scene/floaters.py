@@ -14,7 +14,7 @@ import numpy as np
 from world2minecraft.core.classes import STRUCTURE_CLASSES
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.planes import WALL_M2
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 # A football. In ten tuning rooms 13 pieces floated, 12 of them things that are truly there and had
 # lost their hold: so one looks before deleting, and does not begin with large ones.

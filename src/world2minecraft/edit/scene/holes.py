@@ -26,7 +26,7 @@ from scipy import ndimage
 from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
 from world2minecraft.edit.scene.draft import SceneDraft
 from world2minecraft.edit.scene.planes import WALL_CLASSES, Plane
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 HOLE_M2 = 0.25  # A square of half a metre, as for blocks; a cat flap or a chute is no larger.
 HIDDEN_M2 = 4.0  # No piece of furniture is larger.

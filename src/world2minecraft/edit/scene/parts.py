@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 Box = tuple[slice, slice, slice]
 

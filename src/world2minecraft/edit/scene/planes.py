@@ -19,7 +19,7 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
 from world2minecraft.edit.scene.draft import SceneDraft
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 FLOOR_M2 = 1.0  # Less is a step or a landing's edge.
 WALL_M2 = 0.5  # As the smallest wall that stage 4 calls one.

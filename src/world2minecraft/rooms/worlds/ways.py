@@ -6,7 +6,7 @@ the floor, is not put.
 
 import numpy as np
 
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.rooms.worlds.house import BlockGap, BlockHouse, BlockRoom, person_blocks
 
 KEPT_SHARE = 0.6  # Of the free floor that ways must still cover,

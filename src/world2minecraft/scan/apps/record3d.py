@@ -16,6 +16,7 @@ from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.files import read_bytes, read_json
 from world2minecraft.core.types import Camera
+from world2minecraft.geometry.quaternions import pose_of
 from world2minecraft.scan.apps.exr import ExrImage
 from world2minecraft.scan.apps.lzfse_image import MAX_FILE_BYTES, LzfseImage, unpacked_bytes
 from world2minecraft.scan.apps.stated import (
@@ -28,7 +29,6 @@ from world2minecraft.scan.apps.stated import (
 )
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import ImagePlace
-from world2minecraft.scan.quaternions import pose_of
 
 _PICTURES = (".jpg", ".jpeg", ".png")
 _STILL = 1e-6  # Poses that differ by less were never tracked.

@@ -14,6 +14,7 @@ import numpy as np
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera
+from world2minecraft.geometry.quaternions import pose_of
 from world2minecraft.scan.apps.movie import MoviePicture, open_movie
 from world2minecraft.scan.apps.stated import (
     ARKIT_UP,
@@ -23,7 +24,6 @@ from world2minecraft.scan.apps.stated import (
 )
 from world2minecraft.scan.frames import Capture, FrameFiles
 from world2minecraft.scan.images import ImagePlace, read_header
-from world2minecraft.scan.quaternions import pose_of
 
 ODOMETRY = "odometry.csv"
 MATRIX = "camera_matrix.csv"

@@ -15,9 +15,9 @@ from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import CaptureError, DamagedFileError
 from world2minecraft.core.files import read_bytes
 from world2minecraft.core.types import Camera
+from world2minecraft.geometry.quaternions import pose_of
 from world2minecraft.scan.datasets.lenses import stated_camera
 from world2minecraft.scan.datasets.tables import read_rows, to_floats
-from world2minecraft.scan.quaternions import pose_of
 
 MAX_MODEL_BYTES = 1 << 30  # Ten thousand photos with ten thousand points each have 2.4 GB: split.
 MAX_NAME_BYTES = 1024

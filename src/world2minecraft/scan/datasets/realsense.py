@@ -15,11 +15,11 @@ from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera
+from world2minecraft.geometry.quaternions import pose_of
 from world2minecraft.scan.datasets.bag_reading import BagImage, Stream, opened_bag
 from world2minecraft.scan.datasets.lenses import stated_camera
 from world2minecraft.scan.datasets.pairing import pair_times
 from world2minecraft.scan.frames import Capture, FrameFiles
-from world2minecraft.scan.quaternions import pose_of
 
 WITHIN_S = 0.025  # Streams of 30 Hz that are not locked lie up to 17 ms apart.
 DEFAULT_UNIT_M = 0.001

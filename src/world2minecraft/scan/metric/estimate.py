@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.geometry.surface import Surface
+from world2minecraft.geometry.oriented_points import Surface
 from world2minecraft.scan.align import LEAST_POINTS, ImplausibleRoomError
 from world2minecraft.scan.metric import priors
 from world2minecraft.scan.metric.known import LEVELS, Known, candidates

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.core.types import View
-from world2minecraft.geometry.surface import Surface, collect_surface
+from world2minecraft.geometry.oriented_points import Surface, collect_surface
 
 USUAL_DEPTH_M = 1.9  # Median over the virtual walks of seeds 500 to 549, 1.4 to 2.6 each.
 EVERY_PIXEL = 7  # Of the depth images, for their median.

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.coordinates import rotation_about_z
-from world2minecraft.geometry.surface import Surface
+from world2minecraft.geometry.oriented_points import Surface
 from world2minecraft.scan.gravity import find_ground, frame_of_up
 from world2minecraft.scan.metric.gathering import resized
 from world2minecraft.scan.surface import profile

@@ -12,7 +12,7 @@ import numpy as np
 from scipy import ndimage
 
 from world2minecraft.core.jit import njit
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.scan.solids.grid import Grid
 
 CLEAR_CELLS = 2  # About 0.25 m, a head's breadth: no nearer to surface than that is looked from.

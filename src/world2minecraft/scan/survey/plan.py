@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import View
-from world2minecraft.geometry.lifting import lift_depth, project
+from world2minecraft.geometry.unprojection import lift_depth, project
 from world2minecraft.scan.align import Alignment, ImplausibleRoomError, align
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.gravity import frame_of_up

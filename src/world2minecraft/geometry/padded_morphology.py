@@ -3,7 +3,7 @@
 import numpy as np
 from scipy import ndimage
 
-from world2minecraft.geometry.parts import connected_parts
+from world2minecraft.geometry.connected_components import connected_parts
 
 
 def grown(mask: np.ndarray, reach: tuple[int, ...]) -> np.ndarray:

@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import View
-from world2minecraft.geometry.patches import patches_of_depth
+from world2minecraft.geometry.planar_patches import patches_of_depth
 
 SURE = 128  # Of 255.
 MOST_EACH = 4096  # All of an image of any size.

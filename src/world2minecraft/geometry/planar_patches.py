@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
-from world2minecraft.geometry.lifting import pixel_rays
+from world2minecraft.geometry.unprojection import pixel_rays
 
 SQUARES_ACROSS = 64  # 10 px at 640: 6 cm at 3 m.
 LEAST_SHARE = 0.5  # Of a square's pixels that must have depth.
