@@ -16,7 +16,7 @@ from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.edit.backups import steps_of, take_back
 from world2minecraft.edit.cleanup import mended
 from world2minecraft.edit.into_world import build_into, take_blocks_out
-from world2minecraft.minecraft.worlds.world import write_world
+from world2minecraft.minecraft.worlds.world_writer import write_world
 
 SIZE = (256, 64, 256)
 KINDS = tuple(

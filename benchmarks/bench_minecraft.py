@@ -15,16 +15,16 @@ from benchmarks import rivals_minecraft as rivals
 from benchmarks.rows import Row
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume
+from world2minecraft.minecraft.block_states import states_of
 from world2minecraft.minecraft.commands.datapack import write_datapack
 from world2minecraft.minecraft.nbt import Short, pack_gzip, write_nbt
 from world2minecraft.minecraft.schematics.legacy_blocks import legacy_state
 from world2minecraft.minecraft.schematics.litematic import read_litematic, write_litematic
 from world2minecraft.minecraft.schematics.mcedit import read_schematic
-from world2minecraft.minecraft.schematics.schem import read_schem, write_schem
+from world2minecraft.minecraft.schematics.sponge import read_schem, write_schem
 from world2minecraft.minecraft.schematics.structure import read_structure, write_structure
-from world2minecraft.minecraft.states import states_of
 from world2minecraft.minecraft.versions import GameVersion, game_version
-from world2minecraft.minecraft.worlds.world import read_world, write_world
+from world2minecraft.minecraft.worlds.world_writer import read_world, write_world
 
 SHAPE = (256, 64, 256)  # 4.2 million cells in 256 chunks.
 PART_SHAPE = (48, 48, 48)  # What nbtlib does.

@@ -15,7 +15,7 @@ from benchmarks.rows import Row
 from world2minecraft.build import build_volume, write_build
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.fuse import EvidenceMap
-from world2minecraft.minecraft.schematics.schem import write_schem
+from world2minecraft.minecraft.schematics.sponge import write_schem
 from world2minecraft.occupy.depth import DepthPredictor
 from world2minecraft.rooms import generate_room, room_views, scan_room
 

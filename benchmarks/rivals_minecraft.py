@@ -12,7 +12,7 @@ import numpy as np
 from nbtlib import tag
 
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.states import parse_state
+from world2minecraft.minecraft.block_states import parse_state
 
 
 def blocks_of(volume: BlockVolume) -> list[tuple[tuple[int, int, int], str]]:

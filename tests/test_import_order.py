@@ -158,7 +158,7 @@ def test_a_wrong_import_is_seen(importer, name, reason):
     ("importer", "name"),
     [
         ("cli", "world2minecraft.forge"),
-        ("build", "world2minecraft.minecraft.states"),
+        ("build", "world2minecraft.minecraft.block_states"),
         ("rooms", "world2minecraft.render"),
         ("types", "world2minecraft.core.classes"),
         ("learn", "torch.nn"),

@@ -21,8 +21,8 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.fit import CALM, Shape, shape_set
 from world2minecraft.furniture import template
 from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.minecraft.block_states import check_state, parse_state
 from world2minecraft.minecraft.rules.stability import unstable
-from world2minecraft.minecraft.states import check_state, parse_state
 
 BARE = BuildParameters(lights="off", edge="none", ceiling="off", plaque="off")
 KINDS = frozenset(("full", "slab", "stairs", "trapdoor", "post"))

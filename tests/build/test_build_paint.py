@@ -14,8 +14,8 @@ from world2minecraft.geometry.colour import (
     oklab_of_srgb,
     srgb_of_linear,
 )
-from world2minecraft.minecraft.colours import colour_of, colours_of, nearest_block
-from world2minecraft.minecraft.shapes import is_full_cube
+from world2minecraft.minecraft.block_colours import colour_of, colours_of, nearest_block
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 WOOLS = [f"minecraft:{dye}_wool" for dye in DYES]
 TERMS = dict(most=3, lightness_weight=0.4, calm_step=0.04, noticed=0.1)

@@ -23,9 +23,9 @@ from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import BlockVolume, Placement
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colour_of
-from world2minecraft.minecraft.shapes import is_full_cube
-from world2minecraft.minecraft.states import check_state, parse_state
+from world2minecraft.minecraft.block_colours import colour_of
+from world2minecraft.minecraft.block_states import check_state, parse_state
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 FEW = """
 name: nordic

@@ -6,8 +6,8 @@ from world2minecraft.build import BuildParameters, build_volume, find_spawn
 from world2minecraft.build.lights import LEVEL, passes_light
 from world2minecraft.build.spawn import standing_cells
 from world2minecraft.core.classes import OBJECT_CLASSES
+from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.rules.light import block_light, spread_light
-from world2minecraft.minecraft.shapes import boxes_of
 
 SKETCHES = {
     "furnished": furnished(),

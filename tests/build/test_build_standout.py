@@ -6,7 +6,7 @@ from world2minecraft.build import build_volume
 from world2minecraft.build.standout import PICTURE, RUG, standing_out
 from world2minecraft.core.coordinates import apply
 from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
-from world2minecraft.minecraft.colours import colour_of
+from world2minecraft.minecraft.block_colours import colour_of
 
 PURPLE, BLUE = (92, 86, 116), (60, 90, 140)
 

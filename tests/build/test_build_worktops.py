@@ -11,7 +11,7 @@ from world2minecraft.build.plates import Plates
 from world2minecraft.build.worktops import Worktop, joined
 from world2minecraft.core.coordinates import apply
 from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
-from world2minecraft.minecraft.colours import colour_of
+from world2minecraft.minecraft.block_colours import colour_of
 
 
 def state_at(volume, *point_m):

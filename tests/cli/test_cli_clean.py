@@ -11,8 +11,8 @@ from world2minecraft.edit.journal import write_edits
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
 from world2minecraft.minecraft.signs import sign_entity
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.worlds.level import level_data
-from world2minecraft.minecraft.worlds.reading import read_level, read_world
+from world2minecraft.minecraft.worlds.level_dat import level_data
+from world2minecraft.minecraft.worlds.world_reader import read_level, read_world
 from world2minecraft.report.scene import read_built
 
 SIGN = "minecraft:oak_sign[rotation=0,waterlogged=false]"

@@ -8,7 +8,7 @@ import pytest
 
 from world2minecraft import cli
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.minecraft.worlds.world import write_world
+from world2minecraft.minecraft.worlds.world_writer import write_world
 
 
 @pytest.fixture

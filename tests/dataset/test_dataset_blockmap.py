@@ -25,7 +25,7 @@ from world2minecraft.dataset.blockmap.pieces import columns, joined_parts
 from world2minecraft.dataset.blockmap.rules import Rule
 from world2minecraft.dataset.blockmap.storeys import NONE, next_above
 from world2minecraft.dataset.values import FineClass
-from world2minecraft.minecraft.states import known_blocks
+from world2minecraft.minecraft.block_states import known_blocks
 
 NYU, PAPER = load_block_map("nyu"), load_block_map("paper")
 # Table "Semantic Class Mapping" of the paper's appendix; "..." stands for any end of a name.

@@ -20,12 +20,12 @@ from world2minecraft.dataset.tours import (
 )
 from world2minecraft.dataset.tours.rooms import find_rooms, shared
 from world2minecraft.dataset.tours.tourist import GAP_DEG, GAP_M
+from world2minecraft.minecraft.physics.body_fit import bodies_fit
+from world2minecraft.minecraft.physics.graph import solid_of, walk_graph
 from world2minecraft.render import prepare_scene
 from world2minecraft.render.batch import render_batch
 from world2minecraft.render.views.cameras import camera_of
 from world2minecraft.rooms.worlds import generate_world
-from world2minecraft.walk.fits import bodies_fit
-from world2minecraft.walk.graph import solid_of, walk_graph
 
 COUNT = 60
 

@@ -27,7 +27,7 @@ from world2minecraft.exchange.habitat import (
     write_habitat,
 )
 from world2minecraft.geometry.colour import srgb_of_linear
-from world2minecraft.minecraft.colours import colour_of
+from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.displays import block_display
 from world2minecraft.minecraft.visual import visual_boxes_of
 

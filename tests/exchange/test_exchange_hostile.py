@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.exchange.glb import GlbWriter
-from world2minecraft.minecraft.bedrock.nbt_little import write_little
+from world2minecraft.minecraft.bedrock.nbt_little_endian import write_little
 
 pytest.importorskip("resource")  # Windows has none.
 

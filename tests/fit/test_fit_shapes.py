@@ -5,7 +5,7 @@ import pytest
 
 from world2minecraft.fit.masks import PROBES, SUB, faces_of, mask_of, solid_of
 from world2minecraft.fit.shapes import CALM, Shape, shape_set
-from world2minecraft.minecraft.states import check_state, complete, parse_state
+from world2minecraft.minecraft.block_states import check_state, complete, parse_state
 from world2minecraft.minecraft.visual import visual_boxes_of
 
 ALL = shape_set(CALM | {"carpet", "post"})

@@ -23,9 +23,10 @@ from world2minecraft.forge import blocks, build_routes
 from world2minecraft.forge.arrays import packed_arrays
 from world2minecraft.forge.blocks import Build, BuildOptions, HeldScene
 from world2minecraft.forge.session import Session
+from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box
+from world2minecraft.minecraft.physics import player_motion as step
+from world2minecraft.minecraft.physics.sweep import overlapping
 from world2minecraft.render.mesh import mesh_of
-from world2minecraft.walk import BlockWorld, Body, Keys, body_box, step
-from world2minecraft.walk.sweep import overlapping
 
 
 def unpacked(data: bytes, magic: bytes) -> dict:

@@ -19,7 +19,7 @@ from world2minecraft.forge import export_routes
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.exports import forms, snapshot, stats_csv, write_data
 from world2minecraft.forge.worker import TASKS
-from world2minecraft.minecraft.worlds.world import read_world
+from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.steps import built_volume
 
 

@@ -12,10 +12,10 @@ from world2minecraft.furniture.families.fronts import MOST_REST, body_of, door_c
 from world2minecraft.furniture.family import FAMILIES
 from world2minecraft.furniture.idiom import block_size
 from world2minecraft.furniture.showing import volume_of
+from world2minecraft.minecraft.block_states import check_state, parse_state
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.glow import is_luminous
 from world2minecraft.minecraft.rules.stability import unstable
-from world2minecraft.minecraft.shapes import is_full_cube
-from world2minecraft.minecraft.states import check_state, parse_state
 
 SCALES = (1.0, 2.0, 4.0)
 MINE = ("bath", "cases", "decor", "greenery", "hangings", "kitchen", "lights", "shelving")

@@ -7,8 +7,8 @@ import pytest
 
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import TEMPLATES, idiom, template
-from world2minecraft.minecraft.shapes import boxes_of
-from world2minecraft.minecraft.states import complete, known_blocks, parse_state
+from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state
+from world2minecraft.minecraft.collision_shapes import boxes_of
 
 NAMES = TEMPLATES.names()
 SCALES = (1.0, 2.0, 4.0)

@@ -12,7 +12,7 @@ from world2minecraft.furniture.materials import (
     shape_of,
     swatches,
 )
-from world2minecraft.minecraft.states import known_blocks
+from world2minecraft.minecraft.block_states import known_blocks
 
 BLOCKS = sorted(
     block for kind in kinds().values() for held in kind.blocks.values() for block in held.values()

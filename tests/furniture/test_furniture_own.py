@@ -16,7 +16,7 @@ from world2minecraft.furniture.adopting import Wish, adopt, front_of
 from world2minecraft.furniture.idiom import block_size, laid
 from world2minecraft.furniture.library import template, templates_of, variants_of
 from world2minecraft.furniture.own import own_files, own_folder, own_template, read_own
-from world2minecraft.minecraft.turn import turn_volume
+from world2minecraft.minecraft.transforms import turn_volume
 
 AIR = "minecraft:air"
 STAIR = "minecraft:oak_stairs[facing=north,half=bottom]"

@@ -11,8 +11,8 @@ from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.furniture.family import FAMILIES
 from world2minecraft.furniture.idiom import block_size
 from world2minecraft.furniture.showing import volume_of
+from world2minecraft.minecraft.block_states import check_state, parse_state
 from world2minecraft.minecraft.rules.stability import unstable
-from world2minecraft.minecraft.states import check_state, parse_state
 from world2minecraft.minecraft.visual import visual_boxes_of
 
 SCALES = (1.0, 2.0, 4.0)

@@ -12,15 +12,15 @@ from unittest.mock import patch
 
 import numpy as np
 
-from world2minecraft.walk import body_box, sweep
+from world2minecraft.minecraft.physics import body_box, sweep
 
 BACK = 0.05  # Blocks by which one draws back.
 
 
 @contextmanager
 def mineflayer_rules(world):
-    """Within it, ``walk.step`` moves a player in a world as mineflayer does."""
-    step = sys.modules["world2minecraft.walk.step"]
+    """Within it, ``minecraft.physics.player_motion`` moves a player in a world as mineflayer does."""
+    step = sys.modules["world2minecraft.minecraft.physics.player_motion"]
     of_the_game = sweep.climbed
 
     def x_first(boxes, box, way, touch=1e-7):

@@ -23,11 +23,12 @@ from tests.vln.small_flat import write_flat
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.minecraft.states import complete, parse_state
+from world2minecraft.minecraft.block_states import complete, parse_state
+from world2minecraft.minecraft.physics import BlockWorld, Keys, standing_place
+from world2minecraft.minecraft.physics import player_motion as step
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.worlds.world import write_world
+from world2minecraft.minecraft.worlds.world_writer import write_world
 from world2minecraft.vln.server.body import join
-from world2minecraft.walk import BlockWorld, Keys, standing_place, step
 
 pytestmark = pytest.mark.live
 __all__ = ["node"]  # A fixture.

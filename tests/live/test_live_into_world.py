@@ -10,8 +10,8 @@ from test_live_walk import CORNER, HERE, LIMIT_S, START, free_port, furnished_ro
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.edit.into_world import build_into, take_blocks_out
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.worlds.reading import read_world
-from world2minecraft.minecraft.worlds.world import write_world
+from world2minecraft.minecraft.worlds.world_reader import read_world
+from world2minecraft.minecraft.worlds.world_writer import write_world
 
 pytestmark = pytest.mark.live
 __all__ = ["node"]  # A fixture.

@@ -14,7 +14,7 @@ from test_live_walk import HERE, free_port, node  # noqa: F401  # A fixture.
 
 from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.minecraft.server.rcon import RconClient
-from world2minecraft.minecraft.worlds.world import read_world
+from world2minecraft.minecraft.worlds.world_writer import read_world
 
 pytestmark = pytest.mark.live
 

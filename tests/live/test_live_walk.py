@@ -16,10 +16,10 @@ import pytest
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.core.types import AIR, BlockVolume
+from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.nbt import read_nbt, unpack
-from world2minecraft.minecraft.states import complete, parse_state
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.worlds.world import read_world, write_world
+from world2minecraft.minecraft.worlds.world_writer import read_world, write_world
 
 pytestmark = pytest.mark.live
 

@@ -4,8 +4,8 @@ import numpy as np
 
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
+from world2minecraft.minecraft.block_states import known_blocks, states_of
 from world2minecraft.minecraft.nbt import Byte, Float
-from world2minecraft.minecraft.states import known_blocks, states_of
 
 
 def some_states(count: int, seed: int) -> tuple[str, ...]:

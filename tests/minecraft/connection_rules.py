@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from world2minecraft.minecraft.shapes import boxes_of
-from world2minecraft.minecraft.states import complete, parse_state
+from world2minecraft.minecraft.block_states import complete, parse_state
+from world2minecraft.minecraft.collision_shapes import boxes_of
 
 STEP = {"north": (0, 0, -1), "east": (1, 0, 0), "south": (0, 0, 1), "west": (-1, 0, 0),
         "up": (0, 1, 0), "down": (0, -1, 0)}  # fmt: skip

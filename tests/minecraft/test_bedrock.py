@@ -15,20 +15,20 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.types import AIR, BlockEntity, Entity
-from world2minecraft.minecraft.bedrock.block_data import bedrock_data, java_state, plain_text
-from world2minecraft.minecraft.bedrock.nbt_little import read_little, write_little
+from world2minecraft.minecraft.bedrock.block_entities import bedrock_data, java_state, plain_text
+from world2minecraft.minecraft.bedrock.mcstructure import read_mcstructure, write_mcstructure
+from world2minecraft.minecraft.bedrock.nbt_little_endian import read_little, write_little
 from world2minecraft.minecraft.bedrock.states import (
     bedrock_of_java,
     bedrock_table,
     is_kept,
     java_of_bedrock,
 )
-from world2minecraft.minecraft.bedrock.structure import read_mcstructure, write_mcstructure
+from world2minecraft.minecraft.block_states import states_of
 from world2minecraft.minecraft.blocks import block_table
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, Float, Long, NbtLimits, Short
-from world2minecraft.minecraft.states import states_of
 
 STONE = "minecraft:stone"
 

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import AIR, Entity
-from world2minecraft.minecraft.commands import reading as command_reading
-from world2minecraft.minecraft.commands.reading import read_command_list, read_datapack
+from world2minecraft.minecraft.commands import parser as command_reading
+from world2minecraft.minecraft.commands.parser import read_command_list, read_datapack
 from world2minecraft.minecraft.commands.snbt import SnbtReader, read_snbt
-from world2minecraft.minecraft.commands.writing import snbt
+from world2minecraft.minecraft.commands.writer import snbt
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses

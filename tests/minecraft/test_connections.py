@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.core.errors import UsageError
+from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.rules.connections import connected
-from world2minecraft.minecraft.states import complete, parse_state
-from world2minecraft.minecraft.turn import mirror_state, turn_state
+from world2minecraft.minecraft.transforms import mirror_state, turn_state
 
 CASES = json.loads((Path(__file__).parent / "connection_cases.json").read_text())["cases"]
 STEPS = {way[0]: np.array(step) for way, step in STEP.items()} | {"o": np.zeros(3, int)}

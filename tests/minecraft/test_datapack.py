@@ -11,13 +11,13 @@ from block_volumes import furnished_volume, random_volume, state_texts, volume_o
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import AIR
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.commands import datapack
-from world2minecraft.minecraft.commands.boxes import MAX_FILL, merge_boxes
 from world2minecraft.minecraft.commands.datapack import datapack_files, write_datapack
-from world2minecraft.minecraft.commands.sizes import size_functions, size_pack
-from world2minecraft.minecraft.commands.writing import snbt
+from world2minecraft.minecraft.commands.fill_boxes import MAX_FILL, merge_boxes
+from world2minecraft.minecraft.commands.player_scale import size_functions, size_pack
+from world2minecraft.minecraft.commands.writer import snbt
 from world2minecraft.minecraft.nbt import Byte, Float, Long, Short
-from world2minecraft.minecraft.shapes import is_full_cube
 from world2minecraft.minecraft.versions import game_version, game_versions
 
 OLD = game_version("1.20.1")

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Entity
 from world2minecraft.minecraft.commands.datapack import datapack_files
-from world2minecraft.minecraft.commands.writing import entity_commands, entity_tag
+from world2minecraft.minecraft.commands.writer import entity_commands, entity_tag
 from world2minecraft.minecraft.displays import (
     block_display,
     check_displays,
@@ -22,10 +22,10 @@ from world2minecraft.minecraft.displays import (
     owner_of,
     tags_of,
 )
-from world2minecraft.minecraft.schematics.schem import read_schem, write_schem
-from world2minecraft.minecraft.turn import turn_volume
+from world2minecraft.minecraft.schematics.sponge import read_schem, write_schem
+from world2minecraft.minecraft.transforms import turn_volume
 from world2minecraft.minecraft.versions import GameVersion, game_version
-from world2minecraft.minecraft.worlds.world import read_world, write_world
+from world2minecraft.minecraft.worlds.world_writer import read_world, write_world
 
 CHAIR = block_display(
     "minecraft:oak_planks", np.array([-1.5, 0, -0.5, 1.0, 0.5, 0.75]), (3.25, 65.5, -2.0),

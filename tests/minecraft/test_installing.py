@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import InputError, OutputError, UsageError
 from world2minecraft.core.types import AIR
-from world2minecraft.minecraft.worlds import installing
-from world2minecraft.minecraft.worlds.installing import check_name, free_name, install_world
-from world2minecraft.minecraft.worlds.world import write_world
+from world2minecraft.minecraft.worlds import installation as installing
+from world2minecraft.minecraft.worlds.installation import check_name, free_name, install_world
+from world2minecraft.minecraft.worlds.world_writer import write_world
 
 
 @pytest.fixture

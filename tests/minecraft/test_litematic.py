@@ -19,14 +19,14 @@ from world2minecraft.minecraft.schematics.litematic import (
     write_litematic,
     write_regions,
 )
-from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.worlds.entries import state_text
-from world2minecraft.minecraft.worlds.straddled import (
+from world2minecraft.minecraft.state_nbt import state_text
+from world2minecraft.minecraft.straddled import (
     bits_for,
     pack_straddled,
     unpack_straddled,
     words_for,
 )
+from world2minecraft.minecraft.versions import game_version
 
 STONE, WOOD = "minecraft:stone", "minecraft:oak_planks"
 VOLUMES = {

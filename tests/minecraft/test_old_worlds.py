@@ -10,25 +10,25 @@ from block_volumes import furnished_volume, random_volume, state_texts, volume_o
 
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import AIR
-from world2minecraft.minecraft.commands.datapack import write_datapack
-from world2minecraft.minecraft.game_names import (
+from world2minecraft.minecraft.block_names import (
     count_unknown,
     is_unknown,
     mod_blocks,
     read_state,
     written_state,
 )
+from world2minecraft.minecraft.commands.datapack import write_datapack
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import Byte, read_nbt, write_nbt
-from world2minecraft.minecraft.versions import game_version, game_versions, old_versions
-from world2minecraft.minecraft.worlds.anvil import pack_region, read_region
-from world2minecraft.minecraft.worlds.section_words import (
+from world2minecraft.minecraft.section_words import (
     word_count,
     words_before_1_16,
     words_of_today,
 )
-from world2minecraft.minecraft.worlds.straddled import pack_straddled, words_for
-from world2minecraft.minecraft.worlds.world import read_world, write_world
+from world2minecraft.minecraft.straddled import pack_straddled, words_for
+from world2minecraft.minecraft.versions import game_version, game_versions, old_versions
+from world2minecraft.minecraft.worlds.anvil import pack_region, read_region
+from world2minecraft.minecraft.worlds.world_writer import read_world, write_world
 
 VOLUME = random_volume((40, 20, 37), 1, (-20, 50, -5), seed=1)
 OLD = ("1.13", "1.13.2", "1.14.4", "1.15.2", "1.16", "1.16.5", "1.17.1", "1.18.2", "1.19.4")

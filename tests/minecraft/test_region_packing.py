@@ -22,7 +22,7 @@ from world2minecraft.minecraft.worlds.anvil import (
     read_region,
 )
 from world2minecraft.minecraft.worlds.lz4_blocks import checksum, pack_lz4, unpack_lz4, xxhash32
-from world2minecraft.minecraft.worlds.world import read_world, write_world
+from world2minecraft.minecraft.worlds.world_writer import read_world, write_world
 
 each_way = pytest.mark.parametrize("compression", COMPRESSIONS)
 

@@ -8,10 +8,10 @@ from block_volumes import volume_of
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockEntity
+from world2minecraft.minecraft.block_entities import in_game
 from world2minecraft.minecraft.commands.datapack import datapack_files
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
-from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.nbt import Byte, read_nbt, write_nbt
 from world2minecraft.minecraft.server.plan import plan_build
 from world2minecraft.minecraft.sign_texts import signs_of_today
@@ -74,7 +74,7 @@ def test_every_format_keeps_a_sign_as_its_game_has_it(tmp_path, name, version, m
                    "schematics.litematic"):  # fmt: skip
         place = f"world2minecraft.minecraft.{module}.signs_of_today"
         monkeypatch.setattr(place, lambda held, _: tuple(held))
-    monkeypatch.setattr("world2minecraft.minecraft.commands.reading.signs_of_commands", tuple)
+    monkeypatch.setattr("world2minecraft.minecraft.commands.parser.signs_of_commands", tuple)
     (raw,) = read_blocks(tmp_path / name).block_entities
     kind = str if version == "1.20.1" else dict
     assert {type(line) for line in raw.nbt["front_text"]["messages"]} == {kind}

@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state, states_of
 from world2minecraft.minecraft.formats import read_blocks
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.light import light_of
 from world2minecraft.minecraft.rules.stability import unstable, unstable_cells
-from world2minecraft.minecraft.states import complete, known_blocks, parse_state, states_of
-from world2minecraft.minecraft.turn import turn_volume
+from world2minecraft.minecraft.transforms import turn_volume
 from world2minecraft.minecraft.visual import visual_boxes_of
 
 CASES = json.loads((Path(__file__).parent / "stability_cases.json").read_text())["cases"]

@@ -4,8 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.minecraft.shapes import boxes_of, is_full_cube
-from world2minecraft.minecraft.states import (
+from world2minecraft.minecraft.block_states import (
     BlockState,
     check_state,
     complete,
@@ -13,6 +12,7 @@ from world2minecraft.minecraft.states import (
     parse_state,
     states_of,
 )
+from world2minecraft.minecraft.collision_shapes import boxes_of, is_full_cube
 
 words = st.from_regex(r"[a-z0-9_]{1,8}", fullmatch=True)
 names = st.builds("{}:{}".format, words, st.from_regex(r"[a-z0-9_./-]{1,8}", fullmatch=True))

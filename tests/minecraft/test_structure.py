@@ -14,7 +14,6 @@ from nbt_equality import same_block_entities, same_entities
 
 from world2minecraft.core.errors import InputError, LimitError, UsageError
 from world2minecraft.core.types import AIR, Entity
-from world2minecraft.minecraft.block_list import _SIZES, skip_value
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
@@ -31,14 +30,15 @@ from world2minecraft.minecraft.nbt import (
 )
 from world2minecraft.minecraft.schematics import structure as our_structure
 from world2minecraft.minecraft.schematics import structure_pack
+from world2minecraft.minecraft.schematics.block_list import _SIZES, skip_value
 from world2minecraft.minecraft.schematics.structure import (
     read_structure,
     structure_of,
     write_structure,
 )
 from world2minecraft.minecraft.schematics.structure_pack import pieces, write_structure_pack
+from world2minecraft.minecraft.state_nbt import state_text
 from world2minecraft.minecraft.versions import GameVersion, game_version
-from world2minecraft.minecraft.worlds.entries import state_text
 
 STONE = "minecraft:stone"
 VOLUMES = {

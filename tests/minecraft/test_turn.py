@@ -10,11 +10,11 @@ from world2minecraft.core.coordinates import apply as carried
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
+from world2minecraft.minecraft.block_states import known_blocks, parse_state, states_of
+from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.nbt import Byte, Float
-from world2minecraft.minecraft.rules.attached import named_block
-from world2minecraft.minecraft.shapes import boxes_of
-from world2minecraft.minecraft.states import known_blocks, parse_state, states_of
-from world2minecraft.minecraft.turn import mirror_state, turn_state, turn_volume
+from world2minecraft.minecraft.rules.attached_entities import named_block
+from world2minecraft.minecraft.transforms import mirror_state, turn_state, turn_volume
 
 # Blocks that have no property for a direction, though their boxes are not the same from all sides:
 # the game cannot turn them.

@@ -22,10 +22,10 @@ from world2minecraft.core.types import AIR, Entity
 from world2minecraft.minecraft.nbt import write_nbt
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds import anvil as our_anvil
-from world2minecraft.minecraft.worlds import world as our_world
+from world2minecraft.minecraft.worlds import world_writer as our_world
 from world2minecraft.minecraft.worlds.anvil import pack_region, read_region
-from world2minecraft.minecraft.worlds.level import GAME_RULES
-from world2minecraft.minecraft.worlds.world import read_world, write_world
+from world2minecraft.minecraft.worlds.level_dat import GAME_RULES
+from world2minecraft.minecraft.worlds.world_writer import read_world, write_world
 
 VOLUMES = {
     "one chunk": random_volume((16, 16, 16), 10, (0, 64, 0)),
@@ -188,8 +188,8 @@ def test_the_same_volume_gives_the_same_bytes_in_any_process(tmp_path):
     script = (
         "import sys; sys.path.insert(0, sys.argv[1]);"
         "from block_volumes import *;"
-        "from world2minecraft.minecraft.worlds.world import write_world;"
-        "from world2minecraft.minecraft.schematics.schem import write_schem;"
+        "from world2minecraft.minecraft.worlds.world_writer import write_world;"
+        "from world2minecraft.minecraft.schematics.sponge import write_schem;"
         "from world2minecraft.minecraft.commands.datapack import write_datapack;"
         "v = furnished_volume(); out = sys.argv[2];"
         "write_world(v, out + '/w', name='x', spawn=(0, 64, 0), spawn_yaw_deg=0);"

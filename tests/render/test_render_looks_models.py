@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.minecraft.states import known_blocks, states_of
+from world2minecraft.minecraft.block_states import known_blocks, states_of
 from world2minecraft.minecraft.visual import visual_boxes_of
 from world2minecraft.render.elements import BlockModel, Element
 from world2minecraft.render.looks import OwnLooks, stand_in_share, stand_ins

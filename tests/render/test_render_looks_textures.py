@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.errors import UnknownNameError
-from world2minecraft.minecraft.colours import colour_of
-from world2minecraft.minecraft.states import known_blocks
+from world2minecraft.minecraft.block_colours import colour_of
+from world2minecraft.minecraft.block_states import known_blocks
 from world2minecraft.render.looks import OwnLooks
 from world2minecraft.render.looks.models import model_of
 from world2minecraft.render.looks.pictures import letters_of, picture_of, pictures

@@ -11,14 +11,14 @@ from world2minecraft.core.files import read_json
 from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.exchange.scene import read_scene
 from world2minecraft.furniture import TEMPLATES, template
+from world2minecraft.minecraft.physics.graph import walk_graph
+from world2minecraft.minecraft.physics.shortest_paths import shortest_path
 from world2minecraft.minecraft.rules.stability import unstable
-from world2minecraft.minecraft.worlds.reading import read_level
-from world2minecraft.minecraft.worlds.world import read_world
+from world2minecraft.minecraft.worlds.world_reader import read_level
+from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.rooms.worlds import generate_world, write_worlds
 from world2minecraft.rooms.worlds.layouts import house_layouts
 from world2minecraft.rooms.worlds.reach import LEVEL, reached_floors
-from world2minecraft.walk.graph import walk_graph
-from world2minecraft.walk.paths import shortest_path
 
 GONE = ("falls", "pops off", "breaks", "flows")  # What a block does that cannot stay.
 

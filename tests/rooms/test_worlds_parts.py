@@ -8,7 +8,8 @@ import pytest
 
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture.materials import kinds
-from world2minecraft.minecraft.states import complete, known_blocks, parse_state
+from world2minecraft.minecraft.block_states import complete, known_blocks, parse_state
+from world2minecraft.minecraft.physics.graph import walk_graph
 from world2minecraft.rooms.worlds.choices import DESIGNS
 from world2minecraft.rooms.worlds.house import person_blocks, plan_block_house
 from world2minecraft.rooms.worlds.looks import draw_look, styles
@@ -17,7 +18,6 @@ from world2minecraft.rooms.worlds.shell import rails
 from world2minecraft.rooms.worlds.task import BOARDS
 from world2minecraft.rooms.worlds.wares import HOME, MOUNTS, Deck, table, wares
 from world2minecraft.rooms.worlds.ways import Ways
-from world2minecraft.walk.graph import walk_graph
 
 PLANS = [(seed, rooms, storeys) for seed, (rooms, storeys) in enumerate([(4, 1), (9, 1), (8, 2)])]
 

@@ -14,7 +14,7 @@ from world2minecraft import cli
 from world2minecraft.label import LABELLERS
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
-from world2minecraft.minecraft.schematics.unlabelled import unlabelled
+from world2minecraft.minecraft.unlabelled_volume import unlabelled
 from world2minecraft.occupy import predictor
 from world2minecraft.scan import open_scan
 from world2minecraft.scan.plain import write_plain

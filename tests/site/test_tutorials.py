@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 
 import pytest
-from tests.server.console import Console
+from tests.minecraft.server.console import Console
 from tests.site.pages import Step, steps_of
 
 from world2minecraft import cli

@@ -1,4 +1,4 @@
-"""Plays ``body.mjs`` without Node: the small flat is its server, and ``walk.step`` its player.
+"""Plays ``body.mjs`` without Node: the small flat is its server, and ``minecraft.physics.player_motion`` its player.
 
 ``python fake_body.py MODE``: honest, or one of the ways to misbehave that the tests name.
 """
@@ -32,7 +32,7 @@ class FakeServer:
 
     @cached_property
     def world(self):
-        from world2minecraft.walk import BlockWorld
+        from world2minecraft.minecraft.physics import BlockWorld
 
         return BlockWorld.of_volume(self.volume)
 
@@ -55,7 +55,7 @@ class FakeServer:
         self.places += 1
         if self.mode == "no operator":
             return {"moved": False, **self.news()}
-        from world2minecraft.walk import Body
+        from world2minecraft.minecraft.physics import Body
 
         self.body = Body((told["x"], told["y"], told["z"]))
         return {"moved": True, **self.news()}
@@ -66,7 +66,8 @@ class FakeServer:
             poses = [self.pose() for _ in range(count)]
             poses[0][0] = "here" if self.mode == "not a number" else poses[0][0]
             return {"poses": poses, **self.news()}
-        from world2minecraft.walk import Body, Keys, step
+        from world2minecraft.minecraft.physics import Body, Keys
+        from world2minecraft.minecraft.physics import player_motion as step
 
         is_late = self.mode == "late" and self.places == 1
         if isinstance(self.body, SimpleNamespace) or is_late or self.mode == "stubborn":

@@ -14,7 +14,7 @@ from world2minecraft.core.types import AIR, BlockVolume, Layout
 from world2minecraft.exchange.layout import write_layouts
 from world2minecraft.exchange.scene import scene_of, write_scene
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
-from world2minecraft.minecraft.worlds.world import write_world
+from world2minecraft.minecraft.worlds.world_writer import write_world
 
 PALETTE = (
     AIR,

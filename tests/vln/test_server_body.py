@@ -11,7 +11,9 @@ from gymnasium.utils.env_checker import check_env
 from small_flat import SPAWN, flat_volume
 
 from world2minecraft.core.errors import InputError, ServerError, UsageError
-from world2minecraft.minecraft.states import parse_state
+from world2minecraft.minecraft.block_states import parse_state
+from world2minecraft.minecraft.physics import Body, BoxWorld, Keys
+from world2minecraft.minecraft.physics import player_motion as step
 from world2minecraft.vln.environment.senses import Eyes
 from world2minecraft.vln.server import body as body_module
 from world2minecraft.vln.server import installing
@@ -22,7 +24,6 @@ from world2minecraft.vln.server.env import ServerEnv
 from world2minecraft.vln.server.pace import forward_keys
 from world2minecraft.vln.server.scene import open_server_scene
 from world2minecraft.vln.values import Move
-from world2minecraft.walk import Body, BoxWorld, Keys, step
 
 HERE = Path(__file__).parent
 SMALL = Eyes(width_px=32, height_px=32)

@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import AIR, BlockVolume
+from world2minecraft.minecraft.physics import BlockWorld, body_box
+from world2minecraft.minecraft.physics.graph import solid_of
+from world2minecraft.minecraft.physics.sweep import overlapping
 from world2minecraft.vln.motion import BodySize, walked
 from world2minecraft.vln.moves import forward_blocks, moved, named_set, wrapped_yaw
 from world2minecraft.vln.oracle import expert
 from world2minecraft.vln.values import MOVE_SETS, Move, Stance
-from world2minecraft.walk import BlockWorld, body_box
-from world2minecraft.walk.graph import solid_of
-from world2minecraft.walk.sweep import overlapping
 
 SIZE = BodySize(0.3, 1.8, 0.6, 3.0)
 PALETTE = (

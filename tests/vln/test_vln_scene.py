@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from scipy.sparse.csgraph import dijkstra
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.minecraft.physics.any_angle_paths import lattice_of, straight_m
 from world2minecraft.vln.floor import LEVEL, REACH, distance_over
 from world2minecraft.vln.landmarks import colour_name
 from world2minecraft.vln.scene import camera_of, open_scene
 from world2minecraft.vln.values import Stance
-from world2minecraft.walk.straight import lattice_of, straight_m
 
 
 def test_things_have_names_that_tell_them_apart(flat):

@@ -8,7 +8,7 @@ from world2minecraft.build.lattice import Lattice
 from world2minecraft.core.coordinates import block_to_room, grid_to_block_axes
 from world2minecraft.core.errors import LimitError
 from world2minecraft.core.types import AIR, BlockVolume, Entity
-from world2minecraft.minecraft.states import complete, parse_state
+from world2minecraft.minecraft.block_states import complete, parse_state
 
 # Blocks that nobody sees; they are no surface, so they carry class 0.
 LIGHT = "minecraft:light[level=15,waterlogged=false]"

@@ -9,7 +9,7 @@ from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.surfaces import painted
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colours_of
+from world2minecraft.minecraft.block_colours import colours_of
 
 PAINTS = {int(SemanticClass.TABLE): 1}  # A table is of one wood; shade and glare are not.
 GIVEN_UP = 0.06  # Oklab distance that a colour may lose for the sake of a shape.

@@ -5,7 +5,7 @@ import numpy as np
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import linear_of_srgb, oklab_of_linear, oklab_of_srgb
 from world2minecraft.geometry.padded_morphology import nearest_of
-from world2minecraft.minecraft.colours import colour_of
+from world2minecraft.minecraft.block_colours import colour_of
 
 # Exposure: the brightest twentieth of a room's surfaces comes to this linear light, about that of
 # white concrete. Photos of dim rooms come out darker than any wall paint is.

@@ -19,8 +19,14 @@ from world2minecraft.core.types import Placement
 from world2minecraft.furniture import Idiom
 from world2minecraft.furniture.idiom import block_size
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import DYES, WOODS, colour_of, colours_of, nearest_oklab
-from world2minecraft.minecraft.shapes import is_full_cube
+from world2minecraft.minecraft.block_colours import (
+    DYES,
+    WOODS,
+    colour_of,
+    colours_of,
+    nearest_oklab,
+)
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 _KEPT_DYES = ("white",)  # A design's own white is meant: a pillow, a sheet.
 LIFTED_UNDER, HIGH_M = (

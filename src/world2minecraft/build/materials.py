@@ -13,8 +13,8 @@ from world2minecraft.build.palettes import Palette
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.fit.shapes import Shape
 from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.minecraft.block_colours import colours_of
 from world2minecraft.minecraft.blocks import block_table
-from world2minecraft.minecraft.colours import colours_of
 
 ENOUGH = 0.5  # The share of an object's colours that a kind must have for the object to use it.
 # Oklab distances that a colour may lose to a shape of the kind; of a post little is seen.

@@ -7,9 +7,9 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.exchange.scene import scene_of, write_scene
 from world2minecraft.minecraft.commands.datapack import has_packs, write_datapack
 from world2minecraft.minecraft.displays import check_displays
-from world2minecraft.minecraft.schematics.schem import write_schem
+from world2minecraft.minecraft.schematics.sponge import write_schem
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
-from world2minecraft.minecraft.worlds.world import write_world
+from world2minecraft.minecraft.worlds.world_writer import write_world
 
 WORLD_NAME = "World2Minecraft room"  # Where nothing says what the room is called.
 

@@ -19,8 +19,8 @@ from world2minecraft.furniture.idiom import block_size, laid
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Span, Template
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.metrics.solids import own_cells
-from world2minecraft.minecraft.colours import DYES, WOODS, colours_of, nearest_oklab
-from world2minecraft.minecraft.states import BlockState, parse_state
+from world2minecraft.minecraft.block_colours import DYES, WOODS, colours_of, nearest_oklab
+from world2minecraft.minecraft.block_states import BlockState, parse_state
 
 SLACK = 0.7  # Blocks by which an object may be larger than a piece of a fixed size.
 HIGHEST = 1.7  # Blocks: furniture of one layer stands for nothing higher.

@@ -12,7 +12,7 @@ import numpy as np
 
 from world2minecraft.build.hues import group_medians
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colours_of
+from world2minecraft.minecraft.block_colours import colours_of
 
 LEAST_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
 LEAST_BLOCKS = 3.0

@@ -18,9 +18,9 @@ from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, STRUCTURE_
 from world2minecraft.core.errors import InputError, UsageError, one_line
 from world2minecraft.core.files import plain_yaml, read_bytes
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colours_of, nearest_oklab
-from world2minecraft.minecraft.shapes import is_full_cube
-from world2minecraft.minecraft.states import check_state, complete, parse_state
+from world2minecraft.minecraft.block_colours import colours_of, nearest_oklab
+from world2minecraft.minecraft.block_states import check_state, complete, parse_state
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 MAX_BYTES = 1 << 20
 MAX_NAMES = 4096

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
-from world2minecraft.minecraft.colours import DYES, WOODS
-from world2minecraft.minecraft.states import BlockState
+from world2minecraft.minecraft.block_colours import DYES, WOODS
+from world2minecraft.minecraft.block_states import BlockState
 
 FILLS = ("one", "row", "floor", "box")
 # Where a block's facing looks, of a piece that looks east.

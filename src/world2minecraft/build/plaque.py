@@ -12,8 +12,8 @@ from world2minecraft.build.canvas import LIGHT
 from world2minecraft.build.spawn import Spawn, find_spawn
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import AIR, BlockVolume
+from world2minecraft.minecraft.collision_shapes import boxes_of
 from world2minecraft.minecraft.rules.supports import STEPS, UP, faces_of, is_solid
-from world2minecraft.minecraft.shapes import boxes_of
 from world2minecraft.minecraft.signs import sign_entity, wrapped
 
 WALL_SIGN = "minecraft:oak_wall_sign[facing={},waterlogged=false]"

@@ -10,9 +10,9 @@ from world2minecraft.build.worktops import Worktop, find_worktop, joined
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colours_of
-from world2minecraft.minecraft.shapes import is_full_cube
-from world2minecraft.minecraft.states import known_blocks
+from world2minecraft.minecraft.block_colours import colours_of
+from world2minecraft.minecraft.block_states import known_blocks
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 PLATES_FROM = 1.5  # Blocks per metre: below, a counter is one block high.
 

@@ -16,10 +16,10 @@ from world2minecraft.build.canvas import Canvas
 from world2minecraft.build.palettes import Palette
 from world2minecraft.core.types import AIR, Entity
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colours_of, nearest_oklab
+from world2minecraft.minecraft.block_colours import colours_of, nearest_oklab
+from world2minecraft.minecraft.block_states import complete, parse_state
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.displays import BLOCK_DISPLAY
-from world2minecraft.minecraft.shapes import is_full_cube
-from world2minecraft.minecraft.states import complete, parse_state
 from world2minecraft.minecraft.visual import visual_boxes_of
 
 UNSEEN = frozenset(f"minecraft:{name}" for name in ("air", "light", "barrier"))

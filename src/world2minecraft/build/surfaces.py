@@ -9,7 +9,7 @@ from world2minecraft.build.palettes import Palette
 from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.core.classes import STRUCTURE_CLASSES
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colours_of
+from world2minecraft.minecraft.block_colours import colours_of
 
 NEW_PAINT = 0.03  # What a block must be nearer by to come in beside those that the room has.
 TOLD_APART = 0.06  # Oklab distance of two blocks that one tells apart at a glance; a guess.

@@ -18,8 +18,8 @@ from world2minecraft.build.surfaces import painted
 from world2minecraft.furniture import IdiomBlock, Material
 from world2minecraft.furniture.materials import FIXED, PLAIN, Swatch, restated, shape_of, swatches
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colour_of
-from world2minecraft.minecraft.shapes import is_full_cube
+from world2minecraft.minecraft.block_colours import colour_of
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 OTHER_CLOTH = 0.03  # Oklab: what another full block must be nearer by than wool. A guess.
 OTHER_KIND = 0.1  # Oklab: what another kind of material must come nearer by. A guess.

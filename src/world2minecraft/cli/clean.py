@@ -105,8 +105,8 @@ def check_unplayed(world: Path) -> None:
     Raises:
         OutputError: one has, or it is of another maker.
     """
-    from world2minecraft.minecraft.worlds.level import MAKER, MAKER_TAG
-    from world2minecraft.minecraft.worlds.reading import read_level
+    from world2minecraft.minecraft.worlds.level_dat import MAKER, MAKER_TAG
+    from world2minecraft.minecraft.worlds.world_reader import read_level
 
     if read_level(world).get(MAKER_TAG) != MAKER:
         reason = "holds a world that has been played in or made elsewhere"
@@ -169,7 +169,7 @@ def write_again(build: Path, history: "History") -> None:
     from world2minecraft.build import WORLD_NAME, write_build
     from world2minecraft.core.files import read_json
     from world2minecraft.exchange.scene import read_scene
-    from world2minecraft.minecraft.worlds.reading import read_level
+    from world2minecraft.minecraft.worlds.world_reader import read_level
     from world2minecraft.parameters import Parameters
     from world2minecraft.steps import write_further_forms
 

@@ -98,8 +98,8 @@ def convert(
 ) -> None:
     """Read ``source``, write ``target`` and print what came of it. Raises what ``run`` raises."""
     from world2minecraft.exchange.forms import write_form
+    from world2minecraft.minecraft.block_names import mod_blocks
     from world2minecraft.minecraft.commands.datapack import namespace_of
-    from world2minecraft.minecraft.game_names import mod_blocks
     from world2minecraft.minecraft.losses import Losses
 
     unread, unwritten = Losses(), Losses()

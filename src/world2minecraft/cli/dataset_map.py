@@ -43,7 +43,7 @@ def run(blocks: Blocks = None, block_map: MapName = "nyu", json_out: Json = None
     """
     from world2minecraft.core.files import write_json
     from world2minecraft.dataset.blockmap import block_map_json, load_block_map
-    from world2minecraft.minecraft.states import parse_state
+    from world2minecraft.minecraft.block_states import parse_state
 
     rules = load_block_map(block_map)
     states = [str(parse_state(block)) for block in blocks or []]
@@ -73,7 +73,7 @@ def word_count(rules: "BlockMap") -> int:
 def lines_of(rules: "BlockMap") -> list[str]:
     """Return a map's name, what each class is by name alone, and the kinds with their classes."""
     from world2minecraft.core.classes import CLASS_NAMES
-    from world2minecraft.minecraft.states import known_blocks
+    from world2minecraft.minecraft.block_states import known_blocks
 
     held: dict[str, list[str]] = {}
     for block in known_blocks():

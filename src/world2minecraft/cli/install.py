@@ -58,7 +58,7 @@ def run(
         return
     if source is None:
         raise UsageError("say what to install: w2m install OUT")
-    from world2minecraft.minecraft.worlds.installing import age_note, install_world, world_of
+    from world2minecraft.minecraft.worlds.installation import age_note, install_world, world_of
 
     world = world_of(source)
     chosen = Game("the game", saves) if saves else choose(games, game)

@@ -49,7 +49,7 @@ def into_world(
     from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
     from world2minecraft.edit.into_world import build_into
     from world2minecraft.edit.placing import placed
-    from world2minecraft.minecraft.commands.sizes import size_pack
+    from world2minecraft.minecraft.commands.player_scale import size_pack
 
     ground_y = ROOM_CORNER_BLOCK[1] if is_room else None
     put = placed(volume, at, turns, ground_y)

@@ -43,7 +43,7 @@ def run(
     if blocks and force:
         raise UsageError("--blocks and --force are two ways to undo; choose one")
     from world2minecraft.edit.backups import steps_of
-    from world2minecraft.minecraft.worlds.level import no_world
+    from world2minecraft.minecraft.worlds.level_dat import no_world
 
     if list_:
         if not (world / "level.dat").is_file():

@@ -16,7 +16,7 @@ from world2minecraft.exchange.source import around_spawn, spawn_of
 from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.minecraft.worlds.anvil import read_region
 from world2minecraft.minecraft.worlds.chunks import read_chunk
-from world2minecraft.minecraft.worlds.reading import read_level, region_files
+from world2minecraft.minecraft.worlds.world_reader import read_level, region_files
 
 SECTION = 16
 NEAR = 6  # Chunks from the spawn within which a build counts as the one that is meant: 96 blocks.

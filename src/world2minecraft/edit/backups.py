@@ -21,7 +21,7 @@ from world2minecraft.core.errors import ConflictError, DamagedFileError, InputEr
 from world2minecraft.core.files import read_bytes, read_json, write_bytes, write_json
 from world2minecraft.core.types import BlockEdit
 from world2minecraft.edit.journal import write_journal
-from world2minecraft.minecraft.worlds.level import UNDO_FOLDER as FOLDER
+from world2minecraft.minecraft.worlds.level_dat import UNDO_FOLDER as FOLDER
 
 MANIFEST, JOURNAL = "manifest.json", "edit.journal"
 PREPARED, DONE, UNDOING = "prepared", "done", "undoing"

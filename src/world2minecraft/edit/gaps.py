@@ -10,7 +10,7 @@ import numpy as np
 from world2minecraft.core.types import Blocks
 from world2minecraft.edit.draft import Draft
 from world2minecraft.edit.sight import move
-from world2minecraft.minecraft.states import known_blocks
+from world2minecraft.minecraft.block_states import known_blocks
 from world2minecraft.minecraft.visual import visual_boxes_of
 
 DOWN = np.array([0, -1, 0])

@@ -26,11 +26,11 @@ from world2minecraft.edit.draft import data_keys
 from world2minecraft.edit.journal import Journal
 from world2minecraft.edit.world_box import WorldBox, is_void, read_world_box
 from world2minecraft.edit.world_entities import WorldEntities, marked
-from world2minecraft.minecraft.game_data import block_entity_in_game, entity_in_game
-from world2minecraft.minecraft.states import BlockState, parse_state
+from world2minecraft.minecraft.block_entities import block_entity_in_game, entity_in_game
+from world2minecraft.minecraft.block_states import BlockState, parse_state
 from world2minecraft.minecraft.versions import name_in_version
-from world2minecraft.minecraft.worlds.reading import read_level
 from world2minecraft.minecraft.worlds.session_lock import session_lock
+from world2minecraft.minecraft.worlds.world_reader import read_level
 
 AIR_CHOICES = ("room", "box", "none")
 FIRST_DISPLAY_VERSION = 3337  # 1.19.4, the first game with display entities.

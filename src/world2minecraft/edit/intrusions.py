@@ -11,7 +11,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.edit.draft import Draft
 from world2minecraft.edit.sight import crumb_blocks, structure_of, take_away, things_of
 from world2minecraft.geometry.connected_components import connected_parts
-from world2minecraft.minecraft.shapes import is_full_cube
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 
 CUT_SHARE = 0.25  # A piece of at most this share of its object is what was cut off.
 # Objects of one piece. Tables and cupboards may go on beyond what stands in or before them, and

@@ -7,8 +7,8 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume, Entity
-from world2minecraft.minecraft.rules.attached import attached
-from world2minecraft.minecraft.turn import turn_volume
+from world2minecraft.minecraft.rules.attached_entities import attached
+from world2minecraft.minecraft.transforms import turn_volume
 
 
 def placed(

@@ -25,8 +25,8 @@ from world2minecraft.minecraft.worlds.chunk_edit import (
     set_data,
     set_section,
 )
-from world2minecraft.minecraft.worlds.reading import read_level
 from world2minecraft.minecraft.worlds.region_edit import RegionFile, read_region_file
+from world2minecraft.minecraft.worlds.world_reader import read_level
 
 MAX_CELLS = 64 << 20
 MODERN_FOLDER = Path("dimensions/minecraft/overworld")  # From 26.1 on.

@@ -14,11 +14,11 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK, apply
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.exchange.faces import faces_of_boxes
-from world2minecraft.minecraft.colours import colour_of
-from world2minecraft.minecraft.commands.boxes import merge_boxes
+from world2minecraft.minecraft.block_colours import colour_of
+from world2minecraft.minecraft.collision_shapes import FULL_CUBE
+from world2minecraft.minecraft.commands.fill_boxes import merge_boxes
 from world2minecraft.minecraft.displays import display_cubes, owner_of
 from world2minecraft.minecraft.glow import is_luminous
-from world2minecraft.minecraft.shapes import FULL_CUBE
 from world2minecraft.minecraft.visual import visual_boxes_of
 
 STEPS = 64  # Parts of a block that box corners are rounded to; the game's own table needs 32.

@@ -13,7 +13,7 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.exchange.cutting import Box, cropped, trimmed
 from world2minecraft.exchange.forms import read_form
 from world2minecraft.exchange.labelled import labelled, place_of_blocks
-from world2minecraft.minecraft.worlds.world import read_level, read_world
+from world2minecraft.minecraft.worlds.world_writer import read_level, read_world
 
 AROUND = (64, 32, 64)  # Blocks to each side of the spawn, of a world that comes without a scene,
 ABOVE = 96  # and so many over it.

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from world2minecraft.fit.masks import faces_of, mask_of
-from world2minecraft.minecraft.turn import mirror_state, turn_state
+from world2minecraft.minecraft.transforms import mirror_state, turn_state
 
 SIDES = ("east", "north", "west", "south")  # Counter-clockwise.
 CORNERS = ("inner_left", "inner_right", "outer_left", "outer_right")

@@ -19,9 +19,9 @@ from world2minecraft.edit.cleanup import mended
 from world2minecraft.edit.scene import instances_of, placements_of
 from world2minecraft.forge.arrays import packed_arrays
 from world2minecraft.forge.editor import Editor
+from world2minecraft.minecraft.physics import BlockWorld, standing_place
 from world2minecraft.render.mesh import BlockMesh, mesh_of
 from world2minecraft.steps import corner_m
-from world2minecraft.walk import BlockWorld, standing_place
 
 MAGIC = b"W2MB"
 MOST_CELLS = 12_000_000  # Of the box around a build; a page draws no more.

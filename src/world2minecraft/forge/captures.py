@@ -31,7 +31,7 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.forge.upload_names import UploadFile, checked_files, common_folder
-from world2minecraft.minecraft.worlds.installing import check_name
+from world2minecraft.minecraft.worlds.installation import check_name
 from world2minecraft.scan.plan_alone import plan_in
 from world2minecraft.scan.sources import find_capture
 

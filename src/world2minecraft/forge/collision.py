@@ -12,7 +12,7 @@ from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.forge.arrays import packed_arrays
 from world2minecraft.forge.blocks import Build, HeldScene
-from world2minecraft.walk import BlockWorld, standing_place
+from world2minecraft.minecraft.physics import BlockWorld, standing_place
 
 MAGIC = b"W2MC"
 

@@ -19,7 +19,7 @@ from world2minecraft.edit.into_world import build_into, built_mask
 from world2minecraft.edit.placing import placed
 from world2minecraft.exchange.forms import form_named, templates_of_run, write_form
 from world2minecraft.forge.tasks import parameters_of
-from world2minecraft.minecraft.commands.sizes import size_pack
+from world2minecraft.minecraft.commands.player_scale import size_pack
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.server.address import note_of, parse_address
@@ -27,7 +27,7 @@ from world2minecraft.minecraft.server.building import LiveBuilder
 from world2minecraft.minecraft.server.plan import plan_build
 from world2minecraft.minecraft.server.rcon import RconClient
 from world2minecraft.minecraft.versions import game_version
-from world2minecraft.minecraft.worlds.installing import age_note, install_world
+from world2minecraft.minecraft.worlds.installation import age_note, install_world
 from world2minecraft.minecraft.worlds.launchers import Game
 from world2minecraft.parameters import Parameters
 from world2minecraft.render.preview import preview

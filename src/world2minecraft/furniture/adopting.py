@@ -23,8 +23,8 @@ from world2minecraft.furniture.own import (
     check_name,
     role_of,
 )
-from world2minecraft.minecraft.states import parse_state
-from world2minecraft.minecraft.turn import SIDES, turn_volume
+from world2minecraft.minecraft.block_states import parse_state
+from world2minecraft.minecraft.transforms import SIDES, turn_volume
 
 SEATS = ("chair", "sofa", "bed")
 OPPOSITE = {"north": "south", "south": "north", "east": "west", "west": "east"}
@@ -265,8 +265,8 @@ def _packed(cells: np.ndarray, palette: tuple[str, ...]) -> dict[str, Any]:
 
 def _notes(volume: BlockVolume) -> list[str]:
     """Return what is to be said of the blocks: those that would not stay, and mods'."""
+    from world2minecraft.minecraft.block_states import known_blocks  # noqa: PLC0415
     from world2minecraft.minecraft.rules.stability import unstable_cells  # noqa: PLC0415
-    from world2minecraft.minecraft.states import known_blocks  # noqa: PLC0415
 
     floored = np.pad(volume.states, ((1, 1), (1, 1), (1, 1)))
     floored[:, 0] = len(volume.palette)

@@ -12,7 +12,7 @@ from functools import cache
 from importlib.resources import files
 from typing import NamedTuple
 
-from world2minecraft.minecraft.states import known_blocks
+from world2minecraft.minecraft.block_states import known_blocks
 
 PLAIN, FIXED = "plain", "fixed"
 PLAIN_KINDS = ("paint", "stone", "wood")

@@ -141,9 +141,9 @@ def material_of(role: str, recoloured: bool) -> Material:
 
 
 def _full_block_like(block: str) -> str:
-    from world2minecraft.minecraft.colours import colour_of, nearest_block  # noqa: PLC0415
-    from world2minecraft.minecraft.shapes import is_full_cube  # noqa: PLC0415
-    from world2minecraft.minecraft.states import known_blocks  # noqa: PLC0415
+    from world2minecraft.minecraft.block_colours import colour_of, nearest_block  # noqa: PLC0415
+    from world2minecraft.minecraft.block_states import known_blocks  # noqa: PLC0415
+    from world2minecraft.minecraft.collision_shapes import is_full_cube  # noqa: PLC0415
 
     if block in known_blocks() and is_full_cube(block):
         return block.removeprefix("minecraft:")
@@ -200,7 +200,7 @@ def _parts(raw: Any, blocks: tuple[LocalBlock, ...]) -> tuple[tuple[np.ndarray, 
 
 
 def _state(value: Any) -> str:
-    from world2minecraft.minecraft.states import parse_state  # noqa: PLC0415
+    from world2minecraft.minecraft.block_states import parse_state  # noqa: PLC0415
 
     if not isinstance(value, str):
         raise ValueError(f"a block state must be a text, not {value!r:.60}")

@@ -18,9 +18,9 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume, Entity
+from world2minecraft.minecraft.block_states import parse_state
 from world2minecraft.minecraft.entities import entity_tags
 from world2minecraft.minecraft.nbt import Float
-from world2minecraft.minecraft.states import parse_state
 from world2minecraft.minecraft.versions import GameVersion
 
 BLOCK_DISPLAY = "minecraft:block_display"

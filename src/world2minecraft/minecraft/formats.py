@@ -23,8 +23,8 @@ FORMATS = Registry(
         "litematic": "world2minecraft.minecraft.shared_formats:LitematicFormat",
         "structure": "world2minecraft.minecraft.shared_formats:StructureFormat",
         "legacy": "world2minecraft.minecraft.shared_formats:LegacySchematicFormat",
-        "mcfunction": "world2minecraft.minecraft.commands.listing:CommandListFormat",
-        "mcstructure": "world2minecraft.minecraft.bedrock.structure:McstructureFormat",
+        "mcfunction": "world2minecraft.minecraft.commands.mcfunction:CommandListFormat",
+        "mcstructure": "world2minecraft.minecraft.bedrock.mcstructure:McstructureFormat",
     },
 )
 
@@ -135,16 +135,16 @@ class WorldFormat:
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read the overworld."""
-        from world2minecraft.minecraft.worlds.world import read_world  # noqa: PLC0415  # It needs numba.
+        from world2minecraft.minecraft.worlds.world_writer import read_world  # noqa: PLC0415  # It needs numba.
 
         return read_world(path)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write a world whose player starts at ``spawn``, or on top of the middle."""
-        from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
+        from world2minecraft.minecraft.block_names import count_unknown  # noqa: PLC0415
         from world2minecraft.minecraft.spawn import top_of_middle  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
-        from world2minecraft.minecraft.worlds.world import write_world  # noqa: PLC0415  # numba.
+        from world2minecraft.minecraft.worlds.world_writer import write_world  # noqa: PLC0415  # numba.
 
         count_unknown(volume, game_version(options.mc_version), losses)
         write_world(
@@ -164,14 +164,14 @@ class SchemFormat(FileFormat):
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read version 1, 2 or 3."""
-        from world2minecraft.minecraft.schematics.schem import read_schem  # noqa: PLC0415  # It needs numba.
+        from world2minecraft.minecraft.schematics.sponge import read_schem  # noqa: PLC0415  # It needs numba.
 
         return read_schem(path, losses)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write version 2, or 1 or 3 where the options say so."""
-        from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
-        from world2minecraft.minecraft.schematics.schem import write_schem  # noqa: PLC0415  # numba.
+        from world2minecraft.minecraft.block_names import count_unknown  # noqa: PLC0415
+        from world2minecraft.minecraft.schematics.sponge import write_schem  # noqa: PLC0415  # numba.
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         if options.schem_version not in (1, 2, 3):
@@ -201,7 +201,7 @@ class DatapackFormat:
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read what its function ``build`` sets."""
-        from world2minecraft.minecraft.commands.reading import read_datapack  # noqa: PLC0415
+        from world2minecraft.minecraft.commands.parser import read_datapack  # noqa: PLC0415
         from world2minecraft.minecraft.schematics.structure_pack import (  # noqa: PLC0415
             is_structure_pack,
             read_structure_pack,
@@ -213,11 +213,11 @@ class DatapackFormat:
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write the pack under the namespace that the options' name makes."""
+        from world2minecraft.minecraft.block_names import count_unknown  # noqa: PLC0415
         from world2minecraft.minecraft.commands.datapack import (  # noqa: PLC0415  # numba.
             namespace_of,
             write_datapack,
         )
-        from world2minecraft.minecraft.game_names import count_unknown  # noqa: PLC0415
         from world2minecraft.minecraft.versions import game_version  # noqa: PLC0415
 
         version = game_version(options.mc_version)

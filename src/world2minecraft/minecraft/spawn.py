@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.shapes import boxes_of
+from world2minecraft.minecraft.collision_shapes import boxes_of
 
 PLAYER_LAYERS = 2  # A player is 1.8 blocks high.
 

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.minecraft.shapes import boxes_of
-from world2minecraft.minecraft.states import BlockState, complete, parse_state
+from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
+from world2minecraft.minecraft.collision_shapes import boxes_of
 
 DATA_FILE = "data/visual_boxes.json"
 # Clockwise from above, from the side that the data file's boxes are written for.

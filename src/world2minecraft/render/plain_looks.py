@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from world2minecraft.minecraft.colours import colour_of
+from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.glow import is_luminous
 from world2minecraft.minecraft.visual import visual_boxes_of
 from world2minecraft.render.elements import BlockModel, Element, FaceLook

@@ -20,7 +20,7 @@ from world2minecraft.exchange.room import read_room
 from world2minecraft.exchange.rooms import read_rooms
 from world2minecraft.exchange.scan import read_room_size
 from world2minecraft.exchange.scene import read_scene
-from world2minecraft.minecraft.schematics.schem import read_schem
+from world2minecraft.minecraft.schematics.sponge import read_schem
 
 
 @dataclass(frozen=True, eq=False)

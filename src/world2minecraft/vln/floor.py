@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.walk.graph import WalkGraph
+from world2minecraft.minecraft.physics.graph import WalkGraph
 
 REACH = 1.5  # Spacings: places so near to a body are on its own side of any wall,
 LEVEL = 0.6  # and so near in height, in sizes of the body, are on its own floor.

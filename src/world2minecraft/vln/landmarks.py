@@ -15,7 +15,7 @@ from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES, SemanticCl
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.minecraft.colours import colours_of, nearest_oklab
+from world2minecraft.minecraft.block_colours import colours_of, nearest_oklab
 
 BESIDE_M = 1.5  # What stands nearer than this is "beside".
 LEAST_M = 0.15  # What is smaller in its two longer sides is nothing to speak of.

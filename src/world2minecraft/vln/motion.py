@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.walk.body import TOUCH
-from world2minecraft.walk.columns import WET
+from world2minecraft.minecraft.physics.body import TOUCH
+from world2minecraft.minecraft.physics.columns import WET
 
 PIECE = 0.4  # Of half a body's width: how long the pieces of a way are.
 CHAIR, FURN = 5, 10  # The classes of furniture, from the first to the last: no ground to walk on.

@@ -7,11 +7,11 @@ on no furniture, as the walkable graph. One who slides goes on along what stops 
 import math
 
 from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.minecraft.physics.body import HEIGHT, STEP_HEIGHT, WIDTH
+from world2minecraft.minecraft.physics.graph import DROP
 from world2minecraft.vln.motion import BodySize, walked
 from world2minecraft.vln.scene import VlnScene
 from world2minecraft.vln.values import MOVE_SETS, Move, MoveSet, Stance
-from world2minecraft.walk.body import HEIGHT, STEP_HEIGHT, WIDTH
-from world2minecraft.walk.graph import DROP
 
 _DIGITS = 6  # Of a yaw in degrees: turns there and back give the same number.
 

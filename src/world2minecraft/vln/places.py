@@ -11,8 +11,8 @@ from scipy.spatial import KDTree
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.types import BlockVolume, Layout
 from world2minecraft.dataset.tours.rooms import TourRoom
+from world2minecraft.minecraft.physics.graph import WalkGraph
 from world2minecraft.rooms.stands import is_inside
-from world2minecraft.walk.graph import WalkGraph
 
 NEAR_M = 1.5  # A place farther from all rooms than this is in none.
 _APART = 3.0  # A metre of height counts as so many along the floor.

@@ -22,6 +22,16 @@ from world2minecraft.dataset.tours.values import TourRule
 from world2minecraft.exchange.labelled import place_of_blocks
 from world2minecraft.exchange.layout import read_layouts
 from world2minecraft.furniture.library import TEMPLATES
+from world2minecraft.minecraft.physics.any_angle_paths import (
+    Lattice,
+    lattice_of,
+    straight_distances_m,
+)
+from world2minecraft.minecraft.physics.body import EYE
+from world2minecraft.minecraft.physics.columns import Solid
+from world2minecraft.minecraft.physics.doors import doors_opened
+from world2minecraft.minecraft.physics.graph import WalkGraph, WalkRule, solid_of, walk_graph
+from world2minecraft.minecraft.physics.shortest_paths import parts
 from world2minecraft.render.lamps import DAY
 from world2minecraft.render.light import LookLight
 from world2minecraft.render.picture import DEFAULT_OUTPUTS, Picture, render_volume
@@ -31,12 +41,6 @@ from world2minecraft.vln.floor import Floor, distance_over, floor_of
 from world2minecraft.vln.landmarks import Landmark, landmarks_of
 from world2minecraft.vln.places import SceneRoom, rooms_of_places, scene_rooms
 from world2minecraft.vln.values import Stance
-from world2minecraft.walk.body import EYE
-from world2minecraft.walk.columns import Solid
-from world2minecraft.walk.doors import doors_opened
-from world2minecraft.walk.graph import WalkGraph, WalkRule, solid_of, walk_graph
-from world2minecraft.walk.paths import parts
-from world2minecraft.walk.straight import Lattice, lattice_of, straight_distances_m
 
 BODIES = (1.0, 0.6, 0.4)  # Of a person: one who fits is chosen; a cluttered scan has small ones.
 LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a smaller body is tried.

@@ -4,7 +4,7 @@ from typing import Any
 
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.dataset.blockmap.rules import BlockMap, Rule
-from world2minecraft.minecraft.states import known_blocks
+from world2minecraft.minecraft.block_states import known_blocks
 
 
 def block_map_json(rules: BlockMap) -> dict[str, Any]:

@@ -143,6 +143,6 @@ def matches(pattern: Pattern, full: str, name: str, stated: frozenset[str]) -> b
 
 
 def _is_whole(state: str) -> bool:
-    from world2minecraft.minecraft.shapes import is_full_cube  # noqa: PLC0415
+    from world2minecraft.minecraft.collision_shapes import is_full_cube  # noqa: PLC0415
 
     return is_full_cube(state)

@@ -18,11 +18,11 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.dataset.tours.values import TourRule
+from world2minecraft.minecraft.physics.body import HEIGHT
+from world2minecraft.minecraft.physics.columns import Solid
+from world2minecraft.minecraft.physics.graph import WalkGraph
+from world2minecraft.minecraft.physics.shortest_paths import parts, reachable
 from world2minecraft.rooms.stands import is_inside
-from world2minecraft.walk.body import HEIGHT
-from world2minecraft.walk.columns import Solid
-from world2minecraft.walk.graph import WalkGraph
-from world2minecraft.walk.paths import parts, reachable
 
 NARROW_M = 1.1  # Rooms are parted where they are narrower than this.
 LEAST_ROOM_M2 = 1.2  # What is smaller is no room of its own,

@@ -13,9 +13,9 @@ from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Any
 
+from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.blocks import block_table
 from world2minecraft.minecraft.nbt import Byte
-from world2minecraft.minecraft.states import BlockState, complete, parse_state
 
 TABLE_FILE = "data/bedrock_states.json.gz"
 

@@ -11,13 +11,14 @@ from pathlib import Path
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.commands.sizes import (
+from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.commands.player_scale import (
     function_files,
     pack_mcmeta,
     pack_zip,
     size_functions,
 )
-from world2minecraft.minecraft.commands.writing import (
+from world2minecraft.minecraft.commands.writer import (
     block_commands,
     chunk_rows,
     clear_commands,
@@ -26,7 +27,6 @@ from world2minecraft.minecraft.commands.writing import (
     entity_tag,
 )
 from world2minecraft.minecraft.displays import check_displays
-from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.versions import GameVersion, game_version, game_versions
 
 MAX_COMMANDS = 60_000  # Below maxCommandChainLength, 65,536, which counts a whole chain.

@@ -11,11 +11,11 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from world2minecraft.minecraft.board import Board
+from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.rules import traits
+from world2minecraft.minecraft.rules.board import Board
 from world2minecraft.minecraft.rules.supports import DOWN, EAST, NORTH, OPPOSITE, SOUTH, UP, WEST
 from world2minecraft.minecraft.rules.traits import SIDES, TYPES
-from world2minecraft.minecraft.states import complete, parse_state
 
 SHAPES = ("straight", "inner_left", "inner_right", "outer_left", "outer_right")
 HEIGHTS = ("none", "low", "tall")

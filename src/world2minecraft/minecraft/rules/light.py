@@ -11,10 +11,10 @@ from importlib.resources import files
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.block_states import complete, parse_state
+from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.rules.flood import SHUT, spread, steps_of, with_margin
-from world2minecraft.minecraft.rules.tables import pattern_of
-from world2minecraft.minecraft.shapes import is_full_cube
-from world2minecraft.minecraft.states import complete, parse_state
+from world2minecraft.minecraft.rules.name_patterns import pattern_of
 
 DATA_FILE = "data/light_levels.json"
 BRIGHTEST = 15

@@ -9,7 +9,9 @@ from importlib.resources import files
 from re import Pattern
 from typing import Any, NamedTuple
 
+from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.rules.light import lets_light_through
+from world2minecraft.minecraft.rules.name_patterns import pattern_of
 from world2minecraft.minecraft.rules.supports import (
     DIRECTIONS,
     DOWN,
@@ -19,8 +21,6 @@ from world2minecraft.minecraft.rules.supports import (
     has_centre_below,
     is_solid,
 )
-from world2minecraft.minecraft.rules.tables import pattern_of
-from world2minecraft.minecraft.states import BlockState, complete, parse_state
 
 DATA_FILE = "data/support_rules.json"
 _AIR = ("minecraft:air", "minecraft:cave_air", "minecraft:void_air")

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.board import Board
+from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
+from world2minecraft.minecraft.rules.board import Board
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.light import block_light
 from world2minecraft.minecraft.rules.needs import (
@@ -22,7 +23,6 @@ from world2minecraft.minecraft.rules.needs import (
     offers,
 )
 from world2minecraft.minecraft.rules.supports import DOWN, UP, faces_of
-from world2minecraft.minecraft.states import BlockState, complete, parse_state
 
 MELTS_ABOVE = 11  # Ice and snow melt in brighter block light.
 _MELTING = ("minecraft:ice", "minecraft:snow")

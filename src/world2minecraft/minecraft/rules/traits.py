@@ -7,9 +7,9 @@ one, so mods' and newer games' blocks that keep to the game's names are joined a
 from functools import lru_cache
 from typing import NamedTuple
 
+from world2minecraft.minecraft.block_states import complete, parse_state
+from world2minecraft.minecraft.rules.name_patterns import is_among
 from world2minecraft.minecraft.rules.supports import DIRECTIONS, faces_of
-from world2minecraft.minecraft.rules.tables import is_among
-from world2minecraft.minecraft.states import complete, parse_state
 
 (OTHER, STAIRS, PANE, FENCE, BRICK_FENCE, GATE, WALL, DOOR, CHEST, LEAVES, SNOWY, CAMPFIRE,
  LOG, OLD_WALL) = range(14)  # fmt: skip

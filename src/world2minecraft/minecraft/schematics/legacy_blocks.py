@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 
-from world2minecraft.minecraft.game_names import read_state
-from world2minecraft.minecraft.states import complete, parse_state
+from world2minecraft.minecraft.block_names import read_state
+from world2minecraft.minecraft.block_states import complete, parse_state
 
 FLATTENING = 1519  # 1.13: the table's states are named as that game names them.
 _MOD_NAME = re.compile(r"[a-z0-9_.-]+:[a-z0-9_./-]+")

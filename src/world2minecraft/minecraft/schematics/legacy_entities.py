@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from world2minecraft.core.types import BlockEntity, Entity
-from world2minecraft.minecraft.rules.attached import attached
+from world2minecraft.minecraft.block_states import BlockState, parse_state
+from world2minecraft.minecraft.rules.attached_entities import attached
 from world2minecraft.minecraft.sign_texts import sign_of_today
-from world2minecraft.minecraft.states import BlockState, parse_state
 
 Corner = tuple[int, int, int]
 COLOURS = (

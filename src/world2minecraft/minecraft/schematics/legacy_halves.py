@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from world2minecraft.minecraft.states import BlockState, parse_state
+from world2minecraft.minecraft.block_states import BlockState, parse_state
 
 _PLANTS = ("sunflower", "lilac", "tall_grass", "large_fern", "rose_bush", "peony")
 PLANTS = tuple(f"minecraft:{name}" for name in _PLANTS)

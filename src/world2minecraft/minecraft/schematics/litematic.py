@@ -16,8 +16,8 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
+from world2minecraft.minecraft.block_entities import in_game
 from world2minecraft.minecraft.entities import entity_nbt
-from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import (
     Long,
@@ -27,8 +27,16 @@ from world2minecraft.minecraft.nbt import (
     unpack,
     write_nbt,
 )
-from world2minecraft.minecraft.rules.attached import attached
-from world2minecraft.minecraft.schematics.unlabelled import (
+from world2minecraft.minecraft.rules.attached_entities import attached
+from world2minecraft.minecraft.sign_texts import signs_of_today
+from world2minecraft.minecraft.state_nbt import palette_texts, state_entry
+from world2minecraft.minecraft.straddled import (
+    bits_for,
+    pack_straddled,
+    unpack_straddled,
+    words_for,
+)
+from world2minecraft.minecraft.unlabelled_volume import (
     MAX_CELLS,
     MAX_FILE_BYTES,
     MISSHAPEN,
@@ -40,15 +48,7 @@ from world2minecraft.minecraft.schematics.unlabelled import (
     stated_corner,
     unlabelled,
 )
-from world2minecraft.minecraft.sign_texts import signs_of_today
 from world2minecraft.minecraft.versions import GameVersion, game_version
-from world2minecraft.minecraft.worlds.entries import palette_texts, state_entry
-from world2minecraft.minecraft.worlds.straddled import (
-    bits_for,
-    pack_straddled,
-    unpack_straddled,
-    words_for,
-)
 
 LIMITS = NbtLimits()
 MAX_REGIONS = 4096

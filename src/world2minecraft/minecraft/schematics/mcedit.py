@@ -26,7 +26,7 @@ from world2minecraft.minecraft.schematics.legacy_entities import (
     state_with,
 )
 from world2minecraft.minecraft.schematics.legacy_halves import join_halves
-from world2minecraft.minecraft.schematics.unlabelled import (
+from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
     MISSHAPEN,
     check_size,

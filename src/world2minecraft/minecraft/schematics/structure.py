@@ -14,13 +14,19 @@ import numpy as np
 from world2minecraft.core.errors import DamagedFileError, LimitError, UsageError
 from world2minecraft.core.files import read_bytes, write_bytes
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume, Entity
-from world2minecraft.minecraft.block_list import BlockList, BlockListReader, block_list_bytes
+from world2minecraft.minecraft.block_entities import in_game
 from world2minecraft.minecraft.entities import entity_nbt
-from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.nbt import NbtLimits, pack_gzip, unpack, write_nbt
-from world2minecraft.minecraft.rules.attached import TILE, attached, attached_block
-from world2minecraft.minecraft.schematics.unlabelled import (
+from world2minecraft.minecraft.rules.attached_entities import TILE, attached, attached_block
+from world2minecraft.minecraft.schematics.block_list import (
+    BlockList,
+    BlockListReader,
+    block_list_bytes,
+)
+from world2minecraft.minecraft.sign_texts import signs_of_today
+from world2minecraft.minecraft.state_nbt import palette_texts, state_entry
+from world2minecraft.minecraft.unlabelled_volume import (
     MAX_FILE_BYTES,
     MISSHAPEN,
     check_size,
@@ -29,9 +35,7 @@ from world2minecraft.minecraft.schematics.unlabelled import (
     stated_corner,
     unlabelled,
 )
-from world2minecraft.minecraft.sign_texts import signs_of_today
 from world2minecraft.minecraft.versions import GameVersion, game_version
-from world2minecraft.minecraft.worlds.entries import palette_texts, state_entry
 
 LIMITS = NbtLimits()
 DEFAULT_GAME = 3465  # 1.20.1, for a file that does not say its game.

@@ -8,7 +8,9 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.commands.writing import (
+from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.block_states import BlockState, parse_state
+from world2minecraft.minecraft.commands.writer import (
     air_commands,
     block_commands,
     chunk_rows,
@@ -17,10 +19,8 @@ from world2minecraft.minecraft.commands.writing import (
     entity_tag,
     state_in_version,
 )
-from world2minecraft.minecraft.game_data import in_game
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.server.rcon import MAX_COMMAND_BYTES
-from world2minecraft.minecraft.states import BlockState, parse_state
 from world2minecraft.minecraft.versions import GameVersion
 
 PROBE_STEP = 64  # Blocks between the places at which it is asked whether chunks are loaded.

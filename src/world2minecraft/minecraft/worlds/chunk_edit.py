@@ -11,8 +11,8 @@ from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.types import AIR, BlockEntity
 from world2minecraft.minecraft.nbt import Byte, Long, NbtLimits, NbtReader
 from world2minecraft.minecraft.packing import SECTION, pack_section, unpack_section
-from world2minecraft.minecraft.worlds.entries import state_entry, state_text
-from world2minecraft.minecraft.worlds.section_words import words_of_today
+from world2minecraft.minecraft.section_words import words_of_today
+from world2minecraft.minecraft.state_nbt import state_entry, state_text
 
 FIRST_DATA_VERSION = 2860  # 1.18, the first game with this layout.
 FULL = ("minecraft:full", "full")

@@ -20,8 +20,8 @@ from world2minecraft.minecraft.nbt import (
     write_nbt,
 )
 from world2minecraft.minecraft.packing import skip_texts
+from world2minecraft.minecraft.state_nbt import state_text
 from world2minecraft.minecraft.versions import GameVersion
-from world2minecraft.minecraft.worlds.entries import state_text
 from world2minecraft.minecraft.worlds.old_chunks import (
     FIRST_DATA_VERSION,
     FIRST_WITHOUT_LEVEL,

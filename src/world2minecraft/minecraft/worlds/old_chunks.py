@@ -13,8 +13,8 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.minecraft.nbt import Byte, Long, write_nbt
+from world2minecraft.minecraft.section_words import words_before_1_16
 from world2minecraft.minecraft.versions import GameVersion
-from world2minecraft.minecraft.worlds.section_words import words_before_1_16
 from world2minecraft.minecraft.worlds.sections import Section, SectionPacker, section_of
 
 FIRST_DATA_VERSION = 1451  # 17w47a, the first with palettes of named blocks.

@@ -9,11 +9,11 @@ import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.types import AIR
-from world2minecraft.minecraft.game_names import read_state
+from world2minecraft.minecraft.block_names import read_state
 from world2minecraft.minecraft.packing import SECTION, pack_section
-from world2minecraft.minecraft.schematics.unlabelled import MISSHAPEN
-from world2minecraft.minecraft.worlds.entries import state_entry, state_text
-from world2minecraft.minecraft.worlds.section_words import words_of_today
+from world2minecraft.minecraft.section_words import words_of_today
+from world2minecraft.minecraft.state_nbt import state_entry, state_text
+from world2minecraft.minecraft.unlabelled_volume import MISSHAPEN
 
 
 @dataclass(frozen=True)

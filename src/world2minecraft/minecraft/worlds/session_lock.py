@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from world2minecraft.core.errors import ConflictError, OutputError
-from world2minecraft.minecraft.worlds.level import no_world
+from world2minecraft.minecraft.worlds.level_dat import no_world
 
 try:
     import fcntl

@@ -5,10 +5,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from world2minecraft.minecraft.block_states import parse_state
+from world2minecraft.minecraft.collision_shapes import boxes_of, is_full_cube
 from world2minecraft.minecraft.rules.flood import DIMS, SHUT, SOLID
 from world2minecraft.minecraft.rules.light import lets_light_through, light_of
-from world2minecraft.minecraft.shapes import boxes_of, is_full_cube
-from world2minecraft.minecraft.states import parse_state
 
 # States whose shape holds light back face by face; the game's own list, in its words.
 SHAPED = (

@@ -4,10 +4,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.blocks import block_table
 from world2minecraft.minecraft.glow import is_luminous
 from world2minecraft.minecraft.rules.light import BRIGHTEST, light_of
-from world2minecraft.minecraft.states import BlockState, complete, parse_state
 from world2minecraft.minecraft.visual import visual_boxes_of
 from world2minecraft.render.elements import BlockModel, Element
 from world2minecraft.render.looks.parts import PLAIN, Dress, box_element, elements_of

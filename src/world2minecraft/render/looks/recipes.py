@@ -9,7 +9,7 @@ texture, so that a stem must be reckoned in with its flower. Braces hold the nam
 
 from collections.abc import Mapping
 
-from world2minecraft.minecraft.colours import colour_of
+from world2minecraft.minecraft.block_colours import colour_of
 
 PREFIX = "own:"
 

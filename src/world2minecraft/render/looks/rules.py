@@ -22,8 +22,8 @@ from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Any
 
+from world2minecraft.minecraft.block_states import BlockState
 from world2minecraft.minecraft.blocks import block_table
-from world2minecraft.minecraft.states import BlockState
 
 FILES = (
     "cubes.json",

@@ -5,7 +5,7 @@ A still one shows its still texture above; what flows shows the flowing one at i
 
 from collections.abc import Callable
 
-from world2minecraft.minecraft.states import BlockState
+from world2minecraft.minecraft.block_states import BlockState
 from world2minecraft.render.elements import BlockModel, Element, FaceLook, face_uv
 from world2minecraft.render.packs.tints import Tint
 from world2minecraft.render.texture import Texture

@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from world2minecraft.minecraft.block_states import BlockState
 from world2minecraft.minecraft.blocks import block_table
-from world2minecraft.minecraft.states import BlockState
 from world2minecraft.minecraft.versions import name_in_version, new_names
 from world2minecraft.minecraft.visual import family_of, visual_boxes_of
 from world2minecraft.render.elements import FACE_NAMES, BlockModel, Element, FaceLook, face_uv

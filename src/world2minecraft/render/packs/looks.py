@@ -10,8 +10,8 @@ from functools import partial
 from pathlib import Path
 
 from world2minecraft.core.errors import UsageError
+from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
 from world2minecraft.minecraft.glow import is_luminous
-from world2minecraft.minecraft.states import BlockState, complete, parse_state
 from world2minecraft.render.elements import BlockModel, Element
 from world2minecraft.render.packs.blockstates import Part, parts_of
 from world2minecraft.render.packs.fluids import FLUIDS, fluid_model

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Mapping
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.minecraft.states import BlockState
+from world2minecraft.minecraft.block_states import BlockState
 
 Colour = tuple[int, int, int]
 Tint = Colour | None

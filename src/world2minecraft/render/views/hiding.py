@@ -1,6 +1,6 @@
 """What hides the view in a volume, and which cells have something above: one truth a cell.
 
-Where a person may stand, and the ways between, is told by ``walk.graph``.
+Where a person may stand, and the ways between, is told by ``minecraft.physics.graph``.
 """
 
 from dataclasses import dataclass
@@ -9,9 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.minecraft.shapes import boxes_of
+from world2minecraft.minecraft.collision_shapes import boxes_of
+from world2minecraft.minecraft.physics.doors import is_door
 from world2minecraft.minecraft.visual import visual_boxes_of
-from world2minecraft.walk.doors import is_door
 
 ROOF = 0.2  # Blocks: what is lower, such as a carpet, is no roof.
 SIGHT_SHARE = 0.3  # Of a cell's side: what is narrower hides little.

@@ -8,11 +8,11 @@ from scipy.ndimage import gaussian_filter1d
 from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume, Camera
+from world2minecraft.minecraft.physics.doors import is_shut, opened
 from world2minecraft.render.views.heading import best_headings
 from world2minecraft.render.views.hiding import Hiding, hiding_of
 from world2minecraft.render.views.poses import GamePose, Shot
 from world2minecraft.render.views.ways import Ways
-from world2minecraft.walk.doors import is_shut, opened
 
 SAMPLE_M = 0.15  # Between places of the way at which one decides where to look.
 SMOOTH_M = 0.45  # Corners are rounded so much,

@@ -10,10 +10,10 @@ from typing import Literal
 
 import numpy as np
 
+from world2minecraft.minecraft.physics.body import HEIGHT, WIDTH
+from world2minecraft.minecraft.physics.graph import columns_per_block
 from world2minecraft.rooms.house_gaps import Gap, house_gaps
 from world2minecraft.rooms.house_plan import WALL_M, Cell, HousePlan, plan_house
-from world2minecraft.walk.body import HEIGHT, WIDTH
-from world2minecraft.walk.graph import columns_per_block
 
 RAIL = 1  # A rail takes a block.
 

@@ -5,9 +5,9 @@ import numpy as np
 from world2minecraft.build.spawn import Spawn, find_spawn
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.physics.graph import WalkGraph, walk_graph
+from world2minecraft.minecraft.physics.shortest_paths import parts, reachable
 from world2minecraft.rooms.worlds.house import BlockHouse, BlockRoom
-from world2minecraft.walk.graph import WalkGraph, walk_graph
-from world2minecraft.walk.paths import parts, reachable
 
 LEVEL = 0.5  # Blocks: carpets lie on a floor, slabs stand on it.
 

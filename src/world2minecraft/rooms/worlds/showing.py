@@ -295,7 +295,7 @@ class Show:
 
     def _is_top(self, cell: Corner) -> bool:
         """Whether a block has a whole top that things stand on."""
-        from world2minecraft.minecraft.shapes import boxes_of  # noqa: PLC0415
+        from world2minecraft.minecraft.collision_shapes import boxes_of  # noqa: PLC0415
 
         boxes = boxes_of(self.canvas.palette[int(self.canvas.states[cell])])
         whole = (boxes[:, 3] - boxes[:, 0] > 0.99) & (boxes[:, 5] - boxes[:, 2] > 0.99)

@@ -11,7 +11,7 @@ from world2minecraft.core.progress import Progress, silent
 from world2minecraft.exchange.layout import write_layouts
 from world2minecraft.exchange.scene import scene_of, write_scene
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
-from world2minecraft.minecraft.worlds.world import write_world
+from world2minecraft.minecraft.worlds.world_writer import write_world
 from world2minecraft.rooms.worlds.layouts import house_layouts
 from world2minecraft.rooms.worlds.making import HouseWorld, generate_world
 

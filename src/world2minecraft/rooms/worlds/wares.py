@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.minecraft.states import known_blocks
+from world2minecraft.minecraft.block_states import known_blocks
 
 MOUNTS = ("board", "tall", "soil", "wall", "hanging", "water", "bed")
 HOME = "home"

@@ -10,12 +10,12 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from world2minecraft.core.coordinates import apply, invert
+from world2minecraft.minecraft.physics.shortest_paths import elbow_room_m, shortest_path
 from world2minecraft.vln.data.stream import StreamFrame, wrapped_deg
 from world2minecraft.vln.landmarks import Landmark
 from world2minecraft.vln.language.naming import told_apart
 from world2minecraft.vln.scene import VlnScene
 from world2minecraft.vln.values import Stance
-from world2minecraft.walk.paths import elbow_room_m, shortest_path
 
 EVERY_S = 0.2
 SPEED_M_S, TURN_DEG_S = 1.0, 90.0

@@ -6,10 +6,11 @@ import numpy as np
 from gymnasium import spaces
 
 from world2minecraft.core.errors import UsageError
+from world2minecraft.minecraft.physics import BlockWorld, Body, Keys
+from world2minecraft.minecraft.physics import player_motion as step
 from world2minecraft.vln.moves import moved, wrapped_yaw
 from world2minecraft.vln.scene import VlnScene
 from world2minecraft.vln.values import Move, MoveSet, Stance
-from world2minecraft.walk import BlockWorld, Body, Keys, step
 
 KEYS = ("forward", "back", "left", "right", "jump", "sneak", "sprint")
 MOST_RUN = 12  # Moves of one run: 3 m of steps, or half a turn.

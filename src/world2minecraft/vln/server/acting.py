@@ -1,12 +1,12 @@
 """How an agent acts by a body on a server: moves made by keys, or the keys themselves."""
 
+from world2minecraft.minecraft.physics import Body, Keys
 from world2minecraft.vln.environment.acting import Continuous, Discrete
 from world2minecraft.vln.moves import forward_blocks, heading, wrapped_yaw
 from world2minecraft.vln.scene import VlnScene
 from world2minecraft.vln.server.body import ServerBody
 from world2minecraft.vln.server.pace import forward_keys
 from world2minecraft.vln.values import Move, MoveSet, Stance
-from world2minecraft.walk import Body, Keys
 
 SHORT = 0.9  # Of a step: who came less far met something.
 

@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 
 from world2minecraft.core.errors import ServerError, UsageError
 from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.physics import TICKS_PER_S, Body, Keys
 from world2minecraft.vln.server.blocks import checked_box, data_version_of, read_blocks, state_of
 from world2minecraft.vln.server.bridge import Bridge
 from world2minecraft.vln.server.installing import body_folder, node, script
-from world2minecraft.walk import TICKS_PER_S, Body, Keys
 
 PORT = 25565
 NAME = "w2m_walker"

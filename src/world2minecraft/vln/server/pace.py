@@ -6,7 +6,8 @@ come to within 0.03 blocks of any length that is no shorter than a tick of sneak
 
 from functools import lru_cache
 
-from world2minecraft.walk import Body, BoxWorld, Keys, step
+from world2minecraft.minecraft.physics import Body, BoxWorld, Keys
+from world2minecraft.minecraft.physics import player_motion as step
 
 MOST_SNEAKING = 9  # Ticks: with as many, most lengths are met to a hundredth.
 MOST_BLOCKS = 16.0

@@ -1,0 +1,287 @@
+"""Bedrock's structure file, ``.mcstructure``: written by a mapping of states, and read back.
+
+Uncompressed little-endian NBT: ``size``, two layers of palette numbers in the order x, y, z with z
+running fastest (-1 leaves what is there), a palette of names and states, and block entities by
+place. The second layer holds the water that blocks stand in. Entities of Java have no counterpart.
+"""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.errors import DamagedFileError, UsageError
+from world2minecraft.core.files import read_bytes, write_bytes
+from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
+from world2minecraft.minecraft.bedrock.block_entities import (
+    bedrock_data,
+    is_told,
+    java_data,
+    java_of_entry,
+    java_state,
+    palette_entry,
+)
+from world2minecraft.minecraft.bedrock.nbt_little_endian import read_little, write_little
+from world2minecraft.minecraft.bedrock.states import bedrock_of_java, is_kept, java_of_bedrock
+from world2minecraft.minecraft.block_states import complete, parse_state
+from world2minecraft.minecraft.file_format import FileFormat, WriteOptions
+from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.nbt import NbtLimits
+from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.unlabelled_volume import check_size, palette_of, unlabelled
+
+FORMAT_VERSION = 1
+MAX_BYTES = 96 << 20  # 12 million blocks, eight bytes each; the numbers are read in place.
+LIMITS = NbtLimits(bytes=MAX_BYTES)
+WATER = "minecraft:water[level=0]"
+IN_WATER = ("kelp", "kelp_plant", "seagrass", "tall_seagrass", "bubble_column")
+NOTHING = -1
+
+
+def write_mcstructure(volume: BlockVolume, path: str | Path, losses: Losses | None = None) -> None:
+    """Write a volume for Bedrock 1.20 and later; ``structure_world_origin`` is its corner.
+
+    A block that Bedrock does not have becomes air and is counted in ``losses``, by its name.
+
+    Raises:
+        UsageError: the volume is empty or larger than is read back.
+        OutputError: it cannot be written.
+    """
+    told = Losses() if losses is None else losses
+    if not volume.states.size or volume.states.size * 8 > MAX_BYTES - (1 << 20):
+        raise UsageError(f"a .mcstructure holds 1 to 12 million blocks, not {volume.states.size:,}")
+    _count_losses(volume, told)
+    palette, numbers, is_wet = _bedrock_palette(volume.palette)
+    cells = np.ascontiguousarray(volume.states).ravel()  # x, y, z with z fastest, as ours are.
+    water = palette.index(palette_entry(*_bedrock(WATER)))
+    tree = {
+        "format_version": FORMAT_VERSION,
+        "size": np.array(volume.states.shape, np.int32),
+        "structure": {
+            "block_indices": [
+                numbers[cells],
+                np.where(is_wet, water, NOTHING).astype(np.int32)[cells],
+            ],
+            "entities": [],
+            "palette": {
+                "default": {
+                    "block_palette": palette,
+                    "block_position_data": _position_data(volume),
+                }
+            },
+        },
+        "structure_world_origin": np.array(volume.corner, np.int32),
+    }
+    write_bytes(path, write_little(tree))
+
+
+def read_mcstructure(path: str | Path, losses: Losses | None = None) -> BlockVolume:
+    """Read a structure of Bedrock 1.17 to 1.26, without labels and with one block a metre.
+
+    A block that Java does not have keeps its Bedrock name and is counted in ``losses``.
+
+    Raises:
+        InputError: there is no file. DamagedFileError: it is no structure.
+        LimitError: it is larger than the program reads.
+    """
+    told, source = Losses() if losses is None else losses, Path(path)
+    tree = read_little(read_bytes(source, MAX_BYTES), source, LIMITS)
+    try:
+        return _volume_of(tree, source, told)
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+        missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
+        raise DamagedFileError(source, f"is no Bedrock structure{missing}") from error
+
+
+class McstructureFormat(FileFormat):
+    """A structure of Bedrock Edition."""
+
+    suffix = ".mcstructure"
+
+    def read(self, path: Path, losses: Losses) -> BlockVolume:
+        """Read it."""
+        return read_mcstructure(path, losses)
+
+    def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
+        """Write it; the version of Java does not matter."""
+        write_mcstructure(volume, path, losses)
+
+
+# Writing.
+
+
+def _bedrock(state: str) -> tuple[str, dict[str, Any]]:
+    """Return the Bedrock block of a state, air where there is none."""
+    return bedrock_of_java(state) or ("minecraft:air", {})
+
+
+def _bedrock_palette(
+    states: Iterable[str],
+) -> tuple[list[dict[str, Any]], np.ndarray, np.ndarray]:
+    """Return the palette, our states' numbers in it, int32 [P], and which stand in water."""
+    number_of: dict[str, int] = {}
+    palette: list[dict[str, Any]] = []
+    numbers, is_wet = [], []
+    for state in [*states, WATER]:
+        name, values = _bedrock(state)
+        key = f"{name}{sorted(values.items())}"
+        if key not in number_of:
+            number_of[key] = len(palette)
+            palette.append(palette_entry(name, values))
+        numbers.append(number_of[key])
+        parsed = parse_state(state)
+        in_water = parsed.name.partition(":")[2] in IN_WATER
+        is_wet.append(in_water or parsed.get("waterlogged") == "true")
+    return palette, np.array(numbers[:-1], np.int32), np.array(is_wet[:-1], bool)
+
+
+def _position_data(volume: BlockVolume) -> dict[str, Any]:
+    """Return the block entities by the number of their cell."""
+    held = {entity.block_pos: (entity.id, entity.nbt) for entity in volume.block_entities}
+    speaking = [n for n, state in enumerate(volume.palette) if bedrock_data(state)]
+    cells = {tuple(cell) for cell in np.argwhere(np.isin(volume.states, speaking)).tolist()}
+    for place in held:
+        cell = tuple(int(a) - b for a, b in zip(place, volume.corner, strict=True))
+        if all(0 <= c < side for c, side in zip(cell, volume.states.shape, strict=True)):
+            cells.add(cell)
+    result = {}
+    for cell in sorted(cells):
+        x, y, z = (c + low for c, low in zip(cell, volume.corner, strict=True))
+        state = volume.palette[volume.states[cell]]
+        data = bedrock_data(state, held.get((x, y, z)), (x, y, z))
+        if data is not None:
+            number = np.ravel_multi_index(cell, volume.states.shape)
+            result[str(int(number))] = {"block_entity_data": data}
+    return result
+
+
+def _count_losses(volume: BlockVolume, losses: Losses) -> None:
+    counts = np.bincount(volume.states.ravel(), minlength=len(volume.palette))
+    for state, count in zip(volume.palette, counts.tolist(), strict=True):
+        bedrock = bedrock_of_java(state)
+        if bedrock is None:
+            losses.add(f"blocks of {parse_state(state).name}, which Bedrock has not", count)
+            continue
+        back = java_of_bedrock(*bedrock) or AIR
+        back = java_state(back, bedrock_data(state) or {})
+        if not is_kept(state, back):
+            losses.add("blocks with a state that Bedrock does not tell", count)
+    state_at = _states_by_place(volume)
+    for entity in volume.block_entities:
+        kept = bedrock_data(state_at.get(entity.block_pos, AIR), (entity.id, entity.nbt))
+        if kept is None and entity.nbt:
+            losses.add(f"data of blocks ({entity.id.removeprefix('minecraft:')})")
+    losses.add("entities", len(volume.entities))
+
+
+def _states_by_place(volume: BlockVolume) -> dict[tuple[int, int, int], str]:
+    """Return the states at the places of block entities."""
+    result = {}
+    for entity in volume.block_entities:
+        cell = tuple(int(a) - b for a, b in zip(entity.block_pos, volume.corner, strict=True))
+        if all(0 <= c < side for c, side in zip(cell, volume.states.shape, strict=True)):
+            result[entity.block_pos] = volume.palette[volume.states[cell]]
+    return result
+
+
+# Reading.
+
+
+def _volume_of(tree: Mapping[str, Any], source: Path, losses: Losses) -> BlockVolume:
+    shape = check_size(tree["size"], source)
+    structure = tree["structure"]
+    layers = [np.asarray(layer) for layer in structure["block_indices"]]
+    count = int(np.prod(shape))
+    if not layers or any(layer.shape != (count,) for layer in layers[:2]):
+        raise DamagedFileError(source, f"says {count:,} blocks and its layers hold others")
+    held = structure["palette"]["default"]
+    entries = held["block_palette"]
+    if any(layer.size and not -1 <= layer.min() <= layer.max() < len(entries) for layer in layers):
+        raise DamagedFileError(source, "has a block of a number that its palette lacks")
+    texts = [_java_text(entry, source) for entry in entries]
+    _count_unknown(entries, layers[0], losses)
+    x, y, z = (int(value) for value in tree.get("structure_world_origin", (0, 0, 0)))
+    wet = _wet_cells(layers, texts)
+    names = [*texts, AIR]  # -1 is the last: what a structure leaves alone is air here.
+    placed = _with_data(held.get("block_position_data", {}), layers[0], names, shape, source)
+    every = {*names, *(_wet(text) for text in names), *(state for state, _ in placed.values())}
+    every |= {_wet(state) for state, _ in placed.values()}
+    palette, number_of = palette_of(every, source)
+    ours = np.array([number_of[text] for text in names], np.uint16)
+    in_water = np.array([number_of[_wet(text)] for text in names], np.uint16)
+    states = np.where(wet, in_water[layers[0]], ours[layers[0]]).reshape(shape)
+    block_entities = []
+    for number, (state, data) in sorted(placed.items()):
+        cell = np.unravel_index(number, shape)
+        states[cell] = number_of[_wet(state) if wet[number] else state]
+        java = java_data(data)
+        if not is_told(data):
+            losses.add(f"data of blocks ({str(data.get('id'))[:30]})")
+        if java is not None:
+            place = tuple(int(c) + low for c, low in zip(cell, (x, y, z), strict=True))
+            block_entities.append(BlockEntity(place, *java))  # type: ignore[arg-type]
+    losses.add("entities", len(structure.get("entities", [])))
+    # What Bedrock leaves to its neighbours a Java file must state.
+    states, palette = connected(states, palette)
+    return _trimmed_palette(states, palette, (x, y, z), block_entities)
+
+
+def _trimmed_palette(
+    states: np.ndarray,
+    palette: tuple[str, ...],
+    corner: tuple[int, int, int],
+    block_entities: list[BlockEntity],
+) -> BlockVolume:
+    """Return the volume with the states of its palette that it has, and air."""
+    kept = sorted({0, *np.unique(states).tolist()})
+    lookup = np.zeros(len(palette), np.uint16)
+    lookup[kept] = np.arange(len(kept))
+    names = tuple(palette[number] for number in kept)
+    return unlabelled(lookup[states], names, corner, block_entities)
+
+
+def _java_text(entry: Mapping[str, Any], source: Path) -> str:
+    """Return the Java state of a palette's entry; an unknown block keeps its Bedrock name."""
+    found = java_of_entry(entry)
+    if found is not None:
+        return found
+    try:
+        return str(parse_state(str(entry["name"])))
+    except UsageError as error:
+        raise DamagedFileError(source, f"has a palette with {error}") from error
+
+
+def _count_unknown(entries: list[Any], cells: np.ndarray, losses: Losses) -> None:
+    counts = np.bincount(cells[cells >= 0], minlength=len(entries))
+    for entry, count in zip(entries, counts.tolist(), strict=True):
+        if java_of_entry(entry) is None:
+            losses.add(f"blocks of {str(entry['name'])[:60]}, which Java has not", count)
+
+
+def _wet_cells(layers: list[np.ndarray], texts: list[str]) -> np.ndarray:
+    """Return which cells have water in the second layer, bool [N]."""
+    if len(layers) < 2:
+        return np.zeros(len(layers[0]), bool)
+    is_water = np.array([text.startswith("minecraft:water[") for text in texts] + [False])
+    return is_water[layers[1]]
+
+
+def _wet(state: str) -> str:
+    """Return a state as it stands in water, where it can."""
+    parsed = complete(parse_state(state))
+    return str(parsed.having(waterlogged="true")) if parsed.get("waterlogged") else state
+
+
+def _with_data(
+    stated: Mapping[str, Any], cells: np.ndarray, names: list[str], shape: Any, source: Path
+) -> dict[int, tuple[str, Mapping[str, Any]]]:
+    """Return state and data of the cells whose block entity says what they are."""
+    result = {}
+    for key, row in stated.items():
+        if not key.isdecimal() or int(key[:12]) >= len(cells):
+            raise DamagedFileError(source, f"has data for a block of number {key[:20]!r}")
+        data = row.get("block_entity_data") if isinstance(row, Mapping) else None
+        if isinstance(data, Mapping):
+            result[int(key)] = (java_state(names[cells[int(key)]], data), data)
+    return result

@@ -1,0 +1,145 @@
+"""What versions of the game call blocks. Volumes use the names of 1.20.1, the table's version.
+
+A file names its blocks as the game that wrote it: readers bring the names to those of 1.20.1 and
+writers to those of the game that is written for, so that a volume means the same whatever it came
+from. Blocks that a game does not know stay as they are, and are counted as lost.
+"""
+
+import json
+from collections.abc import Callable
+from functools import cache, lru_cache
+from importlib.resources import files
+
+import numpy as np
+
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.block_entities import count_lost_data
+from world2minecraft.minecraft.block_states import BlockState, parse_state
+from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.versions import GameVersion, name_in_version, new_names
+
+FIRST_1_14 = 1952  # Its first release; the names changed in snapshots before.
+FIRST_1_16 = 2566
+FIRST_1_17 = 2724
+FIRST_DISPLAYS = 3337  # 1.19.4.
+DISPLAYS = tuple(f"minecraft:{kind}_display" for kind in ("block", "item", "text"))
+_OLD_SIGNS = {
+    "minecraft:sign": "minecraft:oak_sign",
+    "minecraft:wall_sign": "minecraft:oak_wall_sign",
+}
+_SLABS = ("minecraft:stone_slab", "minecraft:smooth_stone_slab")  # In 1.13, and since.
+_PATHS = ("minecraft:grass_path", "minecraft:dirt_path")  # Until 1.16, and since.
+_CAULDRONS = ("minecraft:cauldron", "minecraft:water_cauldron")
+_SIDES = ("east", "north", "south", "west")
+
+
+@lru_cache(maxsize=1 << 16)
+def read_state(text: str, data_version: int) -> str:
+    """Return a state as 1.20.1 calls it.
+
+    Args:
+        text: the canonical text of a state in a file.
+        data_version: that of the game that wrote the file.
+
+    Example:
+        >>> read_state("minecraft:short_grass", 3700), read_state("minecraft:sign", 1519)
+        ('minecraft:grass', 'minecraft:oak_sign')
+    """
+    name, bracket, rest = text.partition("[")
+    if name in new_names():  # No older block was ever called so.
+        return new_names()[name] + bracket + rest
+    if data_version >= FIRST_1_17:
+        return text
+    if name in _OLD_SIGNS:
+        return _OLD_SIGNS[name] + bracket + rest
+    if name == _PATHS[0]:
+        return _PATHS[1]
+    if name == _SLABS[0] and data_version < FIRST_1_14:
+        return _SLABS[1] + bracket + rest
+    if name == _CAULDRONS[0] and bracket:
+        level = parse_state(text).get("level")
+        return f"{_CAULDRONS[1]}[level={level}]" if level != "0" else _CAULDRONS[0]
+    if name.endswith("_wall") and data_version < FIRST_1_16:
+        return _with_sides(text, lambda value: {"true": "low", "false": "none"}.get(value, value))
+    return text
+
+
+@lru_cache(maxsize=1 << 16)
+def written_state(text: str, data_version: int) -> str:
+    """Return a state of 1.20.1 as another version of the game calls it.
+
+    Example:
+        >>> written_state("minecraft:grass", 3700), written_state("minecraft:oak_sign", 1519)
+        ('minecraft:short_grass', 'minecraft:sign')
+    """
+    name, bracket, rest = text.partition("[")
+    if data_version >= FIRST_1_17:
+        return name_in_version(name, data_version) + bracket + rest
+    if name in _CAULDRONS:
+        level = parse_state(text).get("level", "3" if name == _CAULDRONS[1] else "0")
+        return f"{_CAULDRONS[0]}[level={level}]"
+    if name == _PATHS[1]:
+        return _PATHS[0]
+    if data_version < FIRST_1_16 and name.endswith("_wall"):
+        return _with_sides(text, lambda value: "false" if value == "none" else "true")
+    if data_version < FIRST_1_14:
+        known = {new: old for old, new in _OLD_SIGNS.items()} | {_SLABS[1]: _SLABS[0]}
+        return known.get(name, name) + bracket + rest
+    return text
+
+
+def count_unknown(volume: BlockVolume, version: GameVersion, losses: Losses) -> None:
+    """Count the blocks and displays of a volume that a version of the game does not know yet.
+
+    They are written by their names; the game puts air in their place, or nothing. What things in
+    chests carry is counted where the game keeps it in another form.
+    """
+    count_lost_data(volume, version.data_version, losses)
+    if version.data_version < FIRST_DISPLAYS:
+        shown = sum(entity.id in DISPLAYS for entity in volume.entities)
+        losses.add(f"display entities, which Minecraft {version.name} does not know", shown)
+    unknown = [is_unknown(state, version.data_version) for state in volume.palette]
+    if not any(unknown):
+        return
+    counts = np.bincount(volume.states.ravel(), minlength=len(volume.palette))
+    for state, count, is_lost in zip(volume.palette, counts.tolist(), unknown, strict=True):
+        if is_lost:
+            name = state.partition("[")[0]
+            losses.add(f"blocks {name}, which Minecraft {version.name} does not know", count)
+
+
+def mod_blocks(volume: BlockVolume) -> dict[str, int]:
+    """Return how many blocks are of each mod: they are carried by their names alone."""
+    counts = np.bincount(volume.states.ravel(), minlength=len(volume.palette))
+    found: dict[str, int] = {}
+    for state, count in zip(volume.palette, counts.tolist(), strict=True):
+        space = state.partition(":")[0]
+        if space != "minecraft" and count:
+            found[space] = found.get(space, 0) + count
+    return dict(sorted(found.items()))
+
+
+def is_unknown(state: str, data_version: int) -> bool:
+    """Whether a block of the game came with a later version. Blocks of mods count as known."""
+    name = written_state(state, data_version).partition("[")[0]
+    if state.startswith("minecraft:stone_slab") and data_version < FIRST_1_14:
+        return True  # What has this name there is another slab.
+    return _first_version(name) > data_version
+
+
+def _with_sides(text: str, change: Callable[[str], str]) -> str:
+    state = parse_state(text)
+    sides = {key: change(value) for key, value in state.properties if key in _SIDES}
+    return str(BlockState(state.name, {**dict(state.properties), **sides}))
+
+
+@cache
+def _versions_of() -> dict[str, int]:
+    text = files("world2minecraft.minecraft").joinpath("data/blocks_since.json").read_text("utf-8")
+    return {
+        f"minecraft:{name}": since for since, names in json.loads(text)["since"] for name in names
+    }
+
+
+def _first_version(name: str) -> int:
+    return _versions_of().get(name, 0)

@@ -1,0 +1,68 @@
+"""A plain list of commands, ``.mcfunction``, for any tool that runs commands."""
+
+from pathlib import Path
+
+from world2minecraft.core.files import write_text
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.block_names import count_unknown
+from world2minecraft.minecraft.commands.parser import read_command_list
+from world2minecraft.minecraft.commands.writer import (
+    block_commands,
+    chunk_rows,
+    data_commands,
+    entity_commands,
+    entity_tag,
+)
+from world2minecraft.minecraft.displays import check_displays
+from world2minecraft.minecraft.file_format import FileFormat, WriteOptions
+from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.versions import GameVersion, game_version
+
+CHAIN_LIMIT = 65_536  # The most commands that the game runs of one function.
+
+
+def write_command_list(
+    volume: BlockVolume, path: str | Path, *, version: GameVersion | None = None
+) -> None:
+    """Write the commands that build a volume where it stands, one a line.
+
+    Full blocks come first, so that what hangs or stands on them finds them. The chunks must be
+    loaded; the commands for that stand in remarks at the head.
+
+    Raises:
+        UsageError: the volume has display entities and the game none, or an id is none.
+        OutputError: the file cannot be written.
+    """
+    version = version or game_version()
+    check_displays(volume, version)
+    volume = in_game(volume, version.data_version)
+    commands = [
+        *block_commands(volume, version),
+        *data_commands(volume),
+        # Those of an earlier run go first, so that none ever stands there twice.
+        *([f"kill @e[tag={entity_tag(volume)}]"] if volume.entities else []),
+        *entity_commands(volume),
+    ]
+    head = [f"# {len(commands):,} commands for Minecraft {version.name}, made by World2Minecraft."]
+    if len(commands) > CHAIN_LIMIT:
+        head.append(f"# A function runs {CHAIN_LIMIT:,} at most; a data pack is cut into parts.")
+    head.append("# The chunks must be loaded a moment before:")
+    head += [f"# forceload add {row}" for row in chunk_rows(volume)]
+    write_text(path, "\n".join([*head, *commands]) + "\n")
+
+
+class CommandListFormat(FileFormat):
+    """A plain list of commands."""
+
+    suffix = ".mcfunction"
+
+    def read(self, path: Path, losses: Losses) -> BlockVolume:
+        """Read the blocks that its commands set."""
+        return read_command_list(path, losses)
+
+    def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
+        """Write it for the game's version in the options."""
+        version = game_version(options.mc_version)
+        count_unknown(volume, version, losses)
+        write_command_list(volume, path, version=version)

@@ -1,0 +1,22 @@
+"""How the game's player walks: keys and boxes in, the next twentieth of a second out.
+
+``step`` moves a ``Body`` among the boxes of a world by one tick. ``BlockWorld`` gives the
+collision boxes of blocks, ``BoxWorld`` those of a list. ``standing_place`` finds where to begin.
+"""
+
+from world2minecraft.minecraft.physics.body import TICKS_PER_S, Body, Keys, body_box, eye_height
+from world2minecraft.minecraft.physics.player_motion import step
+from world2minecraft.minecraft.physics.world import BlockWorld, BoxWorld, World, standing_place
+
+__all__ = [
+    "TICKS_PER_S",
+    "BlockWorld",
+    "Body",
+    "BoxWorld",
+    "Keys",
+    "World",
+    "body_box",
+    "eye_height",
+    "standing_place",
+    "step",
+]

@@ -1,0 +1,171 @@
+"""Ways on foot that bend only where they must, as people walk: no zigzag of eight directions.
+
+From a place one walks straight to any other that it sees: a body at each point of the line
+between stands within the bodies of the four places around it, and all of those hang together by
+steps there and back. So a straight way is as free as the steps are; ways turn at places alone,
+so a graph with ``at_corners`` has the true ones. Where the ground drops, ways go by its own steps.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.core.jit import njit
+from world2minecraft.minecraft.physics.graph import WalkGraph
+from world2minecraft.minecraft.physics.shortest_paths import pop, push
+
+LEAST_GAIN_M = 1e-9
+SAME = 1e-9  # Shares of a way that differ by less are one: there it passes a place.
+SWEEPS = 1  # Over all places, in which bends of neighbours are tried; a second gains nothing.
+
+
+class Lattice(NamedTuple):
+    """The places of a graph in rows and columns, and the steps that lead there and back."""
+
+    at: np.ndarray  # int64 [N, 2], the numbers of the columns along x and z
+    xs_m: np.ndarray  # float64 [X], where columns are
+    zs_m: np.ndarray  # float64 [Z]
+    height_m: np.ndarray  # float64 [N]
+    link: np.ndarray  # int32 [N, 9], by 3 * (dx + 1) + dz + 1; -1 for none
+
+
+def lattice_of(graph: WalkGraph) -> Lattice:
+    """Return the lattice of a graph with one place or more."""
+    feet_m = graph.feet / graph.blocks_per_metre
+    (xs_m, x), (zs_m, z) = (np.unique(feet_m[:, axis], return_inverse=True) for axis in (0, 2))
+    at = np.stack([x, z], axis=1).astype(np.int64)
+    begins, ends = graph.edge_from.astype(np.int64), graph.edge_to.astype(np.int64)
+    way = at[ends] - at[begins] + 1
+    link = np.full((len(graph), 9), -1, np.int32)
+    link[begins, 3 * way[:, 0] + way[:, 1]] = ends
+    for side in range(9):  # Steps down without a way back are taken out.
+        there = link[:, side]
+        link[(there < 0) | (link[there, 8 - side] != np.arange(len(graph))), side] = -1
+    return Lattice(at, xs_m, zs_m, feet_m[:, 1].copy(), link)
+
+
+def straight_distances_m(
+    graph: WalkGraph, lattice: Lattice, places: int | np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return how far it is from each place to the nearest of some, and where that way bends first.
+
+    Args:
+        graph: where one walks.
+        lattice: of the graph.
+        places: where ways lead to.
+
+    Returns:
+        Metres, float64 [N], infinite where no way leads; and places, int32 [N]: from each one goes
+        straight to that one, which is itself at an end and -1 where no way leads.
+    """
+    sources = np.atleast_1d(np.asarray(places, np.int64))
+    steps = (graph.edge_start, graph.edge_to, graph.edge_m)
+    away, bend, order = _searched(lattice, steps, graph.backward, sources)
+    for _ in range(SWEEPS):
+        _swept(lattice, steps, order, away, bend)
+    return away, bend
+
+
+@njit
+def straight_m(lattice, here, there):
+    """Return how long the straight way from a place to another is, and back; inf for none.
+
+    Where the ground rises and falls under it, it is as much longer.
+    """
+    i, k = lattice.at[here, 0], lattice.at[here, 1]
+    to_i, to_k = lattice.at[there, 0], lattice.at[there, 1]
+    begin_x, begin_z = lattice.xs_m[i], lattice.zs_m[k]
+    wide, deep = lattice.xs_m[to_i] - begin_x, lattice.zs_m[to_k] - begin_z
+    right, down = np.sign(to_i - i), np.sign(to_k - k)
+    whole = np.sqrt(wide * wide + deep * deep)
+    gone, length = 0.0, 0.0
+    while i != to_i or k != to_k:
+        over_x = (lattice.xs_m[i + right] - begin_x) / wide if i != to_i else 2.0
+        over_z = (lattice.zs_m[k + down] - begin_z) / deep if k != to_k else 2.0
+        if right != 0 and down != 0 and lattice.link[here, 3 * right + down + 4] < 0:
+            return np.inf
+        move_x = right if over_x <= over_z + SAME else 0
+        move_z = down if over_z <= over_x + SAME else 0
+        to = lattice.link[here, 3 * move_x + move_z + 4]
+        if to < 0:
+            return np.inf
+        rise = lattice.height_m[to] - lattice.height_m[here]
+        piece = (min(over_x, over_z) - gone) * whole
+        length += np.sqrt(piece * piece + rise * rise)
+        here, i, k, gone = to, i + move_x, k + move_z, min(over_x, over_z)
+    return length if here == there else np.inf
+
+
+@njit
+def _searched(lattice, steps, back, sources):
+    """Return distances, bends and places in the order of their distance: a lazy Theta* search.
+
+    ``steps`` and ``back`` are starts, ends and lengths of the steps from places and to them. A
+    place takes over the bend of the one before it, unseen; when its turn comes one looks, and
+    where the bend is hidden, or steps are shorter, the best step to a place that is done is taken.
+    """
+    start, to, _ = back
+    count = len(start) - 1
+    away, bend = np.full(count, np.inf), np.full(count, -1, np.int32)
+    keys = np.empty(len(to) + len(sources) + 1)
+    values = np.empty(len(to) + len(sources) + 1, np.int32)
+    order, found, size = np.empty(count, np.int32), 0, 0
+    for source in sources:
+        away[source], bend[source] = 0.0, source
+        size = push(keys, values, size, 0.0, source)
+    done = np.zeros(count, np.bool_)
+    while size > 0:
+        here = values[0]
+        size = pop(keys, values, size)
+        if done[here]:
+            continue
+        if bend[here] != here:
+            _settle(lattice, steps, done, away, bend, here)
+        done[here], order[found] = True, here
+        found += 1
+        for edge in range(start[here], start[here + 1]):
+            there = to[edge]
+            if not done[there]:
+                length = _chord(lattice, there, bend[here]) + away[bend[here]]
+                if length < away[there]:
+                    away[there], bend[there] = length, bend[here]
+                    size = push(keys, values, size, length, there)
+    return away, bend, order[:found].copy()
+
+
+@njit
+def _settle(lattice, steps, done, away, bend, here):
+    """Make sure of the way of a place: straight to its bend, else a step to another place."""
+    start, to, cost = steps
+    away[here] = straight_m(lattice, here, bend[here]) + away[bend[here]]
+    for edge in range(start[here], start[here + 1]):
+        length = away[to[edge]] + cost[edge]
+        if done[to[edge]] and length < away[here] - LEAST_GAIN_M:
+            away[here], bend[here] = length, to[edge]
+
+
+@njit
+def _swept(lattice, steps, order, away, bend):
+    """Shorten ways, nearest places first, by the bends of their neighbours and those after them."""
+    start, to, cost = steps
+    for here in order:
+        for edge in range(start[here], start[here + 1]):
+            if away[to[edge]] + cost[edge] < away[here] - LEAST_GAIN_M:
+                away[here], bend[here] = away[to[edge]] + cost[edge], to[edge]
+            turn = bend[to[edge]]
+            for _ in range(2):
+                if turn < 0 or turn == here or turn == bend[here]:
+                    break
+                if _chord(lattice, here, turn) + away[turn] < away[here] - LEAST_GAIN_M:
+                    length = straight_m(lattice, here, turn) + away[turn]
+                    if length < away[here]:
+                        away[here], bend[here] = length, turn
+                turn = bend[turn]
+
+
+@njit
+def _chord(lattice, here, there):
+    """Return how far apart two places are, level."""
+    x = lattice.xs_m[lattice.at[here, 0]] - lattice.xs_m[lattice.at[there, 0]]
+    z = lattice.zs_m[lattice.at[here, 1]] - lattice.zs_m[lattice.at[there, 1]]
+    return np.sqrt(x * x + z * z)

@@ -1,0 +1,157 @@
+"""One tick, a twentieth of a second, of a player on foot."""
+
+import math
+
+import numpy as np
+
+from world2minecraft.minecraft.physics.body import (
+    AIR_ACCELERATION,
+    AIR_INERTIA,
+    EDGE_STEP,
+    FALL_DRAG,
+    GRAVITY,
+    GROUND_ACCELERATION,
+    GROUND_INERTIA,
+    JUMP_SPEED,
+    JUMP_WAIT,
+    KEY,
+    NEGLIGIBLE,
+    SNEAK,
+    SPRINT,
+    SPRINT_JUMP,
+    STEP_HEIGHT,
+    TOUCH,
+    Body,
+    Keys,
+    body_box,
+)
+from world2minecraft.minecraft.physics.sweep import climbed, overlapping, swept
+from world2minecraft.minecraft.physics.world import World
+
+_MARGIN = 1.0  # Blocks around what a tick can reach.
+
+
+def step(world: World, body: Body, keys: Keys, scale: float = 1.0) -> Body:
+    """Return the player a tick later.
+
+    Args:
+        world: the boxes that stop a player, in blocks.
+        body: the player now.
+        keys: what is held down.
+        scale: how many times larger than the game's the player is; speeds grow alike.
+
+    Example:
+        >>> from world2minecraft.minecraft.physics.world import BoxWorld
+        >>> floor = BoxWorld([[-9, -1, -9, 9, 0, 9]])
+        >>> step(floor, Body((0, 0, 0), on_ground=True), Keys(forward=True)).position
+        (0.0, 0.0, 0.098)
+    """
+    boxes = _around(world, body, scale)
+    crouched = keys.sneak or (body.crouched and not _fits(boxes, body, scale))
+    sprints = keys.sprint and keys.forward and not keys.back and not crouched
+    velocity = [v if abs(v) >= NEGLIGIBLE * scale else 0.0 for v in body.velocity]
+    if body.on_ground:  # One who stands is pressed to the ground, be it in the first tick.
+        velocity[1] = -GRAVITY * FALL_DRAG * scale
+    wait = max(body.jump_wait - 1, 0) if keys.jump else 0
+    if keys.jump and body.on_ground and wait == 0:
+        velocity[1], wait = JUMP_SPEED * scale, JUMP_WAIT
+        _push(velocity, 0.0, SPRINT_JUMP * scale * sprints, keys.yaw_deg)
+    _accelerate(velocity, body.on_ground, keys, crouched, sprints, scale)
+    way = np.array(velocity)
+    if crouched and body.on_ground and velocity[1] <= 0:
+        way = _kept_from_edges(boxes, body, way, scale)
+    gone = _go(boxes, body, way, crouched, scale)
+    stopped = [bool(abs(g - w) > TOUCH * scale) for g, w in zip(gone, way, strict=True)]
+    inertia = GROUND_INERTIA if body.on_ground else AIR_INERTIA
+    fall = 0.0 if stopped[1] else velocity[1]
+    return Body(
+        position=_sum(body.position, gone),
+        velocity=(
+            0.0 if stopped[0] else velocity[0] * inertia,
+            (fall - GRAVITY * scale) * FALL_DRAG,
+            0.0 if stopped[2] else velocity[2] * inertia,
+        ),
+        on_ground=stopped[1] and velocity[1] < 0,
+        crouched=crouched,
+        jump_wait=wait,
+        hit_wall=stopped[0] or stopped[2],
+    )
+
+
+def _around(world: World, body: Body, scale: float) -> np.ndarray:
+    """Return the boxes that this tick may meet."""
+    box = body_box(body.position, scale)
+    reach = np.abs(np.array(body.velocity)) + _MARGIN * scale
+    return world.near(box[:3] - reach, box[3:] + reach)
+
+
+def _fits(boxes: np.ndarray, body: Body, scale: float) -> bool:
+    """Whether one can stand upright."""
+    return not overlapping(boxes, body_box(body.position, scale), TOUCH * scale).any()
+
+
+def _accelerate(
+    velocity: list[float], on_ground: bool, keys: Keys, crouched: bool, sprints: bool, scale: float
+) -> None:
+    slow = KEY * (SNEAK if crouched else 1.0)
+    ahead = (keys.forward - keys.back) * slow
+    aside = (keys.left - keys.right) * slow
+    length = math.hypot(ahead, aside)
+    if length < 0.01:
+        return
+    speed = GROUND_ACCELERATION if on_ground else AIR_ACCELERATION
+    speed *= scale * (SPRINT if sprints else 1.0) / max(length, 1.0)
+    _push(velocity, aside * speed, ahead * speed, keys.yaw_deg)
+
+
+def _push(velocity: list[float], left: float, ahead: float, yaw_deg: float) -> None:
+    """Add to a velocity, in place, by where the player looks."""
+    sine, cosine = math.sin(math.radians(yaw_deg)), math.cos(math.radians(yaw_deg))
+    velocity[0] += left * cosine - ahead * sine
+    velocity[2] += ahead * cosine + left * sine
+
+
+def _go(
+    boxes: np.ndarray, body: Body, way: np.ndarray, crouched: bool, scale: float
+) -> tuple[float, float, float]:
+    """Return how far a body comes, up steps where it stands or lands."""
+    box = body_box(body.position, scale, crouched=crouched)
+    touch = TOUCH * scale
+    gone = swept(boxes, box, way, touch)
+    landed = way[1] < 0 and gone[1] - way[1] > touch
+    blocked = abs(gone[0] - way[0]) > touch or abs(gone[2] - way[2]) > touch
+    if not blocked or not (body.on_ground or landed):
+        return gone
+    up = climbed(boxes, box, way, STEP_HEIGHT * scale, touch)
+    farther = up[0] ** 2 + up[2] ** 2 > gone[0] ** 2 + gone[2] ** 2 + touch**2
+    return up if farther else gone
+
+
+def _kept_from_edges(boxes: np.ndarray, body: Body, way: np.ndarray, scale: float) -> np.ndarray:
+    """Return a way on the ground shortened so that something stays under the feet."""
+    box = body_box(body.position, scale, crouched=True)
+    back = EDGE_STEP * scale
+
+    def over_nothing(x: float, z: float) -> bool:
+        moved = box + np.tile([x, -STEP_HEIGHT * scale, z], 2)
+        return not overlapping(boxes, moved, TOUCH * scale).any()
+
+    x, y, z = way.tolist()
+    while x and over_nothing(x, 0.0):
+        x = _nearer(x, back)
+    while z and over_nothing(0.0, z):
+        z = _nearer(z, back)
+    while x and z and over_nothing(x, z):
+        x, z = _nearer(x, back), _nearer(z, back)
+    return np.array([x, y, z])
+
+
+def _nearer(value: float, by: float) -> float:
+    """Return a value brought nearer to 0."""
+    return 0.0 if abs(value) <= by else value - math.copysign(by, value)
+
+
+def _sum(
+    one: tuple[float, float, float], two: tuple[float, float, float]
+) -> tuple[float, float, float]:
+    return one[0] + two[0], one[1] + two[1], one[2] + two[2]

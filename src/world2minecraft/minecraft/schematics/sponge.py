@@ -1,0 +1,281 @@
+"""Sponge schematics, versions 1 to 3: what WorldEdit and most tools read."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.files import read_bytes, write_bytes
+from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
+from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.block_names import read_state, written_state
+from world2minecraft.minecraft.block_states import parse_state
+from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.nbt import (
+    NbtLimits,
+    Short,
+    pack_gzip,
+    read_nbt,
+    unpack,
+    write_nbt,
+)
+from world2minecraft.minecraft.packing import read_varints, write_varints
+from world2minecraft.minecraft.rules.attached_entities import attached
+from world2minecraft.minecraft.sign_texts import signs_of_today
+from world2minecraft.minecraft.unlabelled_volume import (
+    MAX_FILE_BYTES,
+    MISSHAPEN,
+    check_size,
+    palette_of,
+    unlabelled,
+)
+from world2minecraft.minecraft.versions import GameVersion, game_version
+
+LIMITS = NbtLimits()
+Corner = tuple[int, int, int]
+DEFAULT_GAME = 1952  # 1.14: version 1 does not say its game, and is that old.
+
+
+def write_schem(
+    volume: BlockVolume,
+    path: str | Path,
+    *,
+    schem_version: Literal[1, 2, 3] = 2,
+    version: GameVersion | None = None,
+) -> None:
+    """Write a volume as a Sponge schematic. Its Offset is the volume's corner.
+
+    Entities lie where WorldEdit puts them: in version 2 in world coordinates, in 3 from Offset.
+
+    Args:
+        volume: the blocks; states are written as they stand in its palette.
+        path: the file, ``.schem``.
+        schem_version: 2, which every WorldEdit since 7.0 reads, 3, since 7.3, or 1, for tools
+            that know nothing newer: it holds no entities and does not say its game.
+        version: the game whose data version it carries; 1.20.1 where it is left out.
+
+    Raises:
+        UsageError: a side is longer than 65,535 blocks. OutputError: it cannot be written.
+    """
+    version = version or game_version()
+    volume = in_game(volume, version.data_version)
+    if max(volume.states.shape) > 0xFFFF or not volume.states.size:
+        raise UsageError(f"a schematic holds 1 to 65,535 blocks a side, not {volume.states.shape}")
+    palette = {
+        written_state(state, version.data_version): number
+        for number, state in enumerate(volume.palette)
+    }
+    if len(palette) != len(volume.palette):
+        raise UsageError("the palette names one block state twice")
+    cells = np.ascontiguousarray(volume.states.transpose(1, 2, 0)).ravel()
+    packed = np.empty(3 * len(cells), np.uint8)
+    data = packed[: write_varints(cells, packed)].view(np.int8)
+    width, height, length = (_unsigned(side) for side in volume.states.shape)
+    head: dict[str, Any] = {
+        "Version": schem_version,
+        "DataVersion": version.data_version,
+        "Width": width,
+        "Height": height,
+        "Length": length,
+        "Offset": np.array(volume.corner, np.int32),
+    }
+    write = {1: _tree_v1, 2: _tree_v2, 3: _tree_v3}[schem_version]
+    name, root = write(head, palette, data, volume)
+    write_bytes(path, pack_gzip(write_nbt(root, name), level=4))
+
+
+def read_schem(path: str | Path, losses: Losses | None = None) -> BlockVolume:
+    """Read a Sponge schematic of version 1, 2 or 3.
+
+    Args:
+        path: the file.
+        losses: told of biomes, which a volume has no place for.
+
+    Returns:
+        The volume, without labels and with one block a metre: a schematic does not say its scale.
+        Blocks of mods keep their names.
+
+    Raises:
+        InputError: there is no file. DamagedFileError: it is no schematic.
+        LimitError: it is larger than the program reads.
+    """
+    source = Path(path)
+    raw = unpack(read_bytes(source, MAX_FILE_BYTES), source, LIMITS.bytes)
+    _, root = read_nbt(raw, source, LIMITS)
+    tree = root["Schematic"] if isinstance(root.get("Schematic"), dict) else root
+    try:
+        if losses is not None:
+            losses.add("biomes", int("BiomeData" in tree or "Biomes" in tree))
+        return _volume_of(tree, source)
+    except MISSHAPEN as error:
+        missing = f" ({error} is missing)" if isinstance(error, KeyError) else ""
+        raise DamagedFileError(source, f"is no Sponge schematic{missing}") from error
+
+
+# Writing.
+
+
+def _tree_v1(
+    head: dict[str, Any], palette: dict[str, int], data: np.ndarray, volume: BlockVolume
+) -> tuple[str, dict[str, Any]]:
+    name, tree = _tree_v2(head, palette, data, volume)
+    tiles = [{**held, "ContentVersion": 1} for held in tree["BlockEntities"]]
+    left_out = ("DataVersion", "BlockEntities", "Entities")
+    return name, {key: tree[key] for key in tree if key not in left_out} | {"TileEntities": tiles}
+
+
+def _tree_v2(
+    head: dict[str, Any], palette: dict[str, int], data: np.ndarray, volume: BlockVolume
+) -> tuple[str, dict[str, Any]]:
+    entities = [
+        {**entity_nbt(entity, number), "Id": entity.id}
+        for number, entity in enumerate(volume.entities)
+    ]
+    for nbt in entities:
+        del nbt["id"]
+    blocks = [
+        {**entity.nbt, "Id": entity.id, "Pos": _relative(entity, volume)}
+        for entity in volume.block_entities
+    ]
+    # WorldEdit pastes version 2 by these and not by Offset: the corner goes to the player's feet.
+    paste = {"WEOffsetX": 0, "WEOffsetY": 0, "WEOffsetZ": 0}
+    rest = {
+        "Metadata": paste,
+        "PaletteMax": len(palette),
+        "Palette": palette,
+        "BlockData": data,
+        "BlockEntities": blocks,
+        "Entities": entities,
+    }
+    return "Schematic", {**head, **rest}
+
+
+def _tree_v3(
+    head: dict[str, Any], palette: dict[str, int], data: np.ndarray, volume: BlockVolume
+) -> tuple[str, dict[str, Any]]:
+    blocks = [
+        {"Id": entity.id, "Pos": _relative(entity, volume), "Data": dict(entity.nbt)}
+        for entity in volume.block_entities
+    ]
+    entities = []
+    for number, entity in enumerate(volume.entities):
+        nbt = entity_nbt(entity, number)
+        place = (np.array(nbt.pop("Pos")) - volume.corner).tolist()
+        entities.append({"Id": nbt.pop("id"), "Pos": place, "Data": nbt})
+    held = {"Palette": palette, "Data": data, "BlockEntities": blocks}
+    return "", {"Schematic": {**head, "Blocks": held, "Entities": entities}}
+
+
+def _relative(entity: BlockEntity, volume: BlockVolume) -> np.ndarray:
+    return (np.array(entity.block_pos) - volume.corner).astype(np.int32)
+
+
+def _unsigned(side: int) -> Short:
+    """A side is an unsigned short in a tag that is signed."""
+    return Short(side - 0x10000 if side > 0x7FFF else side)
+
+
+# Reading.
+
+
+def _volume_of(tree: dict[str, Any], source: Path) -> BlockVolume:
+    version = tree["Version"]
+    if version not in (1, 2, 3):
+        raise InputError(source, f"is a Sponge schematic of version {version}; 1 to 3 are read")
+    sides = (int(tree[key]) & 0xFFFF for key in ("Width", "Height", "Length"))
+    size = check_size(sides, source)
+    cell_count = math.prod(size)
+    blocks = tree["Blocks"] if version == 3 else tree
+    # Taken out of the tree, so that its memory is free when the blocks are made.
+    data = blocks.pop("Data" if version == 3 else "BlockData").view(np.uint8)
+    if len(data) < cell_count:
+        raise DamagedFileError(source, f"says {cell_count:,} blocks and holds fewer")
+    game = int(tree.get("DataVersion", DEFAULT_GAME))
+    palette, number_of = _palette(blocks["Palette"], game, source)
+    width, height, length = size
+    states = np.empty((width, height, length), np.uint16)
+    _fill(states.transpose(1, 2, 0), data, number_of, source)
+    del data
+    corner = _corner(tree)
+    shift = _shift(tree, version)
+    nbts = blocks.get("BlockEntities", tree.get("TileEntities", []))
+    held = [_block_entity(nbt, corner, version) for nbt in nbts]
+    return unlabelled(
+        states,
+        palette,
+        corner,
+        signs_of_today(held, game),
+        [_entity(nbt, corner, version, shift) for nbt in tree.get("Entities", [])],
+    )
+
+
+def _corner(tree: Mapping[str, Any]) -> Corner:
+    """Offset; where a file of version 2 has none, some tools keep it in WorldEdit's own keys."""
+    kept = tree.get("Metadata", {})
+    x, y, z = tree.get("Offset", [kept.get(f"WEOffset{axis}", 0) for axis in "XYZ"])
+    return int(x), int(y), int(z)
+
+
+def _shift(tree: Mapping[str, Any], version: int) -> Corner:
+    """How far what hangs moves: WorldEdit leaves world coordinates in the tags of its entities.
+
+    In version 3 all else counts from the place where the player stood, which its own tags tell.
+    """
+    try:
+        x, y, z = (int(step) for step in tree["Metadata"]["WorldEdit"]["Origin"])
+    except MISSHAPEN:
+        return 0, 0, 0
+    return (-x, -y, -z) if version == 3 else (0, 0, 0)
+
+
+def _palette(
+    stated: Mapping[str, int], game: int, source: Path
+) -> tuple[tuple[str, ...], dict[int, int]]:
+    """Return our palette, air first, and our number of each of the file's numbers."""
+    text_of: dict[int, str] = {}
+    for text, number in stated.items():
+        try:
+            state = read_state(str(parse_state(text)), game)
+        except UsageError as error:
+            raise DamagedFileError(source, f"has a palette with {error}") from error
+        if not 0 <= number <= 0xFFFF or number in text_of:
+            raise DamagedFileError(source, f"its palette has a bad or repeated number {number}")
+        text_of[int(number)] = state
+    palette, number_of = palette_of(text_of.values(), source)
+    return palette, {number: number_of[state] for number, state in text_of.items()}
+
+
+def _fill(cells: np.ndarray, data: np.ndarray, number_of: Mapping[int, int], source: Path) -> None:
+    """Fill uint16 [Y, Z, X] with our numbers of the file's varints."""
+    lookup = np.full(max(number_of, default=0) + 1, -1, np.int32)
+    for number, ours in number_of.items():
+        lookup[number] = ours
+    used = int(read_varints(data, lookup, cells))
+    if used <= -3:
+        raise DamagedFileError(
+            source, f"has a block of number {-3 - used}, which its palette lacks"
+        )
+    if used != len(data):
+        reason = {-1: "ends too early", -2: "has a number of more than four bytes"}
+        raise DamagedFileError(
+            source, f"its block data {reason.get(used, 'goes on after the last block')}"
+        )
+
+
+def _block_entity(nbt: dict[str, Any], corner: Corner, version: int) -> BlockEntity:
+    x, y, z = (int(low + step) for low, step in zip(corner, nbt["Pos"], strict=True))
+    rest = nbt.get("Data", {}) if version == 3 else nbt
+    rest = {key: rest[key] for key in rest if key not in ("Id", "Pos", "ContentVersion")}
+    return BlockEntity((x, y, z), str(nbt["Id"]), rest)
+
+
+def _entity(nbt: dict[str, Any], corner: Corner, version: int, shift: Corner) -> Entity:
+    start = corner if version == 3 else (0, 0, 0)
+    x, y, z = (float(low + step) for low, step in zip(start, nbt["Pos"], strict=True))
+    rest = attached(nbt.get("Data", {}) if version == 3 else nbt, (x, y, z), shift)
+    rest = {key: rest[key] for key in rest if key not in ("Id", "Pos")}
+    return Entity((x, y, z), str(nbt["Id"]), rest)

@@ -1,0 +1,241 @@
+"""World folders of Minecraft Java, read back as volumes."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.files import read_bytes
+from world2minecraft.core.types import BlockEntity, BlockVolume, Entity
+from world2minecraft.minecraft.nbt import NbtLimits, read_nbt, tree_bytes, unpack
+from world2minecraft.minecraft.packing import SECTION, unpack_section
+from world2minecraft.minecraft.sign_texts import signs_of_today
+from world2minecraft.minecraft.unlabelled_volume import (
+    MAX_CELLS,
+    MAX_STATES,
+    MISSHAPEN,
+    palette_of,
+    unlabelled,
+)
+from world2minecraft.minecraft.worlds.anvil import read_region, region_position
+from world2minecraft.minecraft.worlds.chunks import read_chunk
+from world2minecraft.minecraft.worlds.level_dat import no_world
+from world2minecraft.minecraft.worlds.sections import Section
+
+MAX_SECTIONS = MAX_CELLS // SECTION  # Held before the volume's size is known.
+MAX_UNPACKED_BYTES = 512 << 20  # All chunks that are read together.
+MAX_HELD_BYTES = 96 << 20  # Of entities and block entities.
+LEVEL_LIMITS = NbtLimits(values=200_000, bytes=32 << 20)
+Place = tuple[int, int]
+# A section's place, its palette as numbers (uint16) and its words (uint64).
+Numbered = tuple[tuple[int, int, int], np.ndarray, np.ndarray]
+Kept = TypeVar("Kept", BlockEntity, Entity)
+Box = tuple[int, int, int, int, int, int]
+
+
+def read_world(folder: str | Path, *, box: Box | None = None) -> BlockVolume:
+    """Read the overworld of a world folder, of 1.13 or later.
+
+    Args:
+        folder: the folder that holds ``level.dat``.
+        box: x0 y0 z0 x1 y1 z1 in blocks, the last ones not included; the smallest box of all
+            that is not air where it is left out.
+
+    Returns:
+        The volume, without labels and with one block a metre: a world does not say its scale.
+
+    Raises:
+        InputError: there is no world. DamagedFileError: a file of it is broken.
+        LimitError: it is too large to hold; give a box.
+    """
+    root = Path(folder)
+    read_level(root)
+    regions = region_files(root)
+    if not regions:
+        raise InputError(root, "holds no region files of an overworld; nothing to read")
+    found = _gather([path for path in regions if _may_meet(path, box)], box)
+    palette, number_of = palette_of(found.numbers, root)
+    numbers = np.array([number_of[state] for state in found.numbers], np.uint16)
+    states, corner = _fill(root, found.sections, numbers, box)
+    if box is None:
+        states, corner = _trimmed(states, corner)
+    high = np.array(corner) + states.shape
+
+    def inside(position: Any) -> bool:
+        return bool((np.array(corner) <= position).all() and (position < high).all())
+
+    found.add_entity_files(entity_files(regions, box), box)
+    return unlabelled(
+        states,
+        palette,
+        corner,
+        (e for e in found.block_entities if inside(e.block_pos)),
+        (e for e in found.entities if box is None or inside(e.position)),
+    )
+
+
+def read_level(folder: Path) -> dict[str, Any]:
+    """Return the ``Data`` of a world's ``level.dat``.
+
+    Raises:
+        InputError: there is none. DamagedFileError: it is broken. LimitError: it is too large.
+    """
+    path = folder / "level.dat"
+    if not path.is_file():
+        raise no_world(folder)
+    if (folder / "db").is_dir() and not region_files(folder):
+        reason = "is a world of Bedrock Edition, and Java's are read"
+        raise InputError(folder, f"{reason}; save what you want of it as a .mcstructure there")
+    data = unpack(read_bytes(path, LEVEL_LIMITS.bytes), path, LEVEL_LIMITS.bytes)
+    _, root = read_nbt(data, path, LEVEL_LIMITS)
+    if not isinstance(root.get("Data"), dict):
+        raise DamagedFileError(path, "has no Data")
+    return root["Data"]
+
+
+def region_files(root: Path) -> list[Path]:
+    """The overworld's regions: beside level.dat, or from 26.1 on in a tree of dimensions."""
+    for folder in (root / "region", root / "dimensions" / "minecraft" / "overworld" / "region"):
+        found = sorted(folder.glob("r.*.mca"))
+        if found:
+            return found
+    return []
+
+
+def _gather(regions: list[Path], box: Box | None) -> "_Found":
+    found = _Found()
+    known: dict[bytes, str] = {}
+    unpacked = 0
+    for path in regions:
+        for place, data in read_region(path, lambda place: _meets(place, box)):
+            unpacked += len(data)
+            root, sections = read_chunk(data, place, path, known)
+            for section in sections:
+                if box is None or _is_level(section, box):
+                    found.add_section(section, path)
+            if unpacked > MAX_UNPACKED_BYTES or len(found.sections) > MAX_SECTIONS:
+                reason = f"the world has more than {MAX_CELLS:,} blocks"
+                raise LimitError(path, f"{reason}, or takes too much memory; give a --box of it")
+            held = _block_entities(root, path)
+            found.block_entities += found.within(signs_of_today(held, root["DataVersion"]), path)
+            found.entities += found.within(_entities(root.get("Entities", []), path), path)
+    return found
+
+
+class _Found:
+    """What is kept of the chunks that were read, and how much memory it takes."""
+
+    def __init__(self) -> None:
+        self.numbers: dict[str, int] = {}  # Of each state, in the order in which they were met.
+        self.sections: list[Numbered] = []
+        self.block_entities: list[BlockEntity] = []
+        self.entities: list[Entity] = []
+        self._held_bytes = 0
+
+    def add_section(self, section: Section, path: Path) -> None:
+        """Keep a section, its palette as numbers."""
+        numbers = self.numbers
+        own = [numbers.setdefault(state, len(numbers)) for state in section.palette]
+        if len(numbers) > MAX_STATES:
+            reason = f"has over {MAX_STATES:,} block states"
+            raise LimitError(path, f"{reason}; give a --box of the world")
+        self.sections.append((section.place, np.array(own, np.uint16), section.words))
+
+    def add_entity_files(self, paths: list[Path], box: Box | None) -> None:
+        """Read files of entities; since 1.17 they are none of the regions'."""
+        for path in paths:
+            for _, data in read_region(path, lambda place: _meets(place, box)):
+                _, root = read_nbt(data, path)
+                self.entities += self.within(_entities(root.get("Entities"), path), path)
+
+    def within(self, held: Sequence[Kept], path: Path) -> Sequence[Kept]:
+        """Return entities where they do not take too much memory together."""
+        self._held_bytes += sum(tree_bytes(dict(entity.nbt)) for entity in held)
+        if self._held_bytes > MAX_HELD_BYTES:
+            reason = f"the world's entities take more than {MAX_HELD_BYTES:,} bytes"
+            raise LimitError(path, f"{reason}; give a --box of it")
+        return held
+
+
+def _is_level(section: Section, box: Box) -> bool:
+    return box[1] < section.place[1] * 16 + 16 and section.place[1] * 16 < box[4]
+
+
+def entity_files(regions: list[Path], box: Box | None) -> list[Path]:
+    """Return the files of entities beside a world's regions that may hold some of a box."""
+    folder = regions[0].parent.parent / "entities"
+    return [path for path in sorted(folder.glob("r.*.mca")) if _may_meet(path, box)]
+
+
+def _may_meet(path: Path, box: Box | None) -> bool:
+    """Whether a region may hold chunks of a box: of others not even the head is read."""
+    if box is None:
+        return True
+    x, z = (side * 512 for side in region_position(path))
+    return box[0] < x + 512 and x < box[3] and box[2] < z + 512 and z < box[5]
+
+
+def _meets(place: Place, box: Box | None) -> bool:
+    if box is None:
+        return True
+    x, z = place[0] * 16, place[1] * 16
+    return box[0] < x + 16 and x < box[3] and box[2] < z + 16 and z < box[5]
+
+
+def _block_entities(root: dict[str, Any], path: Path) -> Iterator[BlockEntity]:
+    for nbt in root.get("block_entities", []):
+        try:
+            rest = {key: nbt[key] for key in nbt if key not in ("id", "x", "y", "z")}
+            position = (int(nbt["x"]), int(nbt["y"]), int(nbt["z"]))
+            yield BlockEntity(position, str(nbt["id"]), rest)
+        except MISSHAPEN as error:
+            raise DamagedFileError(path, "has a block entity without id and place") from error
+
+
+def _fill(
+    root: Path, sections: list[Numbered], numbers: np.ndarray, box: Box | None
+) -> tuple[np.ndarray, tuple[int, int, int]]:
+    if box is None:
+        places = np.array([place for place, _, _ in sections] or [(0, 4, 0)])
+        low, high = places.min(axis=0) * 16, (places.max(axis=0) + 1) * 16
+    else:
+        low, high = np.array(box[:3]), np.array(box[3:])
+    size = high - low
+    if (size <= 0).any() or size.astype(float).prod() > MAX_CELLS:
+        shown = " x ".join(str(side) for side in size.tolist())
+        raise LimitError(root, f"{shown} blocks; at most {MAX_CELLS:,} are read: give a --box")
+    states = np.zeros(tuple(size.tolist()), np.uint16)
+    for place, own, words in sections:
+        origin = np.array(place, np.int64) * 16 - low
+        if not unpack_section(words, numbers[own], states, origin):
+            raise DamagedFileError(root, f"section {place} points outside its palette")
+    x, y, z = low.tolist()
+    return states, (x, y, z)
+
+
+def _trimmed(
+    states: np.ndarray, corner: tuple[int, int, int]
+) -> tuple[np.ndarray, tuple[int, int, int]]:
+    """Cut away the layers of air around the blocks."""
+    cuts = []
+    for axis in range(3):
+        filled = np.flatnonzero(states.any(axis=tuple({0, 1, 2} - {axis})))
+        cuts.append(slice(filled[0], filled[-1] + 1) if len(filled) else slice(0, 1))
+    x, y, z = (int(low + cut.start) for low, cut in zip(corner, cuts, strict=True))
+    return np.ascontiguousarray(states[tuple(cuts)]), (x, y, z)
+
+
+def _entities(held: Any, path: Path) -> list[Entity]:
+    """Return the entities of a list of NBT."""
+    try:
+        return [_entity(nbt) for nbt in held]
+    except MISSHAPEN as error:
+        raise DamagedFileError(path, "has an entity without id and place") from error
+
+
+def _entity(nbt: dict[str, Any]) -> Entity:
+    x, y, z = (float(value) for value in nbt["Pos"])
+    rest = {key: nbt[key] for key in nbt if key not in ("id", "Pos")}
+    return Entity((x, y, z), str(nbt["id"]), rest)

@@ -1,0 +1,198 @@
+"""World folders of Minecraft Java. Reading one back is in ``world_reading``."""
+
+import os
+import shutil
+import tempfile
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.errors import InputError, OutputError, UsageError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.core.types import BlockVolume, Entity
+from world2minecraft.minecraft.block_entities import in_game
+from world2minecraft.minecraft.commands.player_scale import size_pack
+from world2minecraft.minecraft.entities import entity_nbt
+from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
+from world2minecraft.minecraft.versions import GameVersion, game_version
+from world2minecraft.minecraft.worlds.anvil import pack_region
+from world2minecraft.minecraft.worlds.chunks import ChunkWriter
+from world2minecraft.minecraft.worlds.level_dat import MAKER, MAKER_TAG, UNDO_FOLDER, level_data
+from world2minecraft.minecraft.worlds.old_chunks import (
+    FIRST_ENTITY_FILES,
+    FIRST_WITHOUT_LEVEL,
+    OldChunkWriter,
+)
+from world2minecraft.minecraft.worlds.world_reader import Place, read_level, read_world
+
+__all__ = ["read_level", "read_world", "write_world"]
+
+SIZE_PACK_FILE = "player_size.zip"
+
+
+def write_world(
+    volume: BlockVolume,
+    folder: str | Path,
+    *,
+    name: str,
+    spawn: tuple[float, float, float],
+    spawn_yaw_deg: float,
+    version: GameVersion | None = None,
+    hour: float = 12.0,
+) -> None:
+    """Write a volume as a world that opens in creative mode, at one hour of the day, in a void.
+
+    The folder is written beside its place and moved there at the end. A world of this program
+    that no game has saved yet, and into which nothing was built, is replaced; any other folder
+    with files in it is left alone.
+
+    Args:
+        volume: the blocks; states are written as they stand in its palette.
+        folder: the world's folder, as it goes under ``saves``.
+        name: what the game's list of worlds shows.
+        spawn: where the player's feet stand, in world block coordinates.
+        spawn_yaw_deg: where the player looks, in the game's yaw: 0 south, 90 west.
+        version: the game to write for; 1.20.1 where it is left out.
+        hour: the hour that stays, 0 to 24.
+
+    Raises:
+        OutputError: the folder is taken or cannot be written.
+        UsageError: the volume is higher or lower than the game's world.
+    """
+    target, version = Path(folder), version or game_version()
+    volume = in_game(volume, version.level_data_version)
+    _check_heights(volume, version)
+    _check_free(target)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        draft = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}."))
+    except OSError as error:
+        raise OutputError(target, f"cannot be written: {error.strerror or error}") from error
+    try:
+        os.chmod(draft, 0o755)
+        _write_regions(volume, draft, version)
+        _write_entities(volume.entities, draft, version)
+        write_bytes(draft / "datapacks" / SIZE_PACK_FILE, size_pack(volume.blocks_per_metre))
+        level = level_data(name, spawn, spawn_yaw_deg, version, (SIZE_PACK_FILE,), hour)
+        write_bytes(draft / "level.dat", pack_gzip(write_nbt(level)))
+        _move(draft, target)
+    except OutputError as error:  # It names a file of the draft, which is gone by then.
+        raise OutputError(target, error.reason) from error
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+def _check_heights(volume: BlockVolume, version: GameVersion) -> None:
+    low, high = volume.corner[1], volume.corner[1] + volume.states.shape[1] - 1
+    if low < version.min_y or high > version.max_y:
+        raise UsageError(
+            f"the build reaches from layer {low} to {high}, but Minecraft {version.name} has "
+            f"{version.min_y} to {version.max_y}; choose fewer blocks per metre, or a place for "
+            "it: w2m build ... --into WORLD --at X Y Z"
+        )
+
+
+def _check_free(target: Path) -> None:
+    """Refuse a folder with something in it that is not an untouched world of this program.
+
+    The game drops the mark when it saves; building into a world leaves it.
+    """
+    try:
+        if not target.exists() or (target.is_dir() and not any(target.iterdir())):
+            return
+        mark = read_level(target).get(MAKER_TAG)
+    except OSError as error:
+        raise OutputError(target, f"cannot be read: {error.strerror or error}") from error
+    except InputError:
+        raise OutputError(target, "holds other files; choose another folder") from None
+    if mark != MAKER:
+        reason = "holds a world that has been played in or made elsewhere"
+        raise OutputError(target, f"{reason}; move it away or choose another folder")
+    if any((target / UNDO_FOLDER).glob("*")):
+        reason = "holds a world that was built into since, by w2m build --into"
+        raise OutputError(target, f"{reason}; take that back with w2m undo, or move it away")
+
+
+def _move(draft: Path, target: Path) -> None:
+    """Put the finished folder in its place, whole or not at all."""
+    old = draft.with_name(f"{draft.name}.old")
+    try:
+        if target.exists():
+            os.replace(target, old)
+        os.replace(draft, target)
+    except OSError as error:
+        if old.exists() and not target.exists():
+            os.replace(old, target)
+        raise OutputError(target, f"cannot be written: {error.strerror or error}") from error
+    finally:
+        shutil.rmtree(old, ignore_errors=True)
+
+
+def _write_regions(volume: BlockVolume, folder: Path, version: GameVersion) -> None:
+    write = _chunk_writer(volume, version)
+    held: dict[Place, list[dict[str, Any]]] = defaultdict(list)
+    for entity in volume.block_entities:
+        x, y, z = entity.block_pos
+        nbt = {**entity.nbt, "id": entity.id, "x": x, "y": y, "z": z}
+        held[x >> 4, z >> 4].append(nbt)
+    regions: dict[Place, dict[Place, bytes]] = defaultdict(dict)
+    for place in sorted({*_chunk_places(volume), *held}):
+        data = write(place, held.get(place, []))
+        if data is not None:
+            regions[place[0] >> 5, place[1] >> 5][place] = data
+    if not regions:
+        regions[0, 0] = {}
+    _write_region_files(regions, folder / "region")
+
+
+def _chunk_writer(
+    volume: BlockVolume, version: GameVersion
+) -> Callable[[Place, list[dict[str, Any]]], bytes | None]:
+    """Return what makes a chunk of its place and its block entities, as the version has them."""
+    if version.level_data_version >= FIRST_WITHOUT_LEVEL:
+        today = ChunkWriter(volume.states, volume.palette, version)
+        return lambda place, held: today.chunk(place, volume.corner, held)
+    old = OldChunkWriter(volume.states, volume.palette, version)
+    entities = _entities_by_chunk(volume.entities)
+    return lambda place, held: old.chunk(place, volume.corner, held, entities.get(place, ()))
+
+
+def _chunk_places(volume: BlockVolume) -> Iterator[Place]:
+    x, _, z = volume.corner
+    size_x, _, size_z = volume.states.shape
+    for chunk_x in range(x >> 4, (x + size_x + 15) >> 4):
+        for chunk_z in range(z >> 4, (z + size_z + 15) >> 4):
+            yield chunk_x, chunk_z
+
+
+def _write_region_files(regions: Mapping[Place, Mapping[Place, bytes]], folder: Path) -> None:
+    for (x, z), chunks in sorted(regions.items()):
+        data, outside = pack_region(chunks)
+        write_bytes(folder / f"r.{x}.{z}.mca", data)
+        for name, packed in outside.items():
+            write_bytes(folder / name, packed)
+
+
+def _write_entities(entities: tuple[Entity, ...], folder: Path, version: GameVersion) -> None:
+    if version.level_data_version < FIRST_ENTITY_FILES:
+        return  # They lie in the chunks.
+    regions: dict[Place, dict[Place, bytes]] = defaultdict(dict)
+    for place, found in _entities_by_chunk(entities).items():
+        root = {
+            "DataVersion": version.level_data_version,
+            "Position": np.array(place, np.int32),
+            "Entities": found,
+        }
+        regions[place[0] >> 5, place[1] >> 5][place] = write_nbt(root)
+    _write_region_files(regions, folder / "entities")
+
+
+def _entities_by_chunk(entities: tuple[Entity, ...]) -> dict[Place, list[dict[str, Any]]]:
+    held: dict[Place, list[dict[str, Any]]] = defaultdict(list)
+    for number, entity in enumerate(entities):
+        x, _, z = entity.position
+        held[int(x // 16), int(z // 16)].append(entity_nbt(entity, number))
+    return dict(held)
