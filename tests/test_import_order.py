@@ -68,7 +68,11 @@ RANK = {name: rank for rank, row in enumerate(ROWS) for name in row}
 TORCH = ("torch", "lightning", "torchvision")
 TORCH_FOLDERS = ("learn",)
 # Networks of others, asked for by name.
-TORCH_FILES = ("models/hub.py", "models/single_thread.py", "occupy/hf_semantics.py")
+TORCH_FILES = (
+    "external_models/hub.py",
+    "external_models/single_thread.py",
+    "occupy/hf_semantics.py",
+)
 HEAVY_FOR_HELP = ("numpy", "numba", "scipy", "sklearn", "PIL", "rich", "jinja2", "pydantic")
 
 FILES = sorted(SOURCE.rglob("*.py"))

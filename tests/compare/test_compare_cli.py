@@ -4,7 +4,7 @@ import json
 
 import pytest
 from made_layouts import gpt_record, placed, shell, write
-from tests.models.scripted_server import scripted
+from tests.external_models.scripted_server import scripted
 
 from world2minecraft import cli
 

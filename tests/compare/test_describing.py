@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from PIL import Image
-from tests.models.scripted_server import scripted
+from tests.external_models.scripted_server import scripted
 
 from world2minecraft.compare import ComparedScene
 from world2minecraft.compare.describing import (
@@ -20,8 +20,8 @@ from world2minecraft.compare.importers.reading import Box, object_of
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import ServerError, UnknownNameError
 from world2minecraft.core.types import Layout, Opening, Placement
-from world2minecraft.models.chat import open_chat
-from world2minecraft.models.chat_messages import Picture
+from world2minecraft.external_models.chat_client import open_chat
+from world2minecraft.external_models.chat_messages import Picture
 
 ROOM = Layout(
     [[0, 0], [4, 0], [4, 3], [0, 3]], 2.6, (Opening("window", [1, 3], [2.5, 3], 0.9, 2.0),)

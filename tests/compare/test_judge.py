@@ -1,7 +1,7 @@
 """A judge's grades: what is asked, what is read, and that nothing is ever made up."""
 
 import pytest
-from tests.models.scripted_server import proper, scripted
+from tests.external_models.scripted_server import proper, scripted
 
 from world2minecraft.compare.judge import (
     ASPECTS,
@@ -14,10 +14,10 @@ from world2minecraft.compare.judge import (
 )
 from world2minecraft.compare.table import grade_table
 from world2minecraft.core.errors import UsageError
-from world2minecraft.models.chat import open_chat
-from world2minecraft.models.chat_forms import UnreadableError
-from world2minecraft.models.chat_messages import Picture
-from world2minecraft.models.chat_store import ReplyStore
+from world2minecraft.external_models.chat_client import open_chat
+from world2minecraft.external_models.chat_messages import Picture
+from world2minecraft.external_models.reply_cache import ReplyStore
+from world2minecraft.external_models.structured_replies import UnreadableError
 
 SHOWN = (Picture(b"one"), Picture(b"two"))
 

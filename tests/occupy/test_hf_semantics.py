@@ -77,7 +77,7 @@ def test_a_universal_one_says_what_the_librarys_own_read_out_says(folders, kind)
     got = model.predict(COLOUR, EACH)[..., : len(NAMES)]
     values = np.asarray(model.predict(COLOUR, EACH))
     assert values.shape == (*got.shape[:2], CLASS_COUNT)
-    from world2minecraft.models.pictures import prepared
+    from world2minecraft.external_models.pictures import prepared
 
     with torch.inference_mode():
         pixels = torch.from_numpy(prepared(COLOUR, READY))

@@ -8,7 +8,7 @@ import pytest
 
 from world2minecraft.core.errors import DamagedFileError, InputError, MissingExtraError
 from world2minecraft.core.types import Camera
-from world2minecraft.models.pictures import prepared, wanted_size
+from world2minecraft.external_models.pictures import prepared, wanted_size
 from world2minecraft.stereo.guide import depth_model
 
 CAMERA = Camera(60, 40, 50.0, 50.0, 30.0, 20.0)

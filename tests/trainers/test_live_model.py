@@ -17,8 +17,8 @@ from tests.trainers.test_trainers import HERE, python_of, run
 from tests.vln.small_flat import write_flat
 from tests.vln.vln_sets import small_set
 
-from world2minecraft.models.chat import open_chat
-from world2minecraft.models.chat_store import ReplyStore
+from world2minecraft.external_models.chat_client import open_chat
+from world2minecraft.external_models.reply_cache import ReplyStore
 from world2minecraft.vln.agents import ModelAgent
 from world2minecraft.vln.agents.answering import ModelAnswerer
 from world2minecraft.vln.records import read_items

@@ -4,12 +4,12 @@ import json
 
 import pytest
 from open_field import OpenField, an_episode
-from tests.models.scripted_server import MEGABYTE, Answer, scripted
-from tests.models.test_chat import model_at
+from tests.external_models.scripted_server import MEGABYTE, Answer, scripted
+from tests.external_models.test_chat import model_at
 
 from world2minecraft.core.errors import BudgetError, ServerError, UsageError
-from world2minecraft.models.chat_budget import Ledger
-from world2minecraft.models.chat_forms import UnreadableError
+from world2minecraft.external_models.chat_costs import Ledger
+from world2minecraft.external_models.structured_replies import UnreadableError
 from world2minecraft.vln.agents import AGENTS, Decision, ModelAgent, agent_of
 from world2minecraft.vln.agents.step_form import SCHEMA, read_step
 from world2minecraft.vln.agents.trail import facing, relative_m, trail_text

@@ -4,14 +4,14 @@ import json
 import time
 
 import pytest
-from tests.models.scripted_server import Answer as Wire
-from tests.models.scripted_server import scripted
-from tests.models.test_chat import model_at
+from tests.external_models.scripted_server import Answer as Wire
+from tests.external_models.scripted_server import scripted
+from tests.external_models.test_chat import model_at
 from vln_sets import next_action, next_view, write_pictures
 
 from world2minecraft.core.errors import InputError, ServerError, UsageError
-from world2minecraft.models.chat_forms import UnreadableError
-from world2minecraft.models.chat_messages import Picture
+from world2minecraft.external_models.chat_messages import Picture
+from world2minecraft.external_models.structured_replies import UnreadableError
 from world2minecraft.vln.agents.answer_form import read_answer
 from world2minecraft.vln.agents.answering import Answer, ModelAnswerer
 from world2minecraft.vln.prompts import question_of

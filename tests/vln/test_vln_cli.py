@@ -9,7 +9,7 @@ from urllib.request import Request, urlopen
 import numpy as np
 import pytest
 from PIL import Image
-from tests.models.scripted_server import NO_SCHEMA, scripted
+from tests.external_models.scripted_server import NO_SCHEMA, scripted
 from vln_sets import next_action, next_view, write_pictures
 
 from world2minecraft import cli

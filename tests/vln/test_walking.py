@@ -5,11 +5,11 @@ import json
 import numpy as np
 import pytest
 from open_field import OpenField, an_episode
-from tests.models.scripted_server import scripted
-from tests.models.test_chat import model_at
+from tests.external_models.scripted_server import scripted
+from tests.external_models.test_chat import model_at
 
 from world2minecraft.core.errors import InputError, OutputError
-from world2minecraft.models.chat_messages import Picture
+from world2minecraft.external_models.chat_messages import Picture
 from world2minecraft.vln.agents import AGENTS, Decision, ModelAgent
 from world2minecraft.vln.running.course import run_course, write_course
 from world2minecraft.vln.running.tables import read_result, walks_table

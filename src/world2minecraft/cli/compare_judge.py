@@ -9,7 +9,7 @@ from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
     from world2minecraft.compare.judge import Grades
-    from world2minecraft.models.chat import ChatModel
+    from world2minecraft.external_models.chat_client import ChatModel
 
 EXAMPLES = """\
 w2m compare judge ROOMS/* OUT --agent gemini --max-usd 1 --out JUDGED

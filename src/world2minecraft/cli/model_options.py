@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.models.chat import ChatModel
+    from world2minecraft.external_models.chat_client import ChatModel
 
 REPLIES_FILE = "replies.jsonl"
 
@@ -81,8 +81,8 @@ class ModelOptions:
         Raises:
             UsageError: an option is wrong. ServerError: the server tells of no model.
         """
-        from world2minecraft.models.chat import open_chat
-        from world2minecraft.models.chat_store import ReplyStore
+        from world2minecraft.external_models.chat_client import open_chat
+        from world2minecraft.external_models.reply_cache import ReplyStore
 
         store = ReplyStore(self.replay, "replay") if self.replay else ReplyStore(out / REPLIES_FILE)
         return open_chat(

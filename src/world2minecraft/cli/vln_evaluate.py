@@ -81,7 +81,7 @@ def run(
         ServerError, BudgetError: the model cannot be asked.
     """
     from world2minecraft.core.errors import UnknownNameError
-    from world2minecraft.models.chat_endpoints import is_endpoint
+    from world2minecraft.external_models.chat_endpoints import is_endpoint
     from world2minecraft.vln.agents.answering import ModelAnswerer
     from world2minecraft.vln.records import read_items
     from world2minecraft.vln.running.evaluating import TRAININGS
@@ -123,7 +123,7 @@ def _baseline(
 ) -> "tuple[Any, list[Item]]":
     """Return a baseline and the items that it knows the task of."""
     from world2minecraft.core.errors import UnknownNameError, UsageError
-    from world2minecraft.models.chat_endpoints import ENDPOINTS
+    from world2minecraft.external_models.chat_endpoints import ENDPOINTS
     from world2minecraft.vln.agents.answering import LetterAnswerer
     from world2minecraft.vln.data.baselines import NAMES, baseline_letters
 

@@ -9,7 +9,7 @@ import typer
 from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
-    from world2minecraft.models.chat import ChatModel
+    from world2minecraft.external_models.chat_client import ChatModel
     from world2minecraft.vln.data.rewording import NavigationSet
 
 EXAMPLES = """\
@@ -72,8 +72,8 @@ def _rewritten(
     made: "NavigationSet", chat: "ChatModel", jobs: int
 ) -> "tuple[NavigationSet, Counter[str]]":
     from world2minecraft.cli.progress import shown
-    from world2minecraft.models.chat_forms import spoken
-    from world2minecraft.models.chat_messages import Turn
+    from world2minecraft.external_models.chat_messages import Turn
+    from world2minecraft.external_models.structured_replies import spoken
     from world2minecraft.vln.data.rewording import rewritten_set
 
     def ask(prompt: str) -> str:

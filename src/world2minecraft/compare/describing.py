@@ -17,10 +17,10 @@ from world2minecraft.compare.values import ComparedScene
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import ServerError, UnknownNameError
 from world2minecraft.core.types import Layout, LayoutObject, Opening, Placement
+from world2minecraft.external_models.chat_client import ChatModel
+from world2minecraft.external_models.chat_messages import Picture, Turn
+from world2minecraft.external_models.structured_replies import spoken
 from world2minecraft.furniture import TEMPLATES, template
-from world2minecraft.models.chat import ChatModel
-from world2minecraft.models.chat_forms import spoken
-from world2minecraft.models.chat_messages import Picture, Turn
 
 METHODS = ("text", "layoutgpt", "idesign", "layoutvlm")
 AT_WALL_M = 0.25  # What is nearer to a wall stands at it.

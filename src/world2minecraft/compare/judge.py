@@ -16,9 +16,14 @@ import numpy as np
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.models.chat import ChatModel
-from world2minecraft.models.chat_forms import Form, UnreadableError, ask_form, json_of
-from world2minecraft.models.chat_messages import Picture, Turn
+from world2minecraft.external_models.chat_client import ChatModel
+from world2minecraft.external_models.chat_messages import Picture, Turn
+from world2minecraft.external_models.structured_replies import (
+    Form,
+    UnreadableError,
+    ask_form,
+    json_of,
+)
 from world2minecraft.render.lamps import NEUTRAL, PAPER
 from world2minecraft.render.output.images import colour_bytes
 from world2minecraft.render.scene import prepare_scene

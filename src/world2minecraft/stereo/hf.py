@@ -5,9 +5,9 @@ from PIL import Image
 
 from world2minecraft.core.errors import InputError, first_line
 from world2minecraft.core.types import Camera
-from world2minecraft.models import hub
-from world2minecraft.models.pictures import prepared
-from world2minecraft.models.single_thread import single_thread
+from world2minecraft.external_models import hub
+from world2minecraft.external_models.pictures import prepared
+from world2minecraft.external_models.single_thread import single_thread
 from world2minecraft.stereo.guide import Kind
 
 # Models that give metres without saying so in their config. DepthPro gives inverse depth.

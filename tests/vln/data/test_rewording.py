@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.models.scripted_server import BUSY, scripted
+from tests.external_models.scripted_server import BUSY, scripted
 from vln_sets import WORDS, small_set
 
 from world2minecraft import cli

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from world2minecraft.models.chat_forms import Form, UnreadableError, json_of
+from world2minecraft.external_models.structured_replies import Form, UnreadableError, json_of
 from world2minecraft.vln.prompts import LETTER_ALONE
 
 STYLES = ("letter", "think", "json")

@@ -7,11 +7,11 @@ from typing import Any
 
 from world2minecraft.core.errors import DamagedFileError, UnknownNameError
 from world2minecraft.core.files import read_bytes
-from world2minecraft.models.chat import ChatModel
-from world2minecraft.models.chat_forms import ask_form
-from world2minecraft.models.chat_messages import Picture, Turn
-from world2minecraft.models.chat_pictures import MOST_PX, capped, check_most_px
-from world2minecraft.models.chat_wire import BusyServerError, RefusedQuestionError
+from world2minecraft.external_models.chat_client import ChatModel
+from world2minecraft.external_models.chat_messages import Picture, Turn
+from world2minecraft.external_models.chat_pictures import MOST_PX, capped, check_most_px
+from world2minecraft.external_models.chat_wire import BusyServerError, RefusedQuestionError
+from world2minecraft.external_models.structured_replies import ask_form
 from world2minecraft.vln.agents.answer_form import STYLES, answer_form, ending
 from world2minecraft.vln.agents.model import told_of
 from world2minecraft.vln.prompts import question_of

@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.registry import Registry
-from world2minecraft.models.chat import ChatModel
-from world2minecraft.models.chat_endpoints import ENDPOINTS, is_endpoint
-from world2minecraft.models.chat_pictures import MOST_PX
+from world2minecraft.external_models.chat_client import ChatModel
+from world2minecraft.external_models.chat_endpoints import ENDPOINTS, is_endpoint
+from world2minecraft.external_models.chat_pictures import MOST_PX
 from world2minecraft.vln.agents.model import HISTORY, ModelAgent
 from world2minecraft.vln.agents.step_form import MOST_MOVES
 from world2minecraft.vln.agents.values import Agent

@@ -11,11 +11,11 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.models.chat import ChatModel
-from world2minecraft.models.chat_forms import Try, ask_form
-from world2minecraft.models.chat_messages import Picture
-from world2minecraft.models.chat_pictures import MOST_PX, at_most, check_most_px
-from world2minecraft.models.chat_wire import BusyServerError, RefusedQuestionError
+from world2minecraft.external_models.chat_client import ChatModel
+from world2minecraft.external_models.chat_messages import Picture
+from world2minecraft.external_models.chat_pictures import MOST_PX, at_most, check_most_px
+from world2minecraft.external_models.chat_wire import BusyServerError, RefusedQuestionError
+from world2minecraft.external_models.structured_replies import Try, ask_form
 from world2minecraft.vln.agents.step_form import MOST_MOVES, step_form
 from world2minecraft.vln.agents.trail import trail_text
 from world2minecraft.vln.agents.values import Decision, Sight, Task

@@ -9,7 +9,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from world2minecraft.models.chat_forms import Form, UnreadableError, json_of
+from world2minecraft.external_models.structured_replies import Form, UnreadableError, json_of
 from world2minecraft.vln.values import Move
 
 MOST_MOVES = 4

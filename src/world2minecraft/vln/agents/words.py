@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from world2minecraft.models.chat_messages import Picture, Turn
+from world2minecraft.external_models.chat_messages import Picture, Turn
 from world2minecraft.vln.agents.values import Task
 from world2minecraft.vln.values import Move
 

@@ -6,7 +6,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.models.chat_messages import Picture
+from world2minecraft.external_models.chat_messages import Picture
 
 MOST_PX = 1_048_576  # 1,338 tokens of Qwen2.5-VL, within what the budget counts for a picture.
 LEAST_PX = 784  # One token's square of 28 x 28.

@@ -19,8 +19,8 @@ from world2minecraft.core.errors import (
     UsageError,
 )
 from world2minecraft.core.files import read_bytes
-from world2minecraft.models.chat_messages import Question, Reply
-from world2minecraft.models.chat_wire import (
+from world2minecraft.external_models.chat_messages import Question, Reply
+from world2minecraft.external_models.chat_wire import (
     BusyServerError,
     RefusedQuestionError,
     UselessReplyError,

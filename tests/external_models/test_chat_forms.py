@@ -3,11 +3,17 @@
 import json
 
 import pytest
-from tests.models.scripted_server import BUSY, MEGABYTE, NO_SCHEMA, proper, scripted
-from tests.models.test_chat import HELLO, model_at
+from tests.external_models.scripted_server import BUSY, MEGABYTE, NO_SCHEMA, proper, scripted
+from tests.external_models.test_chat import HELLO, model_at
 
-from world2minecraft.models.chat_forms import Form, UnreadableError, ask_form, json_of, spoken
-from world2minecraft.models.chat_wire import RefusedQuestionError
+from world2minecraft.external_models.chat_wire import RefusedQuestionError
+from world2minecraft.external_models.structured_replies import (
+    Form,
+    UnreadableError,
+    ask_form,
+    json_of,
+    spoken,
+)
 
 
 def read_colour(text):

@@ -4,7 +4,7 @@ import json
 import time
 
 import pytest
-from tests.models.scripted_server import (
+from tests.external_models.scripted_server import (
     BUSY,
     MEGABYTE,
     NO_SCHEMA,
@@ -22,17 +22,17 @@ from world2minecraft.core.errors import (
     ServerError,
     UsageError,
 )
-from world2minecraft.models.chat import ChatModel, open_chat, wait_s
-from world2minecraft.models.chat_budget import Ledger, Price
-from world2minecraft.models.chat_endpoints import Endpoint, endpoint_of
-from world2minecraft.models.chat_messages import Picture, Question, Turn
-from world2minecraft.models.chat_store import ReplyStore
-from world2minecraft.models.chat_wire import (
+from world2minecraft.external_models.chat_client import ChatModel, open_chat, wait_s
+from world2minecraft.external_models.chat_costs import Ledger, Price
+from world2minecraft.external_models.chat_endpoints import Endpoint, endpoint_of
+from world2minecraft.external_models.chat_messages import Picture, Question, Turn
+from world2minecraft.external_models.chat_wire import (
     BusyServerError,
     ChatWire,
     RefusedQuestionError,
     UselessReplyError,
 )
+from world2minecraft.external_models.reply_cache import ReplyStore
 
 HELLO = (Turn("user", ("Hello",)),)
 PICTURE = Picture(b"\xff\xd8 no real picture")

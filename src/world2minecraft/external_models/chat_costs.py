@@ -13,7 +13,7 @@ from typing import Any
 
 from world2minecraft.core.errors import BudgetError, DamagedFileError, UsageError
 from world2minecraft.core.files import plain_yaml, read_bytes
-from world2minecraft.models.chat_messages import Question, Reply
+from world2minecraft.external_models.chat_messages import Question, Reply
 
 PRICES_FILE = Path(__file__).with_name("chat_prices.yaml")
 MAX_PRICES_BYTES = 1 << 20

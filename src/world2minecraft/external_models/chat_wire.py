@@ -15,9 +15,9 @@ from contextlib import contextmanager
 from typing import Any
 
 from world2minecraft.core.errors import MissingExtraError, ServerError
-from world2minecraft.models.chat_budget import CHARACTERS_A_TOKEN, estimated_tokens
-from world2minecraft.models.chat_endpoints import NO_KEY, Endpoint
-from world2minecraft.models.chat_messages import Question, Reply
+from world2minecraft.external_models.chat_costs import CHARACTERS_A_TOKEN, estimated_tokens
+from world2minecraft.external_models.chat_endpoints import NO_KEY, Endpoint
+from world2minecraft.external_models.chat_messages import Question, Reply
 
 MAX_REPLY_BYTES = 256 << 10  # 1,024 tokens are about 4 KiB.
 MAX_TOLD = 300  # Characters of a server's own words in an error.

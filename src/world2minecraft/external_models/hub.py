@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.errors import DamagedFileError, InputError, MissingExtraError, first_line
-from world2minecraft.models.pictures import prepared
+from world2minecraft.external_models.pictures import prepared
 
 MODEL_NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)?", re.ASCII)
 READY_FILES = ("preprocessor_config.json", "processor_config.json")
