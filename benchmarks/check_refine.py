@@ -32,10 +32,10 @@ from benchmarks.refinement import (
 )
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import OBSERVED, OccupancyGrid
-from world2minecraft.exchange.objects import write_objects, write_placements
-from world2minecraft.exchange.room import read_room, write_room
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.identity import folder_of
+from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.room import read_room, write_room
 from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct
 from world2minecraft.rooms import BASE_KINDS, generate_room, scan_room

@@ -25,7 +25,7 @@ from world2minecraft.core.types import COMPLETED, OBSERVED, FusedEvidence, Occup
 from world2minecraft.evaluate.frames import used_frames
 from world2minecraft.evaluate.score import TrueRoom, see_truth
 from world2minecraft.evaluate.truth import read_truth
-from world2minecraft.exchange.evidence import read_evidence
+from world2minecraft.formats.evidence import read_evidence
 from world2minecraft.fuse import CleanParameters, close_structure, read_out, remove_floaters
 from world2minecraft.fuse.confidence import (
     FREE_FEATURES,

@@ -33,7 +33,7 @@ from world2minecraft.evaluate.frames import truth_of_run, used_frames
 from world2minecraft.evaluate.layout import in_room
 from world2minecraft.evaluate.score import see_truth
 from world2minecraft.evaluate.truth import Truth, read_instances
-from world2minecraft.exchange.room import read_room
+from world2minecraft.formats.room import read_room
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.metrics.objects import (

@@ -10,7 +10,7 @@ import pytest
 from world2minecraft import live as live_module
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import CaptureError, UsageError
-from world2minecraft.exchange.room import read_room
+from world2minecraft.formats.room import read_room
 from world2minecraft.live import Follower, LiveRoom, follow
 from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct

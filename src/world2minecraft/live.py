@@ -21,7 +21,7 @@ from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import FusedEvidence, Scan, View
-from world2minecraft.exchange.room import write_room
+from world2minecraft.formats.room import write_room
 from world2minecraft.fuse import EvidenceMap, read_out, remove_floaters
 from world2minecraft.occupy import predictor
 from world2minecraft.parameters import Parameters

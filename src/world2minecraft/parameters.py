@@ -10,8 +10,8 @@ from typing import Any
 
 from world2minecraft.build import BuildParameters
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.exchange.forms import form_named
 from world2minecraft.find import FindParameters
+from world2minecraft.formats.forms import form_named
 from world2minecraft.furnish import FurnishParameters
 from world2minecraft.fuse import CleanParameters, FuseParameters
 from world2minecraft.label import LABELLERS

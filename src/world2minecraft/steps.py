@@ -15,22 +15,22 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
 from world2minecraft.edit.cleanup import mended
 from world2minecraft.edit.journal import write_edits
-from world2minecraft.exchange.centers import write_centers
-from world2minecraft.exchange.evidence import read_evidence
-from world2minecraft.exchange.forms import form_named, templates_of_run, write_forms
-from world2minecraft.exchange.layout import write_layouts
-from world2minecraft.exchange.objects import (
+from world2minecraft.find import find_objects
+from world2minecraft.formats.centers import write_centers
+from world2minecraft.formats.evidence import read_evidence
+from world2minecraft.formats.forms import form_named, templates_of_run, write_forms
+from world2minecraft.formats.layout import write_layouts
+from world2minecraft.formats.objects import (
     read_objects,
     read_placements,
     write_objects,
     write_placements,
 )
-from world2minecraft.exchange.occupancy import inner_corner_m
-from world2minecraft.exchange.paper import write_centers_json, write_occ_json
-from world2minecraft.exchange.room import read_room, write_room
-from world2minecraft.exchange.rooms import read_rooms
-from world2minecraft.exchange.scan import read_depth_kind, read_room_size, read_scene_name
-from world2minecraft.find import find_objects
+from world2minecraft.formats.occupancy import inner_corner_m
+from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
+from world2minecraft.formats.room import read_room, write_room
+from world2minecraft.formats.rooms import read_rooms
+from world2minecraft.formats.scan import read_depth_kind, read_room_size, read_scene_name
 from world2minecraft.furnish import furnish
 from world2minecraft.fuse import (
     calibrate,

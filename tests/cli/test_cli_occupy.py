@@ -14,7 +14,7 @@ from world2minecraft.core.types import View
 from world2minecraft.dataset.formats.depth_codes import depth_png
 from world2minecraft.dataset.frame_completion import GridPlace
 from world2minecraft.dataset.saved_cells import SaidCells, cells_in_grid
-from world2minecraft.exchange.room import read_room
+from world2minecraft.formats.room import read_room
 from world2minecraft.scan.plain import write_plain
 
 POSE = look_at(np.array([2.2, 0.5, 1.5]), np.array([2.2, 3.0, 1.2]))

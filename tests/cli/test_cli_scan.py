@@ -75,7 +75,7 @@ def test_a_stop_is_told_and_is_no_failure(capture, capsys, monkeypatch):
 
 def test_a_room_plan(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    from world2minecraft.exchange import roomplan
+    from world2minecraft.formats import roomplan
 
     plan = roomplan.CapturedPlan((roomplan.PlanRoom("den", (), (), ()),))
     monkeypatch.setattr(roomplan, "find_roomplan", lambda path: path)

@@ -14,9 +14,9 @@ from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import Layout, Opening
-from world2minecraft.exchange.layout import layout_row, write_layouts
-from world2minecraft.exchange.objects import write_placements
-from world2minecraft.exchange.room import write_room
+from world2minecraft.formats.layout import layout_row, write_layouts
+from world2minecraft.formats.objects import write_placements
+from world2minecraft.formats.room import write_room
 from world2minecraft.plans import layouts_of
 from world2minecraft.plans.cells import cells_of_plan
 

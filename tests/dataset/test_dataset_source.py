@@ -12,7 +12,7 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.dataset.built_box import built_box, is_built
 from world2minecraft.dataset.source import open_scene_source, scene_id_of
-from world2minecraft.exchange.scene import scene_of, write_scene
+from world2minecraft.formats.scene import scene_of, write_scene
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.formats import write_blocks
 

@@ -21,8 +21,8 @@ from world2minecraft.evaluate.scannet.mesh import LabelledMesh, read_labelled_me
 from world2minecraft.evaluate.scannet.seen import seen_free
 from world2minecraft.evaluate.scannet.surface import surface_voxels
 from world2minecraft.evaluate.truth import read_instances
-from world2minecraft.exchange.objects import write_objects
-from world2minecraft.exchange.room import write_room
+from world2minecraft.formats.objects import write_objects
+from world2minecraft.formats.room import write_room
 from world2minecraft.metrics.truth import carry_truth
 
 VOXEL_M = 0.08

@@ -10,8 +10,8 @@ from true_rooms import OBJECTS, VOXEL_M, write_capture, write_perfect
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
 from world2minecraft.evaluate import evaluate_reconstruction
-from world2minecraft.exchange.objects import read_objects, write_objects
-from world2minecraft.exchange.room import read_room, write_room
+from world2minecraft.formats.objects import read_objects, write_objects
+from world2minecraft.formats.room import read_room, write_room
 
 
 def copied(run, tmp_path):

@@ -11,9 +11,9 @@ from world2minecraft.evaluate import read_truth
 from world2minecraft.evaluate.frames import used_frames
 from world2minecraft.evaluate.score import see_truth
 from world2minecraft.evaluate.true_objects import put_true_objects
-from world2minecraft.exchange.objects import write_objects
-from world2minecraft.exchange.room import read_room, write_room
-from world2minecraft.exchange.scan import write_scan
+from world2minecraft.formats.objects import write_objects
+from world2minecraft.formats.room import read_room, write_room
+from world2minecraft.formats.scan import write_scan
 from world2minecraft.parameters import Parameters
 from world2minecraft.render.voxels import cast_voxels, prepare_voxels
 from world2minecraft.scan.plain import write_plain

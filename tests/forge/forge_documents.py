@@ -6,10 +6,10 @@ import numpy as np
 
 from world2minecraft.core.types import OBSERVED, OccupancyGrid
 from world2minecraft.edit.scene.objects_of import facts
-from world2minecraft.exchange.objects import write_objects, write_placements
-from world2minecraft.exchange.room import write_room
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.sources import with_objects
+from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.room import write_room
 
 SHAPE = (20, 18, 14)
 

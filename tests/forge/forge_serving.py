@@ -9,10 +9,10 @@ import httpx
 import numpy as np
 from websockets.sync.client import connect
 
-from world2minecraft.exchange.occupancy import labels_grid
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.serve import ForgeServer
 from world2minecraft.forge.sources import Opened
+from world2minecraft.formats.occupancy import labels_grid
 
 HANG_S = 180.0  # No measure of speed: only what never answers is given up.
 

@@ -18,11 +18,11 @@ from world2minecraft.build import build_volume
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.edit.cleanup import mended
-from world2minecraft.exchange.occupancy import inner_corner_m
 from world2minecraft.forge import blocks, build_routes
 from world2minecraft.forge.arrays import packed_arrays
 from world2minecraft.forge.blocks import Build, BuildOptions, HeldScene
 from world2minecraft.forge.session import Session
+from world2minecraft.formats.occupancy import inner_corner_m
 from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box
 from world2minecraft.minecraft.physics import player_motion as step
 from world2minecraft.minecraft.physics.sweep import overlapping

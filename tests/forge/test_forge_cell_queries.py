@@ -12,8 +12,8 @@ from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.edit.scene import SceneDraft
 from world2minecraft.edit.scene.difference import difference, labels_in_cells
 from world2minecraft.edit.scene.runs import cells_of_runs
-from world2minecraft.exchange.occupancy import labels_grid
 from world2minecraft.forge.editor import Editor
+from world2minecraft.formats.occupancy import labels_grid
 from world2minecraft.metrics.occupancy import count_occupancy
 
 labels_of = st.integers(0, 10_000).map(

@@ -7,10 +7,10 @@ import pytest
 from forge_serving import client, served, small_editor
 
 from world2minecraft.edit.scene import SceneDraft
-from world2minecraft.exchange.room import read_room
 from world2minecraft.forge.comparing import labels_of_truth
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.volumes import HEADER
+from world2minecraft.formats.room import read_room
 from world2minecraft.metrics.occupancy import count_occupancy
 
 

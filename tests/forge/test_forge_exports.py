@@ -12,13 +12,13 @@ from forge_serving import client, served
 from PIL import Image
 
 from world2minecraft.core.files import read_json
-from world2minecraft.exchange.forms import form_names, read_form
-from world2minecraft.exchange.paper import read_occ_json
-from world2minecraft.exchange.room import read_room
 from world2minecraft.forge import export_routes
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.exports import forms, snapshot, stats_csv, write_data
 from world2minecraft.forge.worker import TASKS
+from world2minecraft.formats.forms import form_names, read_form
+from world2minecraft.formats.paper_json import read_occ_json
+from world2minecraft.formats.room import read_room
 from world2minecraft.minecraft.worlds.world_writer import read_world
 from world2minecraft.steps import built_volume
 

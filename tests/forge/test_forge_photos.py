@@ -12,9 +12,9 @@ from PIL import Image
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Camera
-from world2minecraft.exchange.room import read_room
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.photos import find_capture_of, ideal_camera, read_photos
+from world2minecraft.formats.room import read_room
 from world2minecraft.geometry.undistort import undistorted
 from world2minecraft.geometry.unprojection import project
 from world2minecraft.scan.depth import read_depth

@@ -9,10 +9,10 @@ from forge_documents import Clock, edit, held, same_files, write_run
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import ConflictError, OutputError
-from world2minecraft.exchange.occupancy import read_occupancy
-from world2minecraft.exchange.scene import read_scene
 from world2minecraft.forge import saving
 from world2minecraft.forge.editor import Editor
+from world2minecraft.formats.occupancy import read_occupancy
+from world2minecraft.formats.scene import read_scene
 from world2minecraft.parameters import Parameters
 from world2minecraft.steps import build_stage
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.exchange.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
+from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
 from world2minecraft.joining import Run
 from world2minecraft.plans import layouts_of
 from world2minecraft.plans.cells import cells_of_plan

@@ -9,9 +9,9 @@ from homes import BED, KITCHEN, bedroom, hall, kitchen, room, run_of, table
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import InputError, UsageError
-from world2minecraft.exchange.layout import read_layouts, write_layouts
-from world2minecraft.exchange.objects import read_objects, write_objects, write_placements
-from world2minecraft.exchange.room import read_room, write_room
+from world2minecraft.formats.layout import read_layouts, write_layouts
+from world2minecraft.formats.objects import read_objects, write_objects, write_placements
+from world2minecraft.formats.room import read_room, write_room
 from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.joining import Move, merged, moved, parse_place, place_runs, read_runs
 from world2minecraft.joining.fits import fits

@@ -11,7 +11,7 @@ from roomplans import captured_room, session_of, surface, thing
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
 from world2minecraft.core.types import Layout, LayoutObject, Opening
-from world2minecraft.exchange.roomplan import find_roomplan, read_roomplan
+from world2minecraft.formats.roomplan import find_roomplan, read_roomplan
 from world2minecraft.plans import layouts_of, straightened
 from world2minecraft.plans.outlines import moved_plan
 

@@ -14,9 +14,9 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.progress import silent
 from world2minecraft.core.types import FusedEvidence
-from world2minecraft.exchange.layout import read_layouts
-from world2minecraft.exchange.objects import read_objects, read_placements
-from world2minecraft.exchange.room import read_room
+from world2minecraft.formats.layout import read_layouts
+from world2minecraft.formats.objects import read_objects, read_placements
+from world2minecraft.formats.room import read_room
 from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.making import make_from_plan
 from world2minecraft.parameters import Parameters

@@ -8,8 +8,8 @@ import pytest
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.files import read_json
-from world2minecraft.exchange.layout import read_layouts
-from world2minecraft.exchange.scene import read_scene
+from world2minecraft.formats.layout import read_layouts
+from world2minecraft.formats.scene import read_scene
 from world2minecraft.furniture import TEMPLATES, template
 from world2minecraft.minecraft.physics.graph import walk_graph
 from world2minecraft.minecraft.physics.shortest_paths import shortest_path

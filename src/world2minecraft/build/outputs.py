@@ -4,7 +4,7 @@ from pathlib import Path
 
 from world2minecraft.build.spawn import find_spawn
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.exchange.scene import scene_of, write_scene
+from world2minecraft.formats.scene import scene_of, write_scene
 from world2minecraft.minecraft.commands.datapack import has_packs, write_datapack
 from world2minecraft.minecraft.displays import check_displays
 from world2minecraft.minecraft.schematics.sponge import write_schem

@@ -94,7 +94,7 @@ def graded(
     from world2minecraft.compare.importers import read_layouts_of
     from world2minecraft.compare.judge import grade, pictures_of
     from world2minecraft.core.files import write_bytes
-    from world2minecraft.exchange.source import read_source
+    from world2minecraft.formats.build_source import read_source
 
     scenes = [read_layouts_of(place)[0] for place in places]
     names, grades = folder_names(scenes), []

@@ -12,7 +12,7 @@ from world2minecraft.core.errors import InputError, OutputError, UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
-    from world2minecraft.exchange.cutting import Box
+    from world2minecraft.formats.volume_crop import Box
     from world2minecraft.minecraft.file_format import WriteOptions
     from world2minecraft.minecraft.losses import Losses
 
@@ -75,7 +75,7 @@ def run(
     """
     check_target(source, target, force)
     from world2minecraft.cli.render_options import box_of
-    from world2minecraft.exchange.forms import templates_of_run
+    from world2minecraft.formats.forms import templates_of_run
     from world2minecraft.minecraft.file_format import WriteOptions
 
     options = WriteOptions(
@@ -97,7 +97,7 @@ def convert(
     box: "Box | None" = None,
 ) -> None:
     """Read ``source``, write ``target`` and print what came of it. Raises what ``run`` raises."""
-    from world2minecraft.exchange.forms import write_form
+    from world2minecraft.formats.forms import write_form
     from world2minecraft.minecraft.block_names import mod_blocks
     from world2minecraft.minecraft.commands.datapack import namespace_of
     from world2minecraft.minecraft.losses import Losses
@@ -130,8 +130,8 @@ def read_part(source: Path, box: "Box | None", losses: "Losses") -> "BlockVolume
         InputError: it cannot be read, or nothing but air is in the box.
         UsageError: the box lies beside the build.
     """
-    from world2minecraft.exchange.forms import read_form
-    from world2minecraft.exchange.source import read_source
+    from world2minecraft.formats.build_source import read_source
+    from world2minecraft.formats.forms import read_form
 
     return read_form(source, losses) if box is None else read_source(source, box).volume
 
@@ -188,7 +188,7 @@ def check_target(source: Path, target: Path, force: bool) -> None:
     """
     if not source.exists():
         raise InputError(source, "is not there")
-    from world2minecraft.exchange.forms import form_to_write
+    from world2minecraft.formats.forms import form_to_write
 
     form = form_to_write(target)
     if not os.path.lexists(target):

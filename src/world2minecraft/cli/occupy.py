@@ -183,7 +183,7 @@ def _of_capture(
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.dataset.saved_cells import cells_in_grid, cells_of_room, write_cells
-    from world2minecraft.exchange.room import read_room
+    from world2minecraft.formats.room import read_room
     from world2minecraft.parameters import Parameters, with_settings
     from world2minecraft.pipeline import reconstruct
 

@@ -49,7 +49,7 @@ def run(
         settings: options of the reader, such as ``capture.depth_unit=mm``.
     """
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.exchange.roomplan import read_roomplan
+    from world2minecraft.formats.roomplan import read_roomplan
     from world2minecraft.parameters import Parameters, with_settings
     from world2minecraft.scan import describe_capture
     from world2minecraft.scan.plan_alone import plan_in

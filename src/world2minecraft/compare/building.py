@@ -18,7 +18,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Layout, LayoutObject, Opening
-from world2minecraft.exchange.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
+from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
 from world2minecraft.metrics.layout import inside_polygon
 from world2minecraft.parameters import Parameters
 from world2minecraft.plans import PlanWorld, build_captured

@@ -8,7 +8,7 @@ from world2minecraft.core.classes import CLASS_NAMES, class_id
 from world2minecraft.core.errors import DamagedFileError, World2MinecraftError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import Layout, LayoutObject, Placement
-from world2minecraft.exchange.layout import layout_of_row, layout_row
+from world2minecraft.formats.layout import layout_of_row, layout_row
 
 SCENE_FILE = "compared.json"
 MOST_BYTES = 16 << 20

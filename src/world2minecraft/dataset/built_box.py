@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.exchange.cutting import Box
-from world2minecraft.exchange.source import around_spawn, spawn_of
+from world2minecraft.formats.build_source import around_spawn, spawn_of
+from world2minecraft.formats.volume_crop import Box
 from world2minecraft.geometry.connected_components import connected_parts
 from world2minecraft.minecraft.worlds.anvil import read_region
 from world2minecraft.minecraft.worlds.chunks import read_chunk

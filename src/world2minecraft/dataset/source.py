@@ -20,8 +20,8 @@ from world2minecraft.dataset.blockmap.reading import MAPS
 from world2minecraft.dataset.built_box import built_box
 from world2minecraft.dataset.designs import designs_beside
 from world2minecraft.dataset.naming import fine_names
-from world2minecraft.exchange.cutting import Box
-from world2minecraft.exchange.source import Source, read_source
+from world2minecraft.formats.build_source import Source, read_source
+from world2minecraft.formats.volume_crop import Box
 
 FOREIGN_SCALE = 1.0  # Blocks per metre of worlds that do not say theirs: players build so.
 OWN_MAP = MAPS[0]  # The map that our own truth is by.

@@ -29,7 +29,7 @@ from world2minecraft.evaluate.frames import all_frames
 from world2minecraft.evaluate.objects import object_counts, object_facts
 from world2minecraft.evaluate.score import HOW, cell_facts, headline, see_truth
 from world2minecraft.evaluate.truth import read_truth
-from world2minecraft.exchange.occupancy import DEFAULT_VOXEL_M, labels_grid
+from world2minecraft.formats.occupancy import DEFAULT_VOXEL_M, labels_grid
 
 LABELS = ("labels.npz", "labels.npy")
 OBJECTS = "objects.json"

@@ -10,8 +10,8 @@ import numpy as np
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.types import Layout, OccupancyGrid
 from world2minecraft.evaluate.objects import TrueObjects
-from world2minecraft.exchange.objects import read_placements
-from world2minecraft.exchange.rooms import read_rooms
+from world2minecraft.formats.objects import read_placements
+from world2minecraft.formats.rooms import read_rooms
 from world2minecraft.metrics.layout import category_integrity, collisions, out_of_rooms
 
 

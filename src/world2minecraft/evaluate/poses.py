@@ -10,7 +10,7 @@ import numpy as np
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.evaluate.frames import UsedFrame, common_move
 from world2minecraft.evaluate.truth import Truth
-from world2minecraft.exchange.poses import read_poses
+from world2minecraft.formats.poses import read_poses
 
 
 def pose_facts(out: Path, truth: Truth, frames: Sequence[UsedFrame]) -> dict[str, Any]:

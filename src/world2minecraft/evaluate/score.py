@@ -28,9 +28,9 @@ from world2minecraft.evaluate.poses import pose_facts
 from world2minecraft.evaluate.reach import CROSSED, Reached, reached_cells
 from world2minecraft.evaluate.truth import Truth
 from world2minecraft.evaluate.world import world_facts
-from world2minecraft.exchange.layout import read_layouts
-from world2minecraft.exchange.objects import read_objects
-from world2minecraft.exchange.room import read_room
+from world2minecraft.formats.layout import read_layouts
+from world2minecraft.formats.objects import read_objects
+from world2minecraft.formats.room import read_room
 from world2minecraft.metrics.calibration import count_calibration
 from world2minecraft.metrics.occupancy import count_occupancy
 from world2minecraft.metrics.surface import SurfaceCounts, count_surface, free_space_recall

@@ -27,10 +27,10 @@ from world2minecraft.evaluate.true_objects import (
     put_true_placements,
 )
 from world2minecraft.evaluate.truth import Truth
-from world2minecraft.exchange.evidence import write_evidence
-from world2minecraft.exchange.layout import write_layouts
-from world2minecraft.exchange.room import read_room
-from world2minecraft.exchange.scan import write_scan
+from world2minecraft.formats.evidence import write_evidence
+from world2minecraft.formats.layout import write_layouts
+from world2minecraft.formats.room import read_room
+from world2minecraft.formats.scan import write_scan
 from world2minecraft.fuse import fuse_views
 from world2minecraft.occupy import predictor
 from world2minecraft.parameters import Parameters

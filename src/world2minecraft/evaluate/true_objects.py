@@ -11,13 +11,13 @@ from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.evaluate.score import TrueRoom, placed
 from world2minecraft.evaluate.truth import read_instances
-from world2minecraft.exchange.objects import (
+from world2minecraft.formats.objects import (
     read_objects,
     read_placements,
     write_objects,
     write_placements,
 )
-from world2minecraft.exchange.room import read_room, write_room
+from world2minecraft.formats.room import read_room, write_room
 from world2minecraft.furniture import template
 
 OWN_CELLS = "cells"

@@ -14,7 +14,7 @@ from world2minecraft.core.classes import UNKNOWN, SemanticClass, class_id
 from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.files import array_names, read_json, read_npz
 from world2minecraft.core.types import Layout, LayoutObject, checks
-from world2minecraft.exchange.layout import layout_of_row
+from world2minecraft.formats.layout import layout_of_row
 
 ARRAYS = ("labels", "voxel_m", "origin_m", "truth_room_to_scan")
 

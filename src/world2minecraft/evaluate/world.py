@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.coordinates import apply, cell_centers_m, invert
 from world2minecraft.evaluate.reach import Reached
-from world2minecraft.exchange.scene import Scene, read_scene
+from world2minecraft.formats.scene import Scene, read_scene
 
 NEAR = np.array(list(np.ndindex(3, 3, 3))) - 1
 

@@ -14,7 +14,7 @@ from world2minecraft.core.types import UNSEEN
 from world2minecraft.edit.scene import SceneDraft
 from world2minecraft.edit.scene.difference import labels_in_cells
 from world2minecraft.evaluate.truth import read_truth
-from world2minecraft.exchange.occupancy import read_occupancy
+from world2minecraft.formats.occupancy import read_occupancy
 from world2minecraft.metrics.truth import carry_truth
 
 SUFFIXES = (".npz", ".npy", ".json")

@@ -17,8 +17,8 @@ from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.edit.into_world import build_into, built_mask
 from world2minecraft.edit.placing import placed
-from world2minecraft.exchange.forms import form_named, templates_of_run, write_form
 from world2minecraft.forge.tasks import parameters_of
+from world2minecraft.formats.forms import form_named, templates_of_run, write_form
 from world2minecraft.minecraft.commands.player_scale import size_pack
 from world2minecraft.minecraft.file_format import WriteOptions
 from world2minecraft.minecraft.losses import Losses
@@ -43,7 +43,7 @@ def export(
 
     Args:
         folder: the scene.
-        form: a name of ``exchange.forms``, ``world`` or ``png``.
+        form: a name of ``formats.forms``, ``world`` or ``png``.
         target: where the file goes.
         choice: as ``tasks.parameters_of``.
         progress: told of building and writing.

@@ -19,11 +19,11 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.files import write_text
 from world2minecraft.edit.scene import instances_of, placements_of
-from world2minecraft.exchange.forms import form_names
-from world2minecraft.exchange.objects import write_objects, write_placements
-from world2minecraft.exchange.paper import write_centers_json, write_occ_json
-from world2minecraft.exchange.room import write_room
 from world2minecraft.forge.editor import Editor
+from world2minecraft.formats.forms import form_names
+from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
+from world2minecraft.formats.room import write_room
 from world2minecraft.minecraft.worlds.launchers import Game, find_games
 
 DATA = {

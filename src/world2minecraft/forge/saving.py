@@ -15,10 +15,10 @@ from typing import Any
 from world2minecraft.core.errors import ConflictError, InputError
 from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.edit.scene import instances_of, placements_of
-from world2minecraft.exchange.objects import write_objects, write_placements
-from world2minecraft.exchange.paper import write_centers_json, write_occ_json
-from world2minecraft.exchange.room import write_room
 from world2minecraft.forge.snapshots import State
+from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
+from world2minecraft.formats.room import write_room
 
 SAVED_FILE, STAGED = "saved.json", "saving"
 BESIDE = ("scan.json", "layout.json")

@@ -2,7 +2,7 @@
 
 ==============================  ================================================================
 a run's folder, its room.npz    its grid, objects and placements as they stand
-``occ.json``                    in any of the forms of ``exchange/paper_forms.py``, its objects
+``occ.json``                    in any of the forms of ``formats/paper_forms.py``, its objects
                                 from ``centers.json`` beside it, where there is one
 any other occupancy file        objects are found and matched first, as ``w2m build`` does
 nothing                         the demo room that comes with the program
@@ -18,13 +18,13 @@ import numpy as np
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, SceneObject
 from world2minecraft.edit.scene import objects_of
-from world2minecraft.exchange.objects import read_objects, read_placements
-from world2minecraft.exchange.occupancy import read_occupancy
-from world2minecraft.exchange.paper_forms import Center, read_any_centers, read_any_occ
-from world2minecraft.exchange.room import read_room
-from world2minecraft.exchange.rooms import read_rooms
 from world2minecraft.find import find_objects
 from world2minecraft.forge.centred import instances_at
+from world2minecraft.formats.objects import read_objects, read_placements
+from world2minecraft.formats.occupancy import read_occupancy
+from world2minecraft.formats.paper_forms import Center, read_any_centers, read_any_occ
+from world2minecraft.formats.room import read_room
+from world2minecraft.formats.rooms import read_rooms
 from world2minecraft.furnish import furnish
 
 RUN_FILES = ("room.npz", "objects.json", "placements.json")

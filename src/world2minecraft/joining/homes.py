@@ -10,17 +10,17 @@ from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Scan
-from world2minecraft.exchange.layout import write_layouts
-from world2minecraft.exchange.objects import (
+from world2minecraft.formats.layout import write_layouts
+from world2minecraft.formats.objects import (
     read_objects,
     read_placements,
     write_objects,
     write_placements,
 )
-from world2minecraft.exchange.paper import write_centers_json, write_occ_json
-from world2minecraft.exchange.room import read_room, write_room
-from world2minecraft.exchange.rooms import read_rooms
-from world2minecraft.exchange.scan import write_scan
+from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
+from world2minecraft.formats.room import read_room, write_room
+from world2minecraft.formats.rooms import read_rooms
+from world2minecraft.formats.scan import write_scan
 from world2minecraft.joining.merging import Home, merged
 from world2minecraft.joining.moving import Run
 from world2minecraft.joining.placing import Placed, parse_place, place_runs, stated

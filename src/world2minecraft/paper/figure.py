@@ -16,7 +16,7 @@ from world2minecraft.core.classes import CLASS_COLOURS, OBJECT_CLASSES, UNKNOWN
 from world2minecraft.core.coordinates import grid_to_block_axes
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import AIR, BlockVolume, Camera, OccupancyGrid
-from world2minecraft.exchange.room import read_room
+from world2minecraft.formats.room import read_room
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
 from world2minecraft.paper.walked import views_of_walk
 from world2minecraft.render.lamps import NEUTRAL, PAPER

@@ -5,7 +5,7 @@
 and windows that were not seen. ``find_roomplan`` tells whether a path holds a plan.
 """
 
-from world2minecraft.exchange.roomplan import find_roomplan, read_roomplan
+from world2minecraft.formats.roomplan import find_roomplan, read_roomplan
 from world2minecraft.plans.beside import add_plan_openings, voted_by_plan
 from world2minecraft.plans.matching import LaidPlan, PlanMismatchError, laid_plan
 from world2minecraft.plans.outlines import layouts_of, straightened

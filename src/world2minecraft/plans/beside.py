@@ -4,9 +4,9 @@ from pathlib import Path
 
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import FusedEvidence
-from world2minecraft.exchange.evidence import read_evidence
-from world2minecraft.exchange.layout import read_layouts, write_layouts
-from world2minecraft.exchange.roomplan import read_roomplan
+from world2minecraft.formats.evidence import read_evidence
+from world2minecraft.formats.layout import read_layouts, write_layouts
+from world2minecraft.formats.roomplan import read_roomplan
 from world2minecraft.plans.matching import LaidPlan, PlanMismatchError, laid_plan
 from world2minecraft.plans.outlines import layouts_of
 from world2minecraft.plans.votes import plan_votes, with_plan_openings

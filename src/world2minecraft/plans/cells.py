@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.types import ObjectInstance, OccupancyGrid, Placement
-from world2minecraft.exchange.roomplan import CapturedPlan, PlanSurface
+from world2minecraft.formats.roomplan import CapturedPlan, PlanSurface
 from world2minecraft.geometry.morphology import grown
 from world2minecraft.plans.canvas import Canvas
 from world2minecraft.plans.colours import DOOR

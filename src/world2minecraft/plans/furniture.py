@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.exchange.roomplan import PlanObject
+from world2minecraft.formats.roomplan import PlanObject
 
 CHAIR, BED, SOFA = SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA
 TABLE, TVS, FURN, OBJS = (

@@ -10,7 +10,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import FusedEvidence
-from world2minecraft.exchange.roomplan import CapturedPlan
+from world2minecraft.formats.roomplan import CapturedPlan
 from world2minecraft.geometry.morphology import grown
 from world2minecraft.metrics.layout import inside_polygon
 from world2minecraft.plans.outlines import moved_plan, placed_rooms, straightened

@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.types import Layout, LayoutObject, Opening
-from world2minecraft.exchange.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
+from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
 from world2minecraft.plans.furniture import class_of
 
 CORNER_M = 0.5  # Walls whose ends are nearer meet in a corner.

@@ -3,7 +3,7 @@
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.exchange.roomplan import PlanObject
+from world2minecraft.formats.roomplan import PlanObject
 from world2minecraft.furniture import cells_of, size_in_cells, template
 from world2minecraft.plans.canvas import Canvas
 from world2minecraft.plans.colours import colour_of

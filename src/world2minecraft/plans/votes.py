@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
 from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.types import FusedEvidence, Layout, Opening
-from world2minecraft.exchange.roomplan import CapturedPlan, PlanObject
+from world2minecraft.formats.roomplan import CapturedPlan, PlanObject
 from world2minecraft.plans.furniture import class_of
 from world2minecraft.plans.outlines import PlacedRoom, placed_rooms
 

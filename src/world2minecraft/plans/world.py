@@ -13,12 +13,12 @@ from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Layout, Scan
-from world2minecraft.exchange.layout import write_layouts
-from world2minecraft.exchange.objects import write_objects, write_placements
-from world2minecraft.exchange.paper import write_centers_json, write_occ_json
-from world2minecraft.exchange.room import write_room
-from world2minecraft.exchange.roomplan import CapturedPlan, read_roomplan
-from world2minecraft.exchange.scan import write_scan
+from world2minecraft.formats.layout import write_layouts
+from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
+from world2minecraft.formats.room import write_room
+from world2minecraft.formats.roomplan import CapturedPlan, read_roomplan
+from world2minecraft.formats.scan import write_scan
 from world2minecraft.furnish.settling import settle
 from world2minecraft.parameters import Parameters
 from world2minecraft.plans.cells import PlanCells, cells_of_plan

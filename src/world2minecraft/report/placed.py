@@ -10,7 +10,7 @@ from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Camera
 from world2minecraft.evaluate.frames import computed
-from world2minecraft.exchange.poses import read_poses
+from world2minecraft.formats.poses import read_poses
 from world2minecraft.scan.frames import FrameFiles
 from world2minecraft.scan.judged import JudgedCapture, judge_capture
 from world2minecraft.scan.options import parse_options

@@ -14,7 +14,7 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import write_json, write_npz
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Layout, LayoutObject, Opening, View
-from world2minecraft.exchange.objects import rounded
+from world2minecraft.formats.objects import rounded
 from world2minecraft.rooms.phone import phone_shots, write_photos, write_video
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.shots import FrameTruth, Shooting, Shot, room_shots, room_to_scan

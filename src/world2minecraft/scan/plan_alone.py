@@ -4,7 +4,7 @@ from pathlib import Path
 
 from world2minecraft.core.archives import AnyPath, is_zip
 from world2minecraft.core.errors import InputError
-from world2minecraft.exchange import roomplan
+from world2minecraft.formats import roomplan
 from world2minecraft.scan.sources import find_capture
 
 

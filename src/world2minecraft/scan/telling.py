@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from world2minecraft.core.archives import AnyPath
 
 if TYPE_CHECKING:
-    from world2minecraft.exchange.roomplan import CapturedPlan
+    from world2minecraft.formats.roomplan import CapturedPlan
     from world2minecraft.scan.describing import CaptureSummary
 
 SHOWN_SKIPPED = 8

@@ -19,8 +19,8 @@ from world2minecraft.core.types import BlockVolume, Camera, Layout
 from world2minecraft.dataset.source import SceneSource, open_scene_source
 from world2minecraft.dataset.tours.rooms import TourRoom, find_rooms
 from world2minecraft.dataset.tours.values import TourRule
-from world2minecraft.exchange.labelled import place_of_blocks
-from world2minecraft.exchange.layout import read_layouts
+from world2minecraft.formats.labelled import place_of_blocks
+from world2minecraft.formats.layout import read_layouts
 from world2minecraft.furniture.library import TEMPLATES
 from world2minecraft.minecraft.physics.any_angle_paths import (
     Lattice,

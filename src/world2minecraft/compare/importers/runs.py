@@ -16,9 +16,9 @@ from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Layout
 from world2minecraft.evaluate.frames import truth_of_run
 from world2minecraft.evaluate.layout import in_room
-from world2minecraft.exchange.objects import read_placements
-from world2minecraft.exchange.room import read_room
-from world2minecraft.exchange.rooms import read_rooms
+from world2minecraft.formats.objects import read_placements
+from world2minecraft.formats.room import read_room
+from world2minecraft.formats.rooms import read_rooms
 from world2minecraft.metrics.layout import collisions
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from world2minecraft.core.types import Layout
-from world2minecraft.exchange.layout import read_layouts
+from world2minecraft.formats.layout import read_layouts
 
 _NAME = "layout.json"
 

@@ -8,8 +8,8 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.exchange.layout import write_layouts
-from world2minecraft.exchange.scene import scene_of, write_scene
+from world2minecraft.formats.layout import write_layouts
+from world2minecraft.formats.scene import scene_of, write_scene
 from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world
 from world2minecraft.rooms.worlds.layouts import house_layouts

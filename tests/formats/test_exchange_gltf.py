@@ -16,12 +16,12 @@ from hypothesis import strategies as st
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import AIR, BlockEntity, BlockVolume
-from world2minecraft.exchange.blob import pack_volume, unpack_volume
-from world2minecraft.exchange.bodies import bodies_of
-from world2minecraft.exchange.forms import form_named, form_names, write_forms
-from world2minecraft.exchange.glb import GlbWriter, read_glb, view_bytes
-from world2minecraft.exchange.gltf import gltf_bytes, read_gltf, texture_side, write_gltf
-from world2minecraft.exchange.habitat import (
+from world2minecraft.formats.blob import pack_volume, unpack_volume
+from world2minecraft.formats.bodies import bodies_of
+from world2minecraft.formats.forms import form_named, form_names, write_forms
+from world2minecraft.formats.glb import GlbWriter, read_glb, view_bytes
+from world2minecraft.formats.gltf import gltf_bytes, read_gltf, texture_side, write_gltf
+from world2minecraft.formats.habitat import (
     semantic_colour,
     semantic_ids,
     write_habitat,

@@ -17,18 +17,18 @@ from world2minecraft.core.types import (
     Placement,
     Scan,
 )
-from world2minecraft.exchange.centers import write_centers
-from world2minecraft.exchange.evidence import EVIDENCE_ARRAYS, read_evidence, write_evidence
-from world2minecraft.exchange.objects import (
+from world2minecraft.formats.centers import write_centers
+from world2minecraft.formats.evidence import EVIDENCE_ARRAYS, read_evidence, write_evidence
+from world2minecraft.formats.objects import (
     read_objects,
     read_placements,
     write_objects,
     write_placements,
 )
-from world2minecraft.exchange.occupancy import inner_corner_m, read_occupancy
-from world2minecraft.exchange.paper import read_occ_json, write_centers_json, write_occ_json
-from world2minecraft.exchange.room import GRID_ARRAYS, read_room, write_room
-from world2minecraft.exchange.scan import read_depth_kind, read_room_size, write_scan
+from world2minecraft.formats.occupancy import inner_corner_m, read_occupancy
+from world2minecraft.formats.paper_json import read_occ_json, write_centers_json, write_occ_json
+from world2minecraft.formats.room import GRID_ARRAYS, read_room, write_room
+from world2minecraft.formats.scan import read_depth_kind, read_room_size, write_scan
 
 
 def some_grid(seed: int = 0, shape=(6, 5, 4)) -> OccupancyGrid:

@@ -11,8 +11,8 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Layout, OccupancyGrid
-from world2minecraft.exchange.layout import read_layouts
-from world2minecraft.exchange.scan import read_room_size
+from world2minecraft.formats.layout import read_layouts
+from world2minecraft.formats.scan import read_room_size
 
 
 def read_rooms(folder: str | Path, grid: OccupancyGrid) -> tuple[Layout, ...]:

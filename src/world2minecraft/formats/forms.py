@@ -11,7 +11,7 @@ from typing import Literal
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.registry import Registry
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.exchange.labelled import labelled, place_of_blocks
+from world2minecraft.formats.labelled import labelled, place_of_blocks
 from world2minecraft.minecraft.file_format import FileFormat, WriteOptions
 from world2minecraft.minecraft.formats import (
     FORMATS,
@@ -25,8 +25,8 @@ from world2minecraft.minecraft.losses import Losses
 FORMS = Registry(
     "scene_format",
     {
-        "glb": "world2minecraft.exchange.forms:GltfFormat",
-        "habitat": "world2minecraft.exchange.forms:HabitatFormat",
+        "glb": "world2minecraft.formats.forms:GltfFormat",
+        "habitat": "world2minecraft.formats.forms:HabitatFormat",
     },
 )
 
@@ -39,13 +39,13 @@ class GltfFormat(FileFormat):
 
     def read(self, path: Path, losses: Losses) -> BlockVolume:
         """Read the blocks that lie beside the meshes."""
-        from world2minecraft.exchange.gltf import read_gltf  # noqa: PLC0415  # It needs numba.
+        from world2minecraft.formats.gltf import read_gltf  # noqa: PLC0415  # It needs numba.
 
         return read_gltf(path)
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write meshes, and the blocks beside them."""
-        from world2minecraft.exchange.gltf import write_gltf  # noqa: PLC0415  # It needs numba.
+        from world2minecraft.formats.gltf import write_gltf  # noqa: PLC0415  # It needs numba.
 
         write_gltf(volume, path, templates=options.other.get("templates"))
 
@@ -68,7 +68,7 @@ class HabitatFormat:
 
     def write(self, volume: BlockVolume, path: Path, options: WriteOptions, losses: Losses) -> None:
         """Write the scene dataset; blocks become meshes."""
-        from world2minecraft.exchange.habitat import write_habitat  # noqa: PLC0415  # numba.
+        from world2minecraft.formats.habitat import write_habitat  # noqa: PLC0415  # numba.
         from world2minecraft.minecraft.displays import BLOCK_DISPLAY  # noqa: PLC0415
 
         write_habitat(volume, path, name=path.stem)
@@ -219,6 +219,6 @@ def templates_of_run(folder: str | Path) -> Mapping[int, str]:
     path = Path(folder) / "placements.json"
     if not path.is_file():
         return {}
-    from world2minecraft.exchange.objects import read_placements  # noqa: PLC0415
+    from world2minecraft.formats.objects import read_placements  # noqa: PLC0415
 
     return {placement.object_id: placement.template for placement in read_placements(path)}

@@ -16,8 +16,8 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.files import array_names, read_npy, read_npz
 from world2minecraft.core.types import OBSERVED, UNSEEN, OccupancyGrid
-from world2minecraft.exchange.paper import read_occ_json
-from world2minecraft.exchange.room import GRID_ARRAYS, read_room
+from world2minecraft.formats.paper_json import read_occ_json
+from world2minecraft.formats.room import GRID_ARRAYS, read_room
 
 DEFAULT_VOXEL_M = 0.08  # The paper's.
 

@@ -7,7 +7,7 @@ import pytest
 
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.core.types import Layout, Opening
-from world2minecraft.exchange.layout import read_layouts, write_layouts
+from world2minecraft.formats.layout import read_layouts, write_layouts
 
 ROOM = Layout(
     np.array([[0, 0], [3.2, 0], [3.2, 4.12345], [0, 4.12345]]),

@@ -13,7 +13,7 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.coordinates import ROOM_AXES_TO_BLOCK, apply
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.exchange.faces import faces_of_boxes
+from world2minecraft.formats.faces import faces_of_boxes
 from world2minecraft.minecraft.block_colours import colour_of
 from world2minecraft.minecraft.collision_shapes import FULL_CUBE
 from world2minecraft.minecraft.commands.fill_boxes import merge_boxes

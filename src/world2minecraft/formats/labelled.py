@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.exchange.scene import Scene, read_scene
+from world2minecraft.formats.scene import Scene, read_scene
 
 SCENE_FILE = "scene.json"
 

@@ -22,9 +22,9 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.exchange.blob import pack_volume, unpack_volume
-from world2minecraft.exchange.bodies import Body, Look, bodies_of
-from world2minecraft.exchange.glb import GlbWriter, read_glb, view_bytes
+from world2minecraft.formats.blob import pack_volume, unpack_volume
+from world2minecraft.formats.bodies import Body, Look, bodies_of
+from world2minecraft.formats.glb import GlbWriter, read_glb, view_bytes
 
 EXTRAS_KEY = "world2minecraft"
 TRIANGLES = np.array([0, 1, 2, 0, 2, 3])

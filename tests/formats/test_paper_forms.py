@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, LimitError
-from world2minecraft.exchange.paper import _lines, write_occ_json
-from world2minecraft.exchange.paper_forms import CELLS, METRES, read_any_centers, read_any_occ
+from world2minecraft.formats.paper_forms import CELLS, METRES, read_any_centers, read_any_occ
+from world2minecraft.formats.paper_json import _lines, write_occ_json
 
 CELLS_OF = [[0, 0, 0, 2], [1, 0, 0, 2], [1, 2, 3, 5], [4, 1, 0, 11]]
 NAMED = [[x, y, z, CLASS_NAMES[c]] for x, y, z, c in CELLS_OF]

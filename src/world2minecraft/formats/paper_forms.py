@@ -23,8 +23,8 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import DamagedFileError, LimitError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.exchange.occupancy import DEFAULT_VOXEL_M, labels_grid
-from world2minecraft.exchange.paper import MAX_CELLS, read_occ_json
+from world2minecraft.formats.occupancy import DEFAULT_VOXEL_M, labels_grid
+from world2minecraft.formats.paper_json import MAX_CELLS, read_occ_json
 
 CELLS, METRES = "cells", "metres"
 _HOLDERS = (
