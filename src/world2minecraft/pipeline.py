@@ -23,7 +23,7 @@ from world2minecraft.core.types import Scan
 from world2minecraft.formats.evidence import write_evidence
 from world2minecraft.formats.poses import read_poses, write_poses
 from world2minecraft.formats.scan import placed_as_written, read_registration, write_scan
-from world2minecraft.furniture.own import own_files, own_folder
+from world2minecraft.furniture.user_library import own_files, own_folder
 from world2minecraft.fuse import fuse_views
 from world2minecraft.kept import kept_before, with_kept_files
 from world2minecraft.occupy import notes_of, predictor

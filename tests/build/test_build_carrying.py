@@ -6,7 +6,7 @@ from build_samples import CHAIR, OBJS, RED, TABLE, WOOD, Sketch, furnished, plac
 
 from world2minecraft.build import build_volume
 from world2minecraft.build.fitting import best_place, best_step
-from world2minecraft.metrics.layout import floaters
+from world2minecraft.furniture.layout_checks import floaters
 
 
 def lamp_over_a_table() -> Sketch:

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from world2minecraft.build import BuildParameters, build_volume
 from world2minecraft.build.idioms import body_box, idiom_box
 from world2minecraft.build.lattice import Lattice
-from world2minecraft.furniture import idiom, template
+from world2minecraft.furniture import block_designs as idiom
+from world2minecraft.furniture import template
 from world2minecraft.minecraft.rules.stability import unstable
 
 BARE = BuildParameters(ceiling=False, lights=False, expose=False)

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from world2minecraft.build.idioms import filled_by, idiom_box
 from world2minecraft.build.lattice import Lattice
 from world2minecraft.core.types import Placement
-from world2minecraft.furniture import idiom, template
+from world2minecraft.furniture import block_designs as idiom
+from world2minecraft.furniture import template
 
 ROOM_M = 6.0
 

@@ -11,7 +11,8 @@ from world2minecraft.build.parameters import BuildParameters
 from world2minecraft.build.tinting import Hue, tinted
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
-from world2minecraft.furniture import idiom, template
+from world2minecraft.furniture import block_designs as idiom
+from world2minecraft.furniture import template
 from world2minecraft.geometry.colour import oklab_of_srgb
 
 RED, BLUE, WHITE, OAK, DARK = (

@@ -6,7 +6,7 @@ import pytest
 from world2minecraft.core.errors import UsageError
 from world2minecraft.forge.editor import Editor
 from world2minecraft.furniture import cells_of, template
-from world2minecraft.metrics.layout import floaters
+from world2minecraft.furniture.layout_checks import floaters
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from world2minecraft.core.types import Placement
 from world2minecraft.furnish.clearing import clear_overlaps
 from world2minecraft.furnish.crumbs import tidied
 from world2minecraft.furniture import template
-from world2minecraft.metrics.layout import collisions
+from world2minecraft.furniture.layout_checks import collisions
 
 CLOSE = 1e-6
 

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.furniture import TEMPLATES, check_template, template
+from world2minecraft.furniture.block_designs import block_size
 from world2minecraft.furniture.families.fronts import MOST_REST, body_of, door_columns
 from world2minecraft.furniture.family import FAMILIES
-from world2minecraft.furniture.idiom import block_size
-from world2minecraft.furniture.showing import volume_of
+from world2minecraft.furniture.preview_scene import volume_of
 from world2minecraft.minecraft.block_states import check_state, parse_state
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.glow import is_luminous

@@ -12,10 +12,10 @@ from world2minecraft.core.errors import DamagedFileError, LimitError, UnknownNam
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.furniture import raster
-from world2minecraft.furniture.adopting import Wish, adopt, front_of
-from world2minecraft.furniture.idiom import block_size, laid
+from world2minecraft.furniture.block_designs import block_size, laid
 from world2minecraft.furniture.library import template, templates_of, variants_of
-from world2minecraft.furniture.own import own_files, own_folder, own_template, read_own
+from world2minecraft.furniture.user_import import Wish, adopt, front_of
+from world2minecraft.furniture.user_library import own_files, own_folder, own_template, read_own
 from world2minecraft.minecraft.transforms import turn_volume
 
 AIR = "minecraft:air"

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.furniture import Look, Material
+from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.laying import RISES, lay_back, lay_legs, lay_plate, lay_trestle
-from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.template import BlockSize
 from world2minecraft.minecraft.block_states import complete, parse_state
 from world2minecraft.minecraft.visual import visual_boxes_of

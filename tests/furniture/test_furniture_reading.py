@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from world2minecraft.core.errors import InputError, World2MinecraftError
 from world2minecraft.furniture import TEMPLATES, template
+from world2minecraft.furniture.design_files import design_of, read_design
 from world2minecraft.furniture.library import design_files
-from world2minecraft.furniture.reading import design_of, read_design
 
 CHAIR = json.loads(design_files()["chair"].read_text("utf-8"))
 

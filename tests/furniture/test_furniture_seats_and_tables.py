@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from world2minecraft.furniture import TEMPLATES, template
+from world2minecraft.furniture.block_designs import block_size
 from world2minecraft.furniture.family import FAMILIES
-from world2minecraft.furniture.idiom import block_size
-from world2minecraft.furniture.showing import volume_of
+from world2minecraft.furniture.preview_scene import volume_of
 from world2minecraft.minecraft.block_states import check_state, parse_state
 from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.minecraft.visual import visual_boxes_of

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from world2minecraft.metrics.footprints import (
+from world2minecraft.furniture.footprints import (
     area_m2,
     outside_share,
     shared_area_m2,
     shared_height_m,
     shared_volume_m3,
 )
-from world2minecraft.metrics.layout import inside_polygon, plan_corners_m
+from world2minecraft.furniture.layout_checks import inside_polygon, plan_corners_m
 
 ROOM = np.array([[0, 0], [4, 0], [4, 3], [0, 3]], float)
 ELL = np.array([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]], float)

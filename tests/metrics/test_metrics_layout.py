@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.types import LayoutObject, Placement
-from world2minecraft.metrics.layout import (
+from world2minecraft.furniture.layout_checks import (
     collisions,
     floaters,
     inside_polygon,

@@ -17,14 +17,14 @@ from world2minecraft.core.types import (
     Placement,
 )
 from world2minecraft.furniture import template, templates_of
-from world2minecraft.metrics.layout import (
+from world2minecraft.furniture.layout_checks import (
     category_integrity,
     collisions,
     kept_objects,
     out_of_rooms,
     overlapping_boxes,
 )
-from world2minecraft.metrics.solids import box_m, depth_m, own_cells, solids_m
+from world2minecraft.furniture.solids import box_m, depth_m, own_cells, solids_m
 
 NAMES = ["chair", "dining_table", "sofa", "counter", "bookcase", "desk", "double_bed"]
 

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from world2minecraft.metrics.layout import collisions, out_of_bounds
+from world2minecraft.furniture.layout_checks import collisions, out_of_bounds
 from world2minecraft.rooms import generate_house
 from world2minecraft.rooms.house_gaps import house_gaps
 from world2minecraft.rooms.house_plan import WALL_M, plan_house

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.furniture.layout_checks import collisions, out_of_bounds
 from world2minecraft.geometry.connected_components import connected_parts
-from world2minecraft.metrics.layout import collisions, out_of_bounds
 from world2minecraft.rooms import KINDS, SHAPES, generate_room
 from world2minecraft.rooms.clutter import MAX_ASKEW_DEG
 from world2minecraft.rooms.ground import Cut, Ground, Roof

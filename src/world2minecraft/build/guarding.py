@@ -18,7 +18,7 @@ from world2minecraft.build.fitted import LAID_ON
 from world2minecraft.build.lattice import Lattice
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
-from world2minecraft.metrics.solids import OWN_CELLS
+from world2minecraft.furniture.solids import OWN_CELLS
 
 # What of these does not stand on a floor may hang on a wall.
 HUNG = (SemanticClass.FURN, SemanticClass.TVS, SemanticClass.OBJS)

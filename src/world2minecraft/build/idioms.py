@@ -17,7 +17,7 @@ from world2minecraft.build.tinting import Hue, tinted
 from world2minecraft.core.coordinates import cells_to_block_axes
 from world2minecraft.core.types import Placement
 from world2minecraft.furniture import Idiom
-from world2minecraft.furniture.idiom import block_size
+from world2minecraft.furniture.block_designs import block_size
 from world2minecraft.geometry.colour import oklab_of_srgb
 from world2minecraft.minecraft.block_colours import (
     DYES,

@@ -38,8 +38,9 @@ from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
 from world2minecraft.fit import without_loose
 from world2minecraft.fit.masks import SUB
-from world2minecraft.furniture import Idiom, idiom, template
-from world2minecraft.metrics.solids import own_cells
+from world2minecraft.furniture import Idiom, template
+from world2minecraft.furniture import block_designs as idiom
+from world2minecraft.furniture.solids import own_cells
 
 CELLS = "cells"
 OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.

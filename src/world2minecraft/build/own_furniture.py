@@ -15,10 +15,10 @@ from world2minecraft.build.pieces import FACINGS, Piece
 from world2minecraft.core.coordinates import cells_to_block_axes
 from world2minecraft.core.types import OccupancyGrid, Placement
 from world2minecraft.furniture import Idiom, template
-from world2minecraft.furniture.idiom import block_size, laid
+from world2minecraft.furniture.block_designs import block_size, laid
+from world2minecraft.furniture.solids import own_cells
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Span, Template
 from world2minecraft.geometry.colour import oklab_of_srgb
-from world2minecraft.metrics.solids import own_cells
 from world2minecraft.minecraft.block_colours import DYES, WOODS, colours_of, nearest_oklab
 from world2minecraft.minecraft.block_states import BlockState, parse_state
 

@@ -7,8 +7,8 @@ import numpy as np
 from world2minecraft.build.canvas import Canvas
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Placement
+from world2minecraft.furniture.solids import OWN_CELLS
 from world2minecraft.geometry.padded_morphology import grown
-from world2minecraft.metrics.solids import OWN_CELLS
 
 LAST = {int(SemanticClass.CHAIR): 1, int(SemanticClass.TVS): 2, int(SemanticClass.OBJS): 3}
 

@@ -8,7 +8,7 @@ import typer
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.furniture.adopting import Adopted
+    from world2minecraft.furniture.user_import import Adopted
 
 EXAMPLES = """\
 w2m furniture add my_chair.schem --class chair --blocks-per-metre 2
@@ -63,8 +63,8 @@ def run(
     Raises:
         UsageError: a name or a class is none, or is taken. InputError: the file cannot be read.
     """
-    from world2minecraft.furniture.adopting import Wish, adopt
-    from world2minecraft.furniture.own import check_name
+    from world2minecraft.furniture.user_import import Wish, adopt
+    from world2minecraft.furniture.user_library import check_name
     from world2minecraft.minecraft.formats import read_blocks
     from world2minecraft.minecraft.losses import Losses
 
@@ -90,7 +90,7 @@ def check_free(name: str, force: bool) -> Path:
             given.
     """
     from world2minecraft.furniture.library import design_files
-    from world2minecraft.furniture.own import own_folder
+    from world2minecraft.furniture.user_library import own_folder
 
     if name in design_files():
         raise UsageError(f"the library has a {name} of its own; add --name another_name")
@@ -103,7 +103,7 @@ def check_free(name: str, force: bool) -> Path:
 def write_checked(adopted: "Adopted", target: Path) -> None:
     """Write a piece that can be read again. Raises ``OutputError``."""
     from world2minecraft.core.files import write_json
-    from world2minecraft.furniture.own import own_template
+    from world2minecraft.furniture.user_library import own_template
 
     own_template(adopted.content)
     write_json(target, adopted.content)

@@ -72,7 +72,7 @@ def draw(templates: Sequence["Template"], out: Path, columns: int = 4) -> None:
 
 
 def _card(one: "Template") -> list["Card"]:
-    from world2minecraft.furniture.showing import volume_of
+    from world2minecraft.furniture.preview_scene import volume_of
     from world2minecraft.render.sheet import Card
 
     volumes = {f"{scale:g} a metre": volume_of(one, scale, room=False) for scale in SCALES}

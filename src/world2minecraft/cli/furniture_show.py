@@ -64,7 +64,7 @@ def _blocks_of(one: "Template") -> list[str]:
 
     import numpy as np
 
-    from world2minecraft.furniture.idiom import block_size
+    from world2minecraft.furniture.block_designs import block_size
 
     lines = []
     for scale in (1.0, 2.0, 4.0):

@@ -12,7 +12,7 @@ from world2minecraft.core.types import Layout, OccupancyGrid
 from world2minecraft.evaluate.objects import TrueObjects
 from world2minecraft.formats.objects import read_placements
 from world2minecraft.formats.rooms import read_rooms
-from world2minecraft.metrics.layout import category_integrity, collisions, out_of_rooms
+from world2minecraft.furniture.layout_checks import category_integrity, collisions, out_of_rooms
 
 
 def layout_facts(

@@ -8,7 +8,7 @@ from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.find.heap import floor_below
 from world2minecraft.find.owned import cells_by_owner
 from world2minecraft.furniture import template
-from world2minecraft.furniture.seating import AGAINST, OWN, SeatFit, fit_seat, look_at
+from world2minecraft.furniture.chair_fitting import AGAINST, OWN, SeatFit, fit_seat, look_at
 from world2minecraft.geometry.connected_components import connected_parts
 
 WIDE_M = 0.85  # A chair turned by half a quarter is this wide; an easy chair may be wider.

@@ -17,7 +17,7 @@ from world2minecraft.find.clusters import centroids, cluster_candidates
 from world2minecraft.find.density import candidate_cells, density_map, object_cells
 from world2minecraft.forge.query import QueriedScene, Query
 from world2minecraft.furnish import ranked_matches
-from world2minecraft.metrics.layout import collisions, out_of_rooms
+from world2minecraft.furniture.layout_checks import collisions, out_of_rooms
 
 OFFERED = 5
 LEAST_DOUBT = 0.3  # Of what is surer than this nobody needs to be told.

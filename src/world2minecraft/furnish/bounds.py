@@ -12,8 +12,8 @@ import numpy as np
 from world2minecraft.core.types import Layout, Placement
 from world2minecraft.furnish.runs import largest_rectangle
 from world2minecraft.furniture import template
-from world2minecraft.metrics.layout import inside_polygon
-from world2minecraft.metrics.solids import OWN_CELLS, box_m
+from world2minecraft.furniture.layout_checks import inside_polygon
+from world2minecraft.furniture.solids import OWN_CELLS, box_m
 
 STEP_M = 0.04  # How finely a slanted wall is followed.
 LOST_M = 0.6  # What lies farther outside was seen through an opening or in a mirror.

@@ -18,8 +18,8 @@ from world2minecraft.furnish.settling import settle
 from world2minecraft.furnish.trial import Bias, Cells, Scored, Trial, score_shifts
 from world2minecraft.furnish.variants import Choice, choose, colour_of_cells, offers_of
 from world2minecraft.furniture import template, templates_of
+from world2minecraft.furniture.chair_fitting import fit_seat, look_at, without_open_top
 from world2minecraft.furniture.facing import Surroundings, facing, surroundings
-from world2minecraft.furniture.seating import fit_seat, look_at, without_open_top
 
 OWN_CELLS = "cells"
 HALF = 0.5

@@ -15,7 +15,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Layout, OccupancyGrid, Placement
 from world2minecraft.furnish.bounds import least_sides_m, with_box, within_rooms
 from world2minecraft.furnish.clearing import clear_overlaps
-from world2minecraft.metrics.solids import OWN_CELLS, box_m, depth_m, own_cells, solids_m
+from world2minecraft.furniture.solids import OWN_CELLS, box_m, depth_m, own_cells, solids_m
 
 FORGIVEN_M = 0.03  # Under the 4 cm that the metric forgives.
 FARTHEST_M = 0.24  # Farther off its cells no longer lie in what stands for them.

@@ -4,14 +4,14 @@ A design of your own is one data file in ``designs/``, or an entry point of the 
 ``world2minecraft.template``; see docs/furniture.md.
 """
 
-from world2minecraft.furniture.checking import check_template
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_designs import Idiom, IdiomBlock, idiom
 from world2minecraft.furniture.facing import Facing, facing, surroundings
-from world2minecraft.furniture.idiom import Idiom, IdiomBlock, idiom
 from world2minecraft.furniture.library import TEMPLATES, template, templates_of, variants_of
-from world2minecraft.furniture.look import Look
 from world2minecraft.furniture.materials import Material
 from world2minecraft.furniture.raster import cells_of, raster, size_in_cells, surface
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span, Template
+from world2minecraft.furniture.template_validation import check_template
 
 __all__ = [
     "TEMPLATES",

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
-from world2minecraft.furniture.seating import look_at
+from world2minecraft.furniture.chair_fitting import look_at
 
 SIDES = ((0, 1), (1, 1), (0, -1), (1, -1))  # (axis, sign) of the fronts at 0, 90, 180, 270 degrees.
 WALL_REACH = 3  # Cells beyond a side in which a wall counts: a 0.2 m gap at 0.08 m.

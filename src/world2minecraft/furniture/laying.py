@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from world2minecraft.furniture.plan import Numbers, Plan, Side
+from world2minecraft.furniture.block_plan import Numbers, Plan, Side
 
 # How high in its block the top of a shape lies that rests on the block below.
 RISES = {"carpet": 1 / 16, "trapdoor": 3 / 16, "slab": 0.5, "full": 1.0}

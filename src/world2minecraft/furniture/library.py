@@ -11,9 +11,9 @@ from importlib.resources import files
 from pathlib import Path
 
 from world2minecraft.core.registry import Registry
-from world2minecraft.furniture.own import own_files, read_own
-from world2minecraft.furniture.reading import read_design
+from world2minecraft.furniture.design_files import read_design
 from world2minecraft.furniture.template import Template
+from world2minecraft.furniture.user_library import own_files, read_own
 
 # Of templates that match equally well the first is taken: the plainer one.
 FIRST = (

@@ -14,7 +14,7 @@ import numpy as np
 from world2minecraft.core.classes import OBJECT_CLASSES
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import checks
-from world2minecraft.furniture.look import Look
+from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.materials import Material
 
 Mount = Literal["floor", "wall", "ceiling", "any"]

@@ -10,8 +10,8 @@ import numpy as np
 
 from world2minecraft.build.doorways import find_gaps
 from world2minecraft.core.types import Layout, Opening
+from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.joining.moving import Run
-from world2minecraft.metrics.layout import inside_polygon
 
 LEAST_WIDTH_M, MOST_WIDTH_M = 0.45, 2.5
 ASIDE_M = 0.3  # So far before and behind an opening one asks whether the room goes on.

@@ -13,10 +13,10 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import Layout
+from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.geometry.morphology import grown
 from world2minecraft.joining.doors import Doorway, doorways_of, shifted_door
 from world2minecraft.joining.moving import Move, Run, moved, moved_layout
-from world2minecraft.metrics.layout import inside_polygon
 
 SAME_WIDTH_M, SAME_HEAD_M = 0.3, 0.3
 WALL_CELLS = 2  # Between two rooms: the wall's face in each.

@@ -12,10 +12,10 @@ import numpy as np
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OBSERVED, Layout, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.joining.doors import Doorway, head_of, shifted_door
 from world2minecraft.joining.moving import Move, Run, moved
 from world2minecraft.joining.placing import Placed
-from world2minecraft.metrics.layout import inside_polygon
 
 MOST_CELLS = 600_000_000
 MOST_OBJECTS = 65535

@@ -17,7 +17,7 @@ from scipy.spatial import KDTree
 from world2minecraft.core.classes import UNKNOWN, SemanticClass
 from world2minecraft.core.coordinates import cell_centers_m
 from world2minecraft.core.types import COMPLETED, UNSEEN, Layout, OccupancyGrid
-from world2minecraft.metrics.layout import inside_polygon
+from world2minecraft.furniture.layout_checks import inside_polygon
 
 THICK_M = 0.16  # Behind its face a wall may be occupied so deep.
 FACE_M = 0.1  # Cells so near to the face are the wall's.

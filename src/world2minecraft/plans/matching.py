@@ -11,8 +11,8 @@ import numpy as np
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import FusedEvidence
 from world2minecraft.formats.roomplan import CapturedPlan
+from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.geometry.morphology import grown
-from world2minecraft.metrics.layout import inside_polygon
 from world2minecraft.plans.outlines import moved_plan, placed_rooms, straightened
 
 BAND_M = (0.4, 2.0)  # Of the heights at which walls are looked for.

@@ -6,7 +6,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.types import UNSEEN, Layout
-from world2minecraft.metrics.layout import (
+from world2minecraft.furniture.layout_checks import (
     category_integrity,
     collisions,
     floaters,
@@ -18,7 +18,7 @@ from world2minecraft.report.scene import FinishedScene
 
 
 def layout_facts(scene: FinishedScene) -> dict[str, Any]:
-    """Return the layout's figures; ``metrics.layout`` says what each means.
+    """Return the layout's figures; ``furniture.layout_checks`` says what each means.
 
     ``floaters`` are parts of the built blocks, ``floaters_seen`` of the room's cells.
     ``semantic_integrity`` compares the world with what was found: its ``categories``, and the

@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from world2minecraft.core.coordinates import apply, rotation_about_z
+from world2minecraft.furniture.layout_checks import overlap_depth_m
 from world2minecraft.geometry.connected_components import connected_parts
-from world2minecraft.metrics.layout import overlap_depth_m
 from world2minecraft.rooms.ground import TOUCH_M, Box, Ground, Rect, grown
 from world2minecraft.rooms.model import STEP_M, Model
 

@@ -24,8 +24,8 @@ from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.coordinates import apply, cell_centers_m, invert
 from world2minecraft.core.types import UNSEEN, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.furniture import Part, Template, template
+from world2minecraft.furniture.solids import OWN_CELLS, own_cells
 from world2minecraft.geometry.padded_morphology import beside
-from world2minecraft.metrics.solids import OWN_CELLS, own_cells
 from world2minecraft.minecraft.displays import VIEW_BLOCKS
 from world2minecraft.minecraft.glow import is_luminous
 

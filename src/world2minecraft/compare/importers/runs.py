@@ -19,7 +19,7 @@ from world2minecraft.evaluate.layout import in_room
 from world2minecraft.formats.objects import read_placements
 from world2minecraft.formats.room import read_room
 from world2minecraft.formats.rooms import read_rooms
-from world2minecraft.metrics.layout import collisions
+from world2minecraft.furniture.layout_checks import collisions
 
 if TYPE_CHECKING:
     from world2minecraft.compare.importers import How

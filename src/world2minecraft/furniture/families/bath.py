@@ -2,9 +2,9 @@
 
 from typing import Literal
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import Cell, Plan, Side
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Cell, Plan, Side
 from world2minecraft.furniture.shapes import part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 

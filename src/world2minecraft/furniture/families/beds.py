@@ -4,10 +4,10 @@ At one block per metre they are the game's own beds, side by side. At more, wher
 short, a mattress of wool lies on a frame, under a blanket in the bed's colour.
 """
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.laying import lay_back
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import backrest, legs, part, slab
 from world2minecraft.furniture.template import BlockSize, Build, LocalBlock, Part, Span
 

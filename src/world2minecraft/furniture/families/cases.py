@@ -6,6 +6,8 @@ the foremost blocks are the ``face``, such as barrels.
 
 from collections.abc import Sequence
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.families.fronts import (
     Body,
     body_of,
@@ -15,8 +17,6 @@ from world2minecraft.furniture.families.fronts import (
     panels,
 )
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import legs, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part
 

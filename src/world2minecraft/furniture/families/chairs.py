@@ -4,10 +4,10 @@ At one block per metre a chair is a stair. At two it has a back of an open trapd
 three on legs, a seat at its height and a back.
 """
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.laying import lay_back, lay_legs, lay_plate
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import arms, backrest, column, legs, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 

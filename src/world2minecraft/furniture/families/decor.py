@@ -1,9 +1,9 @@
 """What makes a room someone's: a fireplace, a clock, a piano, a bicycle, things on boards."""
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.families.fronts import body_of
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import column, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 

@@ -6,7 +6,7 @@ handle in the cell before it, which is as deep as the rest. So a front needs no 
 
 from typing import NamedTuple
 
-from world2minecraft.furniture.plan import Numbers, Plan, panel_properties
+from world2minecraft.furniture.block_plan import Numbers, Plan, panel_properties
 from world2minecraft.furniture.template import BlockSize
 from world2minecraft.minecraft.blocks import block_table
 

@@ -4,9 +4,9 @@ Leaves are persistent, so that they stay without a tree, and nothing here grows:
 or bamboo but in flower pots.
 """
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import column, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 

@@ -4,6 +4,8 @@ A worktop is upside-down stairs: half a block of stone that stands out over a da
 worktops do over the doors below.
 """
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.families.fronts import (
     Body,
     body_of,
@@ -13,8 +15,6 @@ from world2minecraft.furniture.families.fronts import (
     panels,
 )
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 

@@ -4,9 +4,9 @@ A shade wider than a block is a glowing block in four plates; nothing here needs
 and what hangs holds on to its own chain.
 """
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import Plan, Side
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Plan, Side
 from world2minecraft.furniture.shapes import column, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 

@@ -4,10 +4,10 @@ A thin one is of panes, which join side by side to one dark plate. One block wid
 post, so that is a panel, or at few blocks a metre a whole block: a panel is brown, a screen is not.
 """
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.laying import lay_legs
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 

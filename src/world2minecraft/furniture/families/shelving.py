@@ -6,9 +6,9 @@ stand on a board, and air is between them and the next.
 
 from collections.abc import Sequence
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import arms, backrest, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 

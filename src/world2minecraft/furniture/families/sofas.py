@@ -7,9 +7,9 @@ to half a block. Cloth is whole blocks alone, so a sofa in a strong colour is a 
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import FACING, Plan, Side
 from world2minecraft.furniture.family import Family
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import FACING, Plan, Side
 from world2minecraft.furniture.shapes import arms, backrest, part, slab
 from world2minecraft.furniture.template import BlockSize, Build, LocalBlock, Part, Span
 

@@ -4,10 +4,10 @@ A top thinner than half a block is a plate of trapdoors or a carpet on fences. W
 higher than a block it is a trestle of stairs turned upside down.
 """
 
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.block_plan import Plan
 from world2minecraft.furniture.family import Family
 from world2minecraft.furniture.laying import lay_legs, lay_plate, lay_trestle
-from world2minecraft.furniture.look import Look
-from world2minecraft.furniture.plan import Plan
 from world2minecraft.furniture.shapes import arms, backrest, column, legs, part, slab
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from world2minecraft.furniture.idiom import Idiom
+from world2minecraft.furniture.block_designs import Idiom
 from world2minecraft.furniture.materials import (
     Material,
     Swatch,

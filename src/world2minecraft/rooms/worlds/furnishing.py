@@ -11,7 +11,7 @@ import numpy as np
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.furniture import Idiom, template
-from world2minecraft.furniture.idiom import block_size, laid
+from world2minecraft.furniture.block_designs import block_size, laid
 from world2minecraft.rooms.place import Item
 from world2minecraft.rooms.worlds.canvas import WorldCanvas
 from world2minecraft.rooms.worlds.choices import designs_for, dressed

@@ -19,9 +19,9 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.files import read_json
-from world2minecraft.furniture.look import Look
+from world2minecraft.furniture.appearance import Look
+from world2minecraft.furniture.design_files import design_of
 from world2minecraft.furniture.materials import FIXED, Material, kinds, places_of
-from world2minecraft.furniture.reading import design_of
 from world2minecraft.furniture.template import BlockSize, LocalBlock, Part, Span, Template
 
 NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from itertools import product
 from typing import Literal
 
-from world2minecraft.furniture.look import Look
+from world2minecraft.furniture.appearance import Look
 from world2minecraft.furniture.template import BlockSize, LocalBlock
 
 Cell = tuple[int, int, int]

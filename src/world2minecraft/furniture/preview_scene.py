@@ -8,7 +8,7 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.furniture.idiom import Idiom, block_size, laid
+from world2minecraft.furniture.block_designs import Idiom, block_size, laid
 from world2minecraft.furniture.template import Parameters, Template
 from world2minecraft.minecraft.rules.connections import connected
 

@@ -14,7 +14,7 @@ from world2minecraft.core.classes import CLASS_NAMES, OBJECT_CLASSES
 from world2minecraft.core.coordinates import block_axes_to_grid
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.furniture.own import (
+from world2minecraft.furniture.user_library import (
     MAX_BLOCKS,
     MAX_KINDS,
     MAX_PARTS,

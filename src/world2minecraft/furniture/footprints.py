@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.metrics.layout import inside_polygon, plan_corners_m
+from world2minecraft.furniture.layout_checks import inside_polygon, plan_corners_m
 
 POINTS = 50  # A side of the raster over a footprint: a share is told to 0.04 %.
 

@@ -4,7 +4,7 @@ In: objects as boxes (ObjectInstance, LayoutObject), as placements, or as labels
 at before they become cells, so that touching furniture is no collision.
 
 A **collision** is where solid parts meet. A placement is as solid as its template's parts or its
-own cells (``metrics.solids``): a chair pushed under a table is none, its back through the table's
+own cells (``furniture.solids``): a chair pushed under a table is none, its back through the table's
 top is one. Of an object that is but a box, all of the box is solid. ``overlapping_boxes`` counts
 boxes whatever they hold, as the layout methods of the paper do.
 
@@ -23,8 +23,8 @@ import numpy as np
 from world2minecraft.core.classes import OBJECT_CLASSES, STRUCTURE_CLASSES
 from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import BlockVolume, Layout, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.furniture.solids import depth_m, solids_m
 from world2minecraft.geometry.connected_components import connected_parts
-from world2minecraft.metrics.solids import depth_m, solids_m
 
 OVERLAP_M = 0.04  # Half a default cell: less than what reading a size from cells can tell.
 OUTSIDE_M = 0.04  # The same, for boxes that reach into walls.
