@@ -22,9 +22,9 @@ from PIL import Image
 from benchmarks.render_scenes import camera_of, poses, room, small
 from benchmarks.rows import Row
 from world2minecraft.core.machine import usable_cores
-from world2minecraft.render import BlockScene, Picture, prepare_scene, render_volume
-from world2minecraft.render.batch import RenderPool, batch_arrays, render_batch
-from world2minecraft.render.output import colour_bytes
+from world2minecraft.rendering import BlockScene, Picture, prepare_scene, render_volume
+from world2minecraft.rendering.batch import RenderPool, batch_arrays, render_batch
+from world2minecraft.rendering.output import colour_bytes
 
 SMALL_PX, POSES, ROUNDS = (64, 128, 224), 1000, 2  # Of the rounds the least counts.
 LOOPED = 200  # Of the poses, in the loop: it is the slower.

@@ -11,7 +11,7 @@ from benchmarks.rows import Row
 from world2minecraft.dataset.labels import cast_depth, label_image
 from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.voxels import scene_voxels
-from world2minecraft.render import prepare_scene
+from world2minecraft.rendering import prepare_scene
 from world2minecraft.rooms.worlds import generate_world
 
 VIEWS, ROOMS = 6, 12

@@ -16,7 +16,7 @@ from PIL import Image
 
 from benchmarks.rows import Row
 from world2minecraft.minecraft.blocks import block_table
-from world2minecraft.render.packs import PackLooks
+from world2minecraft.rendering.resource_packs import PackLooks
 
 BLOCKS, OTHER_FILES, STATES, REPEATS = 1500, 20_000, 200, 4
 FACINGS = ("north", "east", "south", "west")

@@ -26,7 +26,7 @@ from world2minecraft.dataset.engine import opened_engine
 from world2minecraft.dataset.plan import DatasetPlan, Recipe, house_scenes, plan_dataset
 from world2minecraft.dataset.store import verify_store
 from world2minecraft.dataset.store.stored import stored_samples
-from world2minecraft.render.views import camera_of
+from world2minecraft.rendering.views import camera_of
 
 HOUSES, IMAGES = 2, 40
 USUAL_KILLS, USUAL_POOLS = 50, 8

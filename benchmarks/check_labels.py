@@ -3,7 +3,7 @@
 ``python -m benchmarks.check_labels [--frames 200 --size 160 120] [--spoil] [--json FILE]``
 
 Cameras are at the eyes of people standing in generated houses. Each frame is rendered and
-labelled; a float64 ray caster independent of the kernels (``tests/render/oracle.py``) casts each
+labelled; a float64 ray caster independent of the kernels (``tests/rendering/oracle.py``) casts each
 pixel again, and ``tests/dataset/label_reference.py`` derives from its depth, cell by cell, what
 is hit, what lies in the frustum and, for a sample, which cells are crossed by a ray. The exit
 code is 1 if any cell of any frame differs; ``--spoil`` shifts the labels by a millimetre to show
@@ -25,7 +25,7 @@ from rich.console import Console
 from rich.table import Table
 from scipy.ndimage import minimum_filter
 from tests.dataset import label_reference as reference
-from tests.render.oracle import oracle_picture
+from tests.rendering.oracle import oracle_picture
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import look_at
@@ -40,8 +40,8 @@ from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.tours import nyu_camera
 from world2minecraft.dataset.values import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.dataset.voxels import scene_voxels
-from world2minecraft.render import BlockScene, Picture, prepare_scene, render_volume
-from world2minecraft.render.looks import OwnLooks
+from world2minecraft.rendering import BlockScene, Picture, prepare_scene, render_volume
+from world2minecraft.rendering.block_models import OwnLooks
 from world2minecraft.rooms.worlds import generate_world
 
 EYE_M, TALL_M, ASIDE_M = 1.62, 1.8, 0.3  # The last: as near as one stands to a wall.

@@ -4,7 +4,7 @@
 
 Scenes: a generated room built at 4 and 2 blocks per metre and as display entities, furnished
 flats, and random models (rotated, flat, hollow, perforated boxes, glass). Cameras stand in free
-cells and inside furniture. The reference is ``tests/render/oracle.py``. The exit code is 1 if
+cells and inside furniture. The reference is ``tests/rendering/oracle.py``. The exit code is 1 if
 less than 99.99 % of the pixels of a row are equal or the median depth error is 0.1 mm or more;
 ``--spoil`` moves the cameras of a row by a millimetre to show that the check can fail.
 """
@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from tests.render.oracle import has_face, oracle_picture
+from tests.rendering.oracle import has_face, oracle_picture
 
 from benchmarks.render_scenes import (
     RandomLooks,
@@ -31,8 +31,8 @@ from benchmarks.render_scenes import (
 )
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.render import Picture, prepare_scene, render_volume
-from world2minecraft.render.elements import LookSource
+from world2minecraft.rendering import Picture, prepare_scene, render_volume
+from world2minecraft.rendering.block_elements import LookSource
 
 LEAST_EQUAL, MOST_MEDIAN_M = 0.9999, 1e-4
 SPOIL_M = 1e-3

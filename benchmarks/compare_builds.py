@@ -17,7 +17,7 @@ from PIL import Image, ImageDraw, ImageFont
 from rich.console import Console
 
 from world2minecraft.core.files import read_json, write_bytes
-from world2minecraft.render.preview import preview
+from world2minecraft.rendering.preview import preview
 from world2minecraft.report.pictures import as_png
 from world2minecraft.report.scene import read_built
 

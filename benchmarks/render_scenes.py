@@ -20,9 +20,15 @@ from world2minecraft.core.coordinates import apply, block_to_room, look_at
 from world2minecraft.core.types import BlockVolume, Camera, OccupancyGrid
 from world2minecraft.find import FindParameters, find_objects
 from world2minecraft.furnish import FurnishParameters, furnish
-from world2minecraft.render.elements import BlockModel, Element, FaceLook, LookSource, face_uv
-from world2minecraft.render.looks.own import OwnLooks
-from world2minecraft.render.texture import Texture
+from world2minecraft.rendering.block_elements import (
+    BlockModel,
+    Element,
+    FaceLook,
+    LookSource,
+    face_uv,
+)
+from world2minecraft.rendering.block_models.builtin import OwnLooks
+from world2minecraft.rendering.texture import Texture
 from world2minecraft.rooms import generate_room
 
 KINDS = 24

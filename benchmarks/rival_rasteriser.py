@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from world2minecraft.core.types import Camera
-from world2minecraft.render.light import LitParameters
-from world2minecraft.render.tables import (
+from world2minecraft.rendering.light import LitParameters
+from world2minecraft.rendering.scene_tables import (
     ABSOLUTE,
     BOXES,
     EVEN,

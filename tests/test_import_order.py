@@ -163,7 +163,7 @@ def test_a_wrong_import_is_seen(importer, name, reason):
     [
         ("cli", "world2minecraft.forge"),
         ("build", "world2minecraft.minecraft.block_states"),
-        ("rooms", "world2minecraft.render"),
+        ("rooms", "world2minecraft.rendering"),
         ("types", "world2minecraft.core.classes"),
         ("learn", "torch.nn"),
         ("scan", "world2minecraft.__version__"),

@@ -27,7 +27,7 @@ from world2minecraft.occupy import predictor
 from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct
 from world2minecraft.register import corrected, register
-from world2minecraft.render.preview import preview
+from world2minecraft.rendering.preview import preview
 from world2minecraft.run_folder import check_writable
 from world2minecraft.scan import open_scan, realigned, write_plain
 from world2minecraft.scan.frames import FrameFiles

@@ -18,7 +18,7 @@ from world2minecraft.core.types import ObjectInstance, Placement
 from world2minecraft.furniture import template
 from world2minecraft.minecraft.displays import display_cubes
 from world2minecraft.minecraft.worlds.world_writer import read_world
-from world2minecraft.render import preview
+from world2minecraft.rendering import preview
 
 CORNER_M = np.array([-1.0, 3.0])
 DISPLAY = BuildParameters(style="display")

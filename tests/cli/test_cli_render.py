@@ -306,7 +306,9 @@ def test_a_pack_comes_before_our_own_textures(schem, tmp_path, capsys):
 def test_processes_write_the_bytes_of_one(build, tmp_path, monkeypatch):
     import sys
 
-    monkeypatch.setattr(sys.modules["world2minecraft.render.views.frames"], "LEAST_A_JOB", 4)
+    monkeypatch.setattr(
+        sys.modules["world2minecraft.rendering.presentation.shot_frames"], "LEAST_A_JOB", 4
+    )
     words = ("--tour", "--frames", "8", "--outputs", "rgb,depth,state")
     assert render(build, *words, "--out", "one") == 0
     assert render(build, *words, "--out", "two", "--jobs", "2") == 0
@@ -334,8 +336,8 @@ def test_photos_are_traced_by_passes(build, tmp_path, capsys):
 
 
 def test_a_device_draws_and_is_let_go(build, monkeypatch):
-    from world2minecraft.render import render_volume
-    from world2minecraft.render.views import frames as module
+    from world2minecraft.rendering import render_volume
+    from world2minecraft.rendering.presentation import shot_frames as module
 
     told = []
 
@@ -358,7 +360,7 @@ def test_a_device_draws_and_is_let_go(build, monkeypatch):
 
     import sys
 
-    frames_module = sys.modules["world2minecraft.render.views.frames"]
+    frames_module = sys.modules["world2minecraft.rendering.presentation.shot_frames"]
     assert module is not frames_module  # The package's name is the function.
     monkeypatch.setattr(frames_module, "_gpu_module", lambda device: Gpu)
     assert render(build, "--pose", POSE, "--pose", POSE, "--device", "gpu", "--out", "g") == 0
@@ -369,7 +371,9 @@ def test_without_a_gpu_tier_auto_draws_and_gpu_is_told(build, monkeypatch, capsy
     import sys
 
     monkeypatch.setattr(
-        sys.modules["world2minecraft.render.views.frames"], "GPU", "world2minecraft.render.none"
+        sys.modules["world2minecraft.rendering.presentation.shot_frames"],
+        "GPU",
+        "world2minecraft.rendering.none",
     )
     assert render(build, "--device", "auto") == 0
     assert render(build, "--device", "gpu") == 2

@@ -14,7 +14,7 @@ from world2minecraft.core.coordinates import apply, invert
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.dataset.values import LabelRegion, SceneVoxels
 from world2minecraft.minecraft.displays import display_cubes
-from world2minecraft.render.elements import Element, LookSource
+from world2minecraft.rendering.block_elements import Element, LookSource
 
 SLACK_M, THICK_M, AROUND_M, REACH_M, CROSSED_M = 0.001, 0.004, 5e-6, 0.006, 0.001
 

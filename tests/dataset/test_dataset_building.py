@@ -41,9 +41,9 @@ from world2minecraft.dataset.store.sample_files import SampleFiles
 from world2minecraft.dataset.store.tar import member_at
 from world2minecraft.dataset.voxels import scene_voxels
 from world2minecraft.minecraft.formats import write_blocks
-from world2minecraft.render import LookLight, prepare_scene, render_volume
-from world2minecraft.render.views import Shot, camera_of
-from world2minecraft.render.views.frames import exposed
+from world2minecraft.rendering import LookLight, prepare_scene, render_volume
+from world2minecraft.rendering.presentation.shot_frames import exposed
+from world2minecraft.rendering.views import Shot, camera_of
 
 REGION = RegionRule("paper", (20, 20, 12), 0.25)
 RECIPE = Recipe(camera=camera_of(64, 48, vertical_fov_deg=70), region=REGION)

@@ -15,8 +15,8 @@ from world2minecraft.core.coordinates import (
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.dataset.cameras import camera_of_record, camera_record, paper_matrices
-from world2minecraft.render.views.cameras import camera_of
-from world2minecraft.render.views.poses import GamePose
+from world2minecraft.rendering.views.cameras import camera_of
+from world2minecraft.rendering.views.poses import GamePose
 
 ROOM = block_to_room(np.array([1.0, 5.0]), 4.0)
 CAMERA = camera_of(1920, 1129, vertical_fov_deg=70)

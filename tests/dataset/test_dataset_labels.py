@@ -22,7 +22,7 @@ from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.showing import label_image_of
 from world2minecraft.dataset.values import OccSample
 from world2minecraft.dataset.voxels import scene_voxels
-from world2minecraft.render import prepare_scene, render_volume
+from world2minecraft.rendering import prepare_scene, render_volume
 
 RULE = RegionRule(shape=(24, 22, 20))
 

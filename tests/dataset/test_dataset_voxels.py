@@ -11,7 +11,7 @@ from world2minecraft.core.types import BlockVolume
 from world2minecraft.dataset import voxels as module
 from world2minecraft.dataset.values import FineClass
 from world2minecraft.dataset.voxels import scene_voxels
-from world2minecraft.render.looks import OwnLooks
+from world2minecraft.rendering.block_models import OwnLooks
 
 MARGIN = 2e-4
 

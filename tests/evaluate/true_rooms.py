@@ -15,7 +15,7 @@ from world2minecraft.formats.objects import write_objects
 from world2minecraft.formats.room import read_room, write_room
 from world2minecraft.formats.scan import write_scan
 from world2minecraft.parameters import Parameters
-from world2minecraft.render.voxels import cast_voxels, prepare_voxels
+from world2minecraft.rendering.voxel_camera import cast_voxels, prepare_voxels
 from world2minecraft.scan.plain import write_plain
 
 FINE_M, VOXEL_M = 0.02, 0.08

@@ -26,7 +26,7 @@ from world2minecraft.formats.occupancy import inner_corner_m
 from world2minecraft.minecraft.physics import BlockWorld, Body, Keys, body_box
 from world2minecraft.minecraft.physics import player_motion as step
 from world2minecraft.minecraft.physics.sweep import overlapping
-from world2minecraft.render.mesh import mesh_of
+from world2minecraft.rendering.mesh import mesh_of
 
 
 def unpacked(data: bytes, magic: bytes) -> dict:

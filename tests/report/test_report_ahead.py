@@ -17,12 +17,12 @@ import sys
 from numba.core.dispatcher import Dispatcher
 from generated_rooms import furnished_room
 from world2minecraft.build import BuildParameters, build_volume
-from world2minecraft.render.preview import plan_view, preview
+from world2minecraft.rendering.preview import plan_view, preview
 from world2minecraft.report.ahead import _look_at_it, draw_a_box
 from world2minecraft.report.pictures import make_pairs
 
 def compiled():
-    drawing = "world2minecraft.render"
+    drawing = "world2minecraft.rendering"
     modules = [one for name, one in sys.modules.items() if name.startswith(drawing)]
     kernels = [one for module in modules for one in vars(module).values()]
     return {(kernel.py_func.__name__, str(signature)) for kernel in kernels

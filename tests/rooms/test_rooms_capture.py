@@ -10,7 +10,7 @@ import pytest
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.files import read_npz
 from world2minecraft.geometry.unprojection import lift_depth
-from world2minecraft.render import cast_voxels, prepare_voxels
+from world2minecraft.rendering import cast_voxels, prepare_voxels
 from world2minecraft.rooms import generate_room, room_views, scan_room
 from world2minecraft.rooms.sensor import scale_factor
 from world2minecraft.rooms.shots import Shooting, room_shots, room_to_scan

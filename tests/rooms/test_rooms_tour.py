@@ -7,7 +7,7 @@ import pytest
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera, Layout, Opening
-from world2minecraft.render import cast_voxels, prepare_voxels
+from world2minecraft.rendering import cast_voxels, prepare_voxels
 from world2minecraft.rooms import Room, generate_room
 from world2minecraft.rooms.shots import Shooting, room_shots
 from world2minecraft.rooms.stands import BODY_M, HEAD_M, find_stands, is_inside

@@ -95,7 +95,7 @@ def camera_named(name: str, size: str, fov_deg: float | None) -> "Camera":
     from world2minecraft.cli.render_options import camera_choice
     from world2minecraft.core.errors import UnknownNameError
     from world2minecraft.dataset.tours import nyu_camera, paper_camera
-    from world2minecraft.render.views import vertical_fov_deg_of
+    from world2minecraft.rendering.views import vertical_fov_deg_of
 
     cameras = {"nyu": nyu_camera, "paper": paper_camera}
     if name not in cameras:
@@ -160,7 +160,7 @@ def given_named(
     if tour is not None and screenshots is not None:
         raise UsageError("--tour and --screenshots are two kinds of views; give one of them")
     if tour is not None:
-        from world2minecraft.render.views import read_tour
+        from world2minecraft.rendering.views import read_tour
 
         return GivenViews(str(tour)), len(read_tour(tour))
     if screenshots is not None:

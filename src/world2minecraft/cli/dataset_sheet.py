@@ -59,7 +59,7 @@ def run(
     from world2minecraft.core.errors import InputError, UsageError
     from world2minecraft.core.files import write_bytes
     from world2minecraft.dataset.sheet import picture_sheet
-    from world2minecraft.render.output.images import colour_bytes
+    from world2minecraft.rendering.output.images import colour_bytes
 
     if min(most, columns) < 1 or not 16 <= width <= 2000:
         raise UsageError("--most and --columns are 1 or more, --width is 16 to 2000")
@@ -108,8 +108,8 @@ def _of_tour(
     from world2minecraft.dataset.sheet import drawn_views
     from world2minecraft.dataset.source import open_scene_source
     from world2minecraft.dataset.tours import read_views
-    from world2minecraft.render.light import LookLight
-    from world2minecraft.render.scene import prepare_scene
+    from world2minecraft.rendering.light import LookLight
+    from world2minecraft.rendering.scene import prepare_scene
 
     volume = open_scene_source(world).volume()
     views = read_views(tour, volume.block_to_room)

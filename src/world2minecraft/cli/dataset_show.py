@@ -34,7 +34,7 @@ def run(
     from world2minecraft.core.files import write_bytes
     from world2minecraft.dataset.importers import open_occupancy
     from world2minecraft.dataset.showing import sample_picture, seen_in_cells
-    from world2minecraft.render.output.images import colour_bytes
+    from world2minecraft.rendering.output.images import colour_bytes
 
     found = open_occupancy(source, format, labels=labels)
     print(f"{source}: {found.described()}")

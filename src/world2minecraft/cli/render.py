@@ -24,9 +24,9 @@ from world2minecraft.core.progress import Progress
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
-    from world2minecraft.render import Picture
-    from world2minecraft.render.views import Shot
-    from world2minecraft.render.views.frames import DrawOptions
+    from world2minecraft.rendering import Picture
+    from world2minecraft.rendering.presentation.shot_frames import DrawOptions
+    from world2minecraft.rendering.views import Shot
 
 MOST_WRITERS = 16  # Each holds a picture.
 EXAMPLES = """\
@@ -90,7 +90,7 @@ def run(
     given = tuple(option.pose_of(text) for text in pose or ())
     flags = {"orbit": orbit, "tour": tour, "turntable": turntable}
     view = view_of(given, poses, flags, frames, fps, opened)  # type: ignore[arg-type]
-    from world2minecraft.render.output import layers_named
+    from world2minecraft.rendering.output import layers_named
 
     files = option.file_choice(image_format, depth_format, quality, depth_scale)
     wanted = layers_named(outputs)
@@ -110,8 +110,8 @@ def draw(
 
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.render.output import needs_of
-    from world2minecraft.render.views.cameras import GAME_FOV_DEG
+    from world2minecraft.rendering.output import needs_of
+    from world2minecraft.rendering.views.cameras import GAME_FOV_DEG
 
     compiling_note()
     view = settled(view, source)
@@ -144,7 +144,7 @@ def draw(
 def _draw_plan(
     plan: Plan, writer: Writer, look: Look, looks: Looks, options: "DrawOptions", progress: Progress
 ) -> None:
-    from world2minecraft.render.batch.ahead import SPARE, done_behind
+    from world2minecraft.rendering.batch.ahead import SPARE, done_behind
 
     total = len(plan.shots) * (look.photo_samples if look.photo else 1)
     done = 0
@@ -170,8 +170,8 @@ def _pictures(
     plan: Plan, look: Look, looks: Looks, options: "DrawOptions", step: Callable[[int], None]
 ) -> Generator[tuple["Shot", "Picture", "BlockVolume"], None, None]:
     """Take the pictures of a plan; each volume that is seen is made ready once at a time."""
-    from world2minecraft.render import prepare_scene
-    from world2minecraft.render.views.frames import exposed
+    from world2minecraft.rendering import prepare_scene
+    from world2minecraft.rendering.presentation.shot_frames import exposed
 
     exposure = None
     for _, run_of in groupby(plan.shots, key=lambda shot: id(plan.volume_of(shot))):
@@ -190,7 +190,7 @@ def _draw_turntable(
     source: Source, view: View, choice: option.CameraChoice, writer: Writer, count: int,
     looks: Looks, options: "DrawOptions", progress: Progress,
 ) -> None:  # fmt: skip
-    from world2minecraft.render.views.turntable import FOV_DEG, turntable
+    from world2minecraft.rendering.presentation.turntable import FOV_DEG, turntable
 
     if writer.target.layers != ("rgb",):
         raise UsageError("a turntable is colour alone; --orbit has depth and ids too")

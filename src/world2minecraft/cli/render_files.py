@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     import numpy as np
 
     from world2minecraft.core.types import BlockVolume, Camera
-    from world2minecraft.render import Picture
-    from world2minecraft.render.output import FileChoice
-    from world2minecraft.render.views import Shot
+    from world2minecraft.rendering import Picture
+    from world2minecraft.rendering.output import FileChoice
+    from world2minecraft.rendering.views import Shot
 
 LINES_FILE, NAMES_FILE = "poses.jsonl", "names.json"
 _NUMBERS = ("block", "opaque", "state", "class", "instance", "face")
@@ -49,8 +49,8 @@ def target_of(
     """
     from dataclasses import replace
 
-    from world2minecraft.render.output import MOVING_SUFFIXES
-    from world2minecraft.render.output.images import COLOUR_SUFFIXES, DEPTH_SUFFIXES
+    from world2minecraft.rendering.output import MOVING_SUFFIXES
+    from world2minecraft.rendering.output.images import COLOUR_SUFFIXES, DEPTH_SUFFIXES
 
     if out is None:
         end = {"tour": ".gif", "turntable": ".gif", "poses": "_views"}.get(kind, ".png")
@@ -94,7 +94,7 @@ class Writer:
     @contextmanager
     def open(self, rate_hz: float) -> Iterator[None]:
         """Keep a moving picture open while the block runs; other files need nothing."""
-        from world2minecraft.render.output import moving_picture
+        from world2minecraft.rendering.output import moving_picture
 
         if self.target.medium != "moving":
             yield
@@ -105,7 +105,7 @@ class Writer:
     def later(self, shot: "Shot", picture: "Picture", volume: "BlockVolume") -> Callable[[], None]:
         """Name the files of a picture, and return what writes all its layers, on any thread."""
         from world2minecraft.core.files import write_bytes
-        from world2minecraft.render.output import LAYERS
+        from world2minecraft.rendering.output import LAYERS
 
         moving, choice = self._moving, self.target.choice
         if moving is not None:
@@ -123,7 +123,7 @@ class Writer:
     def colour(self, shot: "Shot", colour: "np.ndarray | None") -> None:
         """Write a picture of which there is colour alone."""
         from world2minecraft.core.files import write_bytes
-        from world2minecraft.render.output import colour_bytes
+        from world2minecraft.rendering.output import colour_bytes
 
         if colour is None:
             raise ValueError("the picture has no colour")
@@ -138,15 +138,15 @@ class Writer:
     def finish(self, volume: "BlockVolume") -> None:
         """Write the poses, and what the numbers mean where there are any."""
         from world2minecraft.core.files import write_json
-        from world2minecraft.render.output import table_of_names
-        from world2minecraft.render.views import write_lines
+        from world2minecraft.rendering.output import table_of_names
+        from world2minecraft.rendering.views import write_lines
 
         write_lines(self.target.beside(LINES_FILE), self.lines)
         if any(name in _NUMBERS for name in self.target.layers):
             write_json(self.target.beside(NAMES_FILE), table_of_names(volume))
 
     def _files(self) -> dict[str, Path]:
-        from world2minecraft.render.output import file_name
+        from world2minecraft.rendering.output import file_name
 
         target = self.target
         folder, stem = target.path, f"{len(self.lines):06d}"
@@ -158,7 +158,7 @@ class Writer:
         return {name: folder / file for name, file in names.items()}
 
     def _line(self, shot: "Shot", files: dict[str, str]) -> None:
-        from world2minecraft.render.views import tour_line
+        from world2minecraft.rendering.views import tour_line
 
         more = {
             **self._ids,
@@ -182,7 +182,7 @@ def check_many(target: Target, count: int) -> None:
 def check_pixels(cameras: Iterable["Camera"], samples: int) -> None:
     """Refuse pictures that are too large. Raises UsageError."""
     from world2minecraft.core.types.capture import MAX_SIDE_PX
-    from world2minecraft.render.picture import MAX_PIXELS
+    from world2minecraft.rendering.picture import MAX_PIXELS
 
     for width, height in {(camera.width_px, camera.height_px) for camera in cameras}:
         rays = width * height * samples**2

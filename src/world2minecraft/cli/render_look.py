@@ -9,11 +9,11 @@ from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.cli.render_shots import Kind, Medium
-    from world2minecraft.render import BlockScene, LookLight, Picture
-    from world2minecraft.render.elements import LookSource
-    from world2minecraft.render.packs import PackLooks
-    from world2minecraft.render.views import Shot
-    from world2minecraft.render.views.frames import DrawOptions
+    from world2minecraft.rendering import BlockScene, LookLight, Picture
+    from world2minecraft.rendering.block_elements import LookSource
+    from world2minecraft.rendering.presentation.shot_frames import DrawOptions
+    from world2minecraft.rendering.resource_packs import PackLooks
+    from world2minecraft.rendering.views import Shot
 
 TEXTURES_PX = (16, 32, 64, 128)
 MOST_SAMPLES = 4
@@ -34,7 +34,7 @@ class Looks:
 
     def notes(self, palette: "Sequence[str]") -> list[str]:
         """Return what a user should know: states without a look, files that cannot be read."""
-        from world2minecraft.render.looks import stand_ins
+        from world2minecraft.rendering.block_models import stand_ins
 
         drawn = palette
         if self.packs is not None:
@@ -97,7 +97,7 @@ class Look:
         Raises:
             UsageError: a number is out of range, or there is no such light.
         """
-        from world2minecraft.render import DAY, LookLight
+        from world2minecraft.rendering import DAY, LookLight
 
         asked = self.hour is not None or self.sun_shadow or self.exposure is not None
         usual = "neutral" if kind == "turntable" and not asked else DAY.preset
@@ -114,8 +114,8 @@ class Look:
 
     def options_of(self, kind: "Kind", medium: "Medium", outputs: tuple[str, ...]) -> "DrawOptions":
         """Return how pictures are drawn; lone pictures get more rays than those of a data set."""
-        from world2minecraft.render.lamps import PAPER
-        from world2minecraft.render.views.frames import DrawOptions
+        from world2minecraft.rendering.light_parameters import PAPER
+        from world2minecraft.rendering.presentation.shot_frames import DrawOptions
 
         usual = 1 if medium == "folder" and kind != "turntable" else STILL_SAMPLES
         # From above one sees no sky; a build stands out best on paper, but not at night.
@@ -129,13 +129,13 @@ class Look:
         Raises:
             InputError: a pack cannot be read.
         """
-        from world2minecraft.render.looks import OwnLooks
+        from world2minecraft.rendering.block_models import OwnLooks
 
         if not self.packs:
             side_px = self.texture_px or OWN_PX
             return Looks(OwnLooks(side_px), side_px)
-        from world2minecraft.render.elements import LookStack
-        from world2minecraft.render.packs import PackLooks
+        from world2minecraft.rendering.block_elements import LookStack
+        from world2minecraft.rendering.resource_packs import PackLooks
 
         packs = PackLooks(self.packs)
         side_px = self.texture_px or packs.texture_px
@@ -161,7 +161,7 @@ def take(
     Raises:
         UsageError: this version has no such tier, or it cannot do what is asked for.
     """
-    from world2minecraft.render.views.frames import frames_of
+    from world2minecraft.rendering.presentation.shot_frames import frames_of
 
     if look.photo:
         yield from _photos(scene, shots, look, options, step)
@@ -176,7 +176,7 @@ def _photos(
     step: Callable[[int], None],
 ) -> "Iterator[Picture]":  # fmt: skip
     """Trace photos; the first one's exposure is that of all."""
-    from world2minecraft.render.photo import lamps_of, render_photo
+    from world2minecraft.rendering.path_tracing import lamps_of, render_photo
 
     lamps, light = lamps_of(scene), options.light
     for shot in shots:

@@ -10,8 +10,8 @@ from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import Camera
-    from world2minecraft.render.output import FileChoice
-    from world2minecraft.render.views import GamePose
+    from world2minecraft.rendering.output import FileChoice
+    from world2minecraft.rendering.views import GamePose
 
 MOST_FRAMES = 1_000_000
 
@@ -137,7 +137,7 @@ class CameraChoice:
 
     def camera(self, usual_fov_deg: float) -> "Camera":
         """Return the camera, with a vertical field of view where none was chosen."""
-        from world2minecraft.render.views import camera_of
+        from world2minecraft.rendering.views import camera_of
 
         vertical = self.vertical_fov_deg if self.fov_given else usual_fov_deg
         return camera_of(
@@ -162,7 +162,7 @@ def camera_choice(size: str, vfov: float | None, hfov: float | None) -> CameraCh
 
 def pose_of(text: str) -> "GamePose":
     """Read a pose. Raises UsageError."""
-    from world2minecraft.render.views import GamePose
+    from world2minecraft.rendering.views import GamePose
 
     words = [word.strip() for word in text.split(",")]
     at = words.pop().lower() if words and words[-1].lower() in ("feet", "eye") else "feet"
@@ -190,7 +190,7 @@ def box_of(text: str) -> tuple[int, int, int, int, int, int] | None:
 
 def file_choice(image: str, depth: str, quality: int, per_metre: int) -> "FileChoice":
     """Read how layers become files. Raises UsageError."""
-    from world2minecraft.render.output import FileChoice
+    from world2minecraft.rendering.output import FileChoice
 
     if image not in ("png", "jpg", "jpeg", "webp"):
         raise UsageError(f"--format is png, jpg or webp, not {image!r}")

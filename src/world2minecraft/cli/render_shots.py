@@ -11,7 +11,7 @@ from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
-    from world2minecraft.render.views import GamePose, Shot
+    from world2minecraft.rendering.views import GamePose, Shot
 
 Kind = Literal["pose", "poses", "orbit", "tour", "turntable", "spawn"]
 Medium = Literal["picture", "folder", "moving"]
@@ -107,21 +107,21 @@ def turntable_count(view: View, medium: Medium) -> int:
 
 
 def _game_fov_deg() -> float:
-    from world2minecraft.render.views.cameras import GAME_FOV_DEG
+    from world2minecraft.rendering.views.cameras import GAME_FOV_DEG
 
     return GAME_FOV_DEG
 
 
 def _shot(pose: "GamePose", camera, volume: "BlockVolume", t_s: float) -> "Shot":
     from world2minecraft.core.coordinates import eye_height_blocks
-    from world2minecraft.render.views import Shot
+    from world2minecraft.rendering.views import Shot
 
     eye_blocks = eye_height_blocks(volume.blocks_per_metre)
     return Shot(camera, pose.camera_to_room(volume.block_to_room, eye_blocks), t_s)
 
 
 def _file(path: Path, source: Source, choice: CameraChoice) -> Plan:
-    from world2minecraft.render.views import read_tour
+    from world2minecraft.rendering.views import read_tour
 
     camera = choice.camera(_game_fov_deg())
     shots = [
@@ -131,9 +131,9 @@ def _file(path: Path, source: Source, choice: CameraChoice) -> Plan:
 
 
 def _orbit(view: View, source: Source, choice: CameraChoice, medium: Medium) -> Plan:
-    from world2minecraft.render.views import orbit_shots
-    from world2minecraft.render.views.opened import OpenedBuild, has_ceiling
-    from world2minecraft.render.views.turntable import OPEN_ELEVATION_DEG
+    from world2minecraft.rendering.presentation.opened_room import OpenedBuild, has_ceiling
+    from world2minecraft.rendering.presentation.turntable import OPEN_ELEVATION_DEG
+    from world2minecraft.rendering.views import orbit_shots
 
     camera = choice.camera(ORBIT_FOV_DEG)
     count = turntable_count(view, medium)
@@ -152,7 +152,7 @@ def _orbit(view: View, source: Source, choice: CameraChoice, medium: Medium) -> 
 
 
 def _tour(view: View, source: Source, choice: CameraChoice, medium: Medium) -> Plan:
-    from world2minecraft.render.views import plan_tour, with_open_doors
+    from world2minecraft.rendering.views import plan_tour, with_open_doors
 
     frames = view.frames or {"picture": 1, "folder": FOLDER_TOUR, "moving": None}[medium]
     camera = choice.camera(_game_fov_deg())

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
     from world2minecraft.formats.build_source import Start
     from world2minecraft.formats.volume_crop import Box
-    from world2minecraft.render.views import GamePose
+    from world2minecraft.rendering.views import GamePose
 
 
 @dataclass(eq=False)
@@ -42,7 +42,7 @@ def read_source(path: Path, box: "Box | None") -> Source:
 
 
 def _pose(start: "Start | None") -> "GamePose | None":
-    from world2minecraft.render.views import GamePose
+    from world2minecraft.rendering.views import GamePose
 
     if start is None:
         return None

@@ -24,14 +24,14 @@ from world2minecraft.external_models.structured_replies import (
     ask_form,
     json_of,
 )
-from world2minecraft.render.lamps import NEUTRAL, PAPER
-from world2minecraft.render.output.images import colour_bytes
-from world2minecraft.render.scene import prepare_scene
-from world2minecraft.render.views.cameras import camera_of
-from world2minecraft.render.views.frames import DrawOptions, frames_of
-from world2minecraft.render.views.opened import OpenedBuild
-from world2minecraft.render.views.orbit import TURN_DEG, orbit_shots
-from world2minecraft.render.views.turntable import OPEN_ELEVATION_DEG
+from world2minecraft.rendering.light_parameters import NEUTRAL, PAPER
+from world2minecraft.rendering.output.images import colour_bytes
+from world2minecraft.rendering.presentation.opened_room import OpenedBuild
+from world2minecraft.rendering.presentation.shot_frames import DrawOptions, frames_of
+from world2minecraft.rendering.presentation.turntable import OPEN_ELEVATION_DEG
+from world2minecraft.rendering.scene import prepare_scene
+from world2minecraft.rendering.views.cameras import camera_of
+from world2minecraft.rendering.views.orbit import TURN_DEG, orbit_shots
 
 ASPECTS = ("realism", "completeness", "atmosphere")
 LEAST, MOST = 1, 10

@@ -9,7 +9,7 @@ it. What is left is tested pixel by pixel.
 import numpy as np
 
 from world2minecraft.core.jit import inlined, lean
-from world2minecraft.render.ray import steep
+from world2minecraft.rendering.ray_caster.ray import steep
 
 CROSSED_M = 0.001
 TILE = 8  # Pixels a side whose greatest depth is kept.

@@ -29,7 +29,7 @@ from world2minecraft.dataset.label_kernels import (
 )
 from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.values import LabelRegion, OccLabels, SceneVoxels
-from world2minecraft.render import BlockScene, render_volume
+from world2minecraft.rendering import BlockScene, render_volume
 
 AROUND_M = 5e-6  # More than a depth under 40 m is rounded by, along the same ray.
 REACH_M = 0.006  # A point so far from a solid cell is rounding at a shape's edge.

@@ -20,7 +20,7 @@ from world2minecraft.dataset.formats.sscnet import downsampled
 from world2minecraft.dataset.labels import label_image
 from world2minecraft.dataset.region import region_in
 from world2minecraft.dataset.values import USUAL_VOXEL_M, FineClass, OccSample, SceneVoxels
-from world2minecraft.render.voxels import cast_voxels
+from world2minecraft.rendering.voxel_camera import cast_voxels
 from world2minecraft.rooms import Room, generate_room
 from world2minecraft.rooms.exposure import TexturedScene, developed, exposed, prepare_textured
 from world2minecraft.rooms.kinds import KINDS

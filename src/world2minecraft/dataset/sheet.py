@@ -8,10 +8,10 @@ from PIL import Image, ImageDraw, ImageFont
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.undistort import pinhole_of
-from world2minecraft.render.lamps import DAY
-from world2minecraft.render.light import LookLight
-from world2minecraft.render.scene import BlockScene
-from world2minecraft.render.views.frames import DrawOptions, frames
+from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light_parameters import DAY
+from world2minecraft.rendering.presentation.shot_frames import DrawOptions, frames
+from world2minecraft.rendering.scene import BlockScene
 
 GAP_PX, LINE_PX = 6, 16
 PAPER, INK = (250, 250, 248), (40, 42, 46)

@@ -10,7 +10,7 @@ from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.dataset.values import OccSample
 from world2minecraft.geometry.unprojection import lift_depth
-from world2minecraft.render.voxels import cast_voxels
+from world2minecraft.rendering.voxel_camera import cast_voxels
 from world2minecraft.scan.poster.ink import FAINT, INK, PANEL, RULE, Sheet
 
 PANEL_PX = (480, 360)

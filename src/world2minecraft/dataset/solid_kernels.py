@@ -10,7 +10,7 @@ it fills more by a margin, so that rounding decides nothing.
 import numpy as np
 
 from world2minecraft.core.jit import inlined, njit
-from world2minecraft.render.tables import ABSOLUTE, FLAGS, FULL, OWNER
+from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS, FULL, OWNER
 
 NOBODY = -1
 ROUND = 0.1  # Blocks: how far a block's cells are looked for around it; thin shapes stick out.

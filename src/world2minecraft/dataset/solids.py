@@ -1,6 +1,6 @@
 """The solid shapes of a scene, as its pictures show them: boxes, straight or turned.
 
-In: the tables of ``render.scene``, so that what is labelled is what is seen. Out: for each element
+In: the tables of ``rendering.scene``, so that what is labelled is what is seen. Out: for each element
 of its table a box in blocks. A hole in a texture is no hole here: a pane, a plant, leaves and bars
 are the boxes that their textures are drawn on. A shape thinner than ``LEAST_THICK_M`` is taken as
 that thick, so that a plate without depth lies in a cell too.
@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.render.tables import TURN, SceneTables
+from world2minecraft.rendering.scene_tables import TURN, SceneTables
 
 LEAST_THICK_M = 0.004
 _STRAIGHT = 1e-6  # Blocks: what an edge may lean and still count as straight.

@@ -18,8 +18,8 @@ from world2minecraft.dataset.naming import Designs, FineNames, fine_names
 from world2minecraft.dataset.solid_kernels import NOBODY, ROUND, fill_slab
 from world2minecraft.dataset.solids import SolidBoxes, solid_boxes
 from world2minecraft.dataset.values import USUAL_VOXEL_M, SceneVoxels
-from world2minecraft.render import BlockScene, prepare_scene
-from world2minecraft.render.tables import ABSOLUTE, FLAGS
+from world2minecraft.rendering import BlockScene, prepare_scene
+from world2minecraft.rendering.scene_tables import ABSOLUTE, FLAGS
 
 SLACK_M = 0.001  # What a shape may reach into a cell without being there: rounding of 1/16 blocks.
 LEAST_VOXEL_M = 0.01

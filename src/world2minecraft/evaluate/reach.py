@@ -18,8 +18,8 @@ from world2minecraft.core.types import Camera
 from world2minecraft.evaluate.frames import UsedFrame
 from world2minecraft.evaluate.truth import Truth
 from world2minecraft.geometry.unprojection import pixel_rays
-from world2minecraft.render.tables import FACE_NORMALS
-from world2minecraft.render.voxels import cast_voxels, prepare_voxels
+from world2minecraft.rendering.scene_tables import FACE_NORMALS
+from world2minecraft.rendering.voxel_camera import cast_voxels, prepare_voxels
 
 CROSSED, MET = 1, 2
 RAYS_WIDE = 320  # All 640 of a frame come to 0.1 % more cells, in four times the time.

@@ -16,8 +16,8 @@ from world2minecraft.core.coordinates import apply
 from world2minecraft.core.types import Camera, FusedEvidence, View
 from world2minecraft.evaluate.reach import PUSH_M, RAYS_WIDE, pinhole
 from world2minecraft.evaluate.score import TrueRoom
-from world2minecraft.render.tables import FACE_NORMALS
-from world2minecraft.render.voxels import VoxelScene, cast_voxels, prepare_voxels
+from world2minecraft.rendering.scene_tables import FACE_NORMALS
+from world2minecraft.rendering.voxel_camera import VoxelScene, cast_voxels, prepare_voxels
 
 SURE_LOG_ODDS = 6.0  # The fusion's own limit.
 

@@ -20,7 +20,7 @@ from world2minecraft.edit.scene import instances_of, placements_of
 from world2minecraft.forge.arrays import packed_arrays
 from world2minecraft.forge.editor import Editor
 from world2minecraft.minecraft.physics import BlockWorld, standing_place
-from world2minecraft.render.mesh import BlockMesh, mesh_of
+from world2minecraft.rendering.mesh import BlockMesh, mesh_of
 from world2minecraft.steps import corner_m
 
 MAGIC = b"W2MB"

@@ -19,14 +19,14 @@ from world2minecraft.core.types import AIR, BlockVolume, Camera, OccupancyGrid
 from world2minecraft.formats.room import read_room
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
 from world2minecraft.paper.walked import views_of_walk
-from world2minecraft.render.lamps import NEUTRAL, PAPER
-from world2minecraft.render.picture import render_volume
-from world2minecraft.render.scene import BlockScene, prepare_scene
-from world2minecraft.render.views.cameras import camera_of
-from world2minecraft.render.views.frames import DrawOptions, frames_of
-from world2minecraft.render.views.opened import OpenedBuild
-from world2minecraft.render.views.orbit import orbit_shots
-from world2minecraft.render.views.turntable import OPEN_ELEVATION_DEG
+from world2minecraft.rendering.light_parameters import NEUTRAL, PAPER
+from world2minecraft.rendering.picture import render_volume
+from world2minecraft.rendering.presentation.opened_room import OpenedBuild
+from world2minecraft.rendering.presentation.shot_frames import DrawOptions, frames_of
+from world2minecraft.rendering.presentation.turntable import OPEN_ELEVATION_DEG
+from world2minecraft.rendering.scene import BlockScene, prepare_scene
+from world2minecraft.rendering.views.cameras import camera_of
+from world2minecraft.rendering.views.orbit import orbit_shots
 from world2minecraft.report.placed import PlacedFrame, judge_capture_of, placed_frames, used_by
 from world2minecraft.report.scene import read_built
 from world2minecraft.scan.images import read_colour

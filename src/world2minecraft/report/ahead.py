@@ -17,7 +17,7 @@ from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.jit import is_compiled
 from world2minecraft.core.machine import usable_cores
 from world2minecraft.core.types import BlockVolume, Camera, Scan, View
-from world2minecraft.render.preview import plan_view, preview
+from world2minecraft.rendering.preview import plan_view, preview
 from world2minecraft.report.pictures import make_pairs
 
 LAST = "pixels.draw_rows"  # Kept last, when all that it calls is compiled.

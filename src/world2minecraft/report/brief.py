@@ -18,7 +18,7 @@ from world2minecraft.core.files import write_bytes, write_json, write_text
 from world2minecraft.core.types import BlockVolume, Layout, Placement, Scan
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.formats.objects import read_placements
-from world2minecraft.render.preview import plan_view, preview
+from world2minecraft.rendering.preview import plan_view, preview
 from world2minecraft.report.pictures import as_data_uri, as_png
 from world2minecraft.report.scene import read_built
 

@@ -15,7 +15,7 @@ from world2minecraft.evaluate import evaluate_reconstruction
 from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.formats.scan import read_registration
 from world2minecraft.furniture.layout_checks import category_integrity
-from world2minecraft.render.preview import plan_view, preview
+from world2minecraft.rendering.preview import plan_view, preview
 from world2minecraft.report.facts import scene_facts
 from world2minecraft.report.layout import built_categories
 from world2minecraft.report.pictures import Pair, as_data_uri, as_png, make_pairs

@@ -11,8 +11,8 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
-from world2minecraft.render.tables import NO_FACE
-from world2minecraft.render.trace import TILE, bundle_start, trace
+from world2minecraft.rendering.grid_traversal import TILE, bundle_start, trace
+from world2minecraft.rendering.scene_tables import NO_FACE
 from world2minecraft.rooms.materials import Material, heights_m, room_materials, wall_planes
 from world2minecraft.rooms.photo import PhotoScene, prepare_photos, surface_light
 from world2minecraft.rooms.room import Room

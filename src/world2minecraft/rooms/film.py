@@ -12,7 +12,7 @@ from scipy import ndimage
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera
-from world2minecraft.render.voxels import VoxelScene
+from world2minecraft.rendering.voxel_camera import VoxelScene
 from world2minecraft.rooms.gaze import Gaze
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.tour import eyes_m

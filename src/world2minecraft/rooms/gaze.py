@@ -9,9 +9,9 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
-from world2minecraft.render.tables import NO_FACE
-from world2minecraft.render.trace import trace
-from world2minecraft.render.voxels import VoxelScene
+from world2minecraft.rendering.grid_traversal import trace
+from world2minecraft.rendering.scene_tables import NO_FACE
+from world2minecraft.rendering.voxel_camera import VoxelScene
 
 RAY_DEG = 4.0
 PITCH_DEG = (-74.0, 50.0)  # Of the look around.

@@ -14,9 +14,9 @@ from scipy import ndimage
 
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
-from world2minecraft.render import VoxelScene, prepare_voxels
-from world2minecraft.render.tables import NO_FACE
-from world2minecraft.render.trace import TILE, bundle_start, trace
+from world2minecraft.rendering import VoxelScene, prepare_voxels
+from world2minecraft.rendering.grid_traversal import TILE, bundle_start, trace
+from world2minecraft.rendering.scene_tables import NO_FACE
 from world2minecraft.rooms.lamps import hang_lamps, nearest_lamps
 from world2minecraft.rooms.room import Room
 

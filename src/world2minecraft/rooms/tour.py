@@ -7,7 +7,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera
-from world2minecraft.render.voxels import VoxelScene
+from world2minecraft.rendering.voxel_camera import VoxelScene
 from world2minecraft.rooms.gaze import Gaze
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.walk import plan_walk

@@ -9,7 +9,7 @@ from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import DepthMap, PhotoStream, SparseScene
 from world2minecraft.geometry.unprojection import pixel_rays
-from world2minecraft.render.threads import side_by_side
+from world2minecraft.rendering.thread_pool import side_by_side
 from world2minecraft.stereo.agree import confirm
 from world2minecraft.stereo.flats import flattened
 from world2minecraft.stereo.guide import DepthModel, filled

@@ -32,11 +32,11 @@ from world2minecraft.minecraft.physics.columns import Solid
 from world2minecraft.minecraft.physics.doors import doors_opened
 from world2minecraft.minecraft.physics.graph import WalkGraph, WalkRule, solid_of, walk_graph
 from world2minecraft.minecraft.physics.shortest_paths import parts
-from world2minecraft.render.lamps import DAY
-from world2minecraft.render.light import LookLight
-from world2minecraft.render.picture import DEFAULT_OUTPUTS, Picture, render_volume
-from world2minecraft.render.scene import BlockScene, prepare_scene
-from world2minecraft.render.views.poses import GamePose
+from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light_parameters import DAY
+from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, render_volume
+from world2minecraft.rendering.scene import BlockScene, prepare_scene
+from world2minecraft.rendering.views.poses import GamePose
 from world2minecraft.vln.floor import Floor, distance_over, floor_of
 from world2minecraft.vln.landmarks import Landmark, landmarks_of
 from world2minecraft.vln.places import SceneRoom, rooms_of_places, scene_rooms

@@ -8,7 +8,7 @@ from world2minecraft.core.types import Camera
 from world2minecraft.dataset.formats.boxes import cells_in_image
 from world2minecraft.dataset.formats.cameras import NYU_CAMERA
 from world2minecraft.dataset.values import FineClass, LabelRegion, OccLabels, OccSample
-from world2minecraft.render.voxels import cast_voxels
+from world2minecraft.rendering.voxel_camera import cast_voxels
 
 VOXEL_M = 0.08
 ORIGIN_M = np.array([-0.08, -0.08, -0.08])

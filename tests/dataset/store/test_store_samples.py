@@ -24,7 +24,7 @@ from world2minecraft.dataset.store.sample_files import (
     unpack_sample,
 )
 from world2minecraft.dataset.store.tar import BLOCK, end_bytes, member_at, member_bytes
-from world2minecraft.render.output.images import depth_bytes
+from world2minecraft.rendering.output.images import depth_bytes
 
 TABLE = FineTable((AIR, CHAIR, PLANKS))
 

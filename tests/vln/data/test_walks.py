@@ -10,7 +10,7 @@ from tests.vln.data.free_floor import free_walker
 
 from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import DamagedFileError
-from world2minecraft.render.views.tour_file import read_tour
+from world2minecraft.rendering.views.pose_file import read_tour
 from world2minecraft.vln.data.cleaning import segments_of
 from world2minecraft.vln.data.discretise import discretise
 from world2minecraft.vln.data.keyframes import marks_of

@@ -22,9 +22,9 @@ from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.tours import PlannedView, read_views
 from world2minecraft.dataset.values import OccSample, SceneVoxels
 from world2minecraft.dataset.voxels import scene_voxels
-from world2minecraft.render import BlockScene, LookLight, prepare_scene, render_volume
-from world2minecraft.render.views import Shot
-from world2minecraft.render.views.frames import exposed
+from world2minecraft.rendering import BlockScene, LookLight, prepare_scene, render_volume
+from world2minecraft.rendering.presentation.shot_frames import exposed
+from world2minecraft.rendering.views import Shot
 
 COLOUR = ("colour", "depth")
 

@@ -5,7 +5,7 @@ import numpy as np
 from world2minecraft.core.errors import InputError
 from world2minecraft.dataset.exporters.rules import JPEG_QUALITY
 from world2minecraft.dataset.values import OccSample
-from world2minecraft.render.output.images import colour_bytes
+from world2minecraft.rendering.output.images import colour_bytes
 
 
 def jpeg_bytes(pixels: np.ndarray) -> bytes:

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from world2minecraft.render.output.images import number_bytes
+from world2minecraft.rendering.output.images import number_bytes
 from world2minecraft.scan.depth import DepthEncoding
 
 NYU_FAR_MM = 8191

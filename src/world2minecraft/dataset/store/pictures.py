@@ -14,7 +14,7 @@ from PIL import Image
 
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.types import Camera
-from world2minecraft.render.output.images import PER_METRE, colour_bytes, depth_numbers
+from world2minecraft.rendering.output.images import PER_METRE, colour_bytes, depth_numbers
 
 IMAGE_FORMATS = ("jpg", "png", "webp")
 QUALITY = 95  # Of JPEG and WebP: the eye sees no loss, and edges of blocks stay sharp.

@@ -28,7 +28,7 @@ from world2minecraft.dataset.store.pictures import (
     picture_bytes,
 )
 from world2minecraft.dataset.values import FineClass, LabelRegion, OccLabels, OccSample
-from world2minecraft.render.output.images import PER_METRE
+from world2minecraft.rendering.output.images import PER_METRE
 
 FORMAT = 1
 DEPTH, LABELS, FACTS = "depth.png", "occ.npz", "json"

@@ -1,4 +1,4 @@
-"""Tours on disk: the one file of poses, a JSON object a line (``render.views.tour_file``).
+"""Tours on disk: the one file of poses, a JSON object a line (``rendering.views.pose_file``).
 
 Here each line names its tour and scene; ``frame`` counts within the tour, and ``room`` and ``kind``
 (axis, diagonal, free) stand behind the usual keys.
@@ -14,9 +14,9 @@ from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.dataset.tours.values import PlannedView, nyu_camera
-from world2minecraft.render.views.cameras import camera_of
-from world2minecraft.render.views.poses import Shot
-from world2minecraft.render.views.tour_file import TourPose, read_tour, tour_line, write_lines
+from world2minecraft.rendering.views.cameras import camera_of
+from world2minecraft.rendering.views.pose_file import TourPose, read_tour, tour_line, write_lines
+from world2minecraft.rendering.views.poses import Shot
 
 
 def write_views(

@@ -12,8 +12,8 @@ from world2minecraft.core.coordinates import camera_to_block_of_game_pose, carry
 from world2minecraft.core.jit import njit
 from world2minecraft.core.types import Camera
 from world2minecraft.dataset.tours.values import KINDS, TourRule
-from world2minecraft.render.batch import render_batch
-from world2minecraft.render.scene import BlockScene
+from world2minecraft.rendering.batch import render_batch
+from world2minecraft.rendering.scene import BlockScene
 
 HEADINGS = 24  # Fifteen degrees apart.
 AROUND = Camera(24, 16, 12.0, 12.0, 12.0, 8.0)  # 90 degrees wide: four of them see all round.

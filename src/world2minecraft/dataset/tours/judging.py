@@ -7,8 +7,8 @@ import numpy as np
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.dataset.tours.values import TourRule
 from world2minecraft.geometry.undistort import pinhole_of
-from world2minecraft.render.batch import render_batch
-from world2minecraft.render.scene import BlockScene
+from world2minecraft.rendering.batch import render_batch
+from world2minecraft.rendering.scene import BlockScene
 
 WIDE_PX = 64  # Of the small pictures.
 NEAR_M, NEAR_SHARE = 0.5, 0.25  # Blocked: so much of the picture is nearer than this,

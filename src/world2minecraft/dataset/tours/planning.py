@@ -9,7 +9,7 @@ from world2minecraft.dataset.tours.values import PlannedView, TourRule
 from world2minecraft.dataset.tours.walks import Grounds
 from world2minecraft.minecraft.physics.columns import Solid
 from world2minecraft.minecraft.physics.graph import SLIM, WalkGraph, WalkRule, solid_of, walk_graph
-from world2minecraft.render.scene import BlockScene, prepare_scene
+from world2minecraft.rendering.scene import BlockScene, prepare_scene
 
 LEAST_FLOOR_M2 = 1.0  # Of all rooms: with less a slimmer body is tried.
 

@@ -18,8 +18,8 @@ from world2minecraft.dataset.tours.judging import judged
 from world2minecraft.dataset.tours.rooms import TourRoom
 from world2minecraft.dataset.tours.values import KINDS, PlannedView, TourRule, kind_of_yaw
 from world2minecraft.dataset.tours.walks import SAMPLE_M, Grounds, plan_walk
-from world2minecraft.render.scene import BlockScene
-from world2minecraft.render.views.poses import GamePose
+from world2minecraft.rendering.scene import BlockScene
+from world2minecraft.rendering.views.poses import GamePose
 
 WALK_M_S, TURN_DEG_S = 1.0, 60.0  # How fast one walks and turns between two frames.
 GAP_M, GAP_DEG = 0.8, 75.0  # A tour ends where the next good view is farther than this.

@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image
 
 from world2minecraft.core.types import Camera
-from world2minecraft.render.views.cameras import camera_of
+from world2minecraft.rendering.views.cameras import camera_of
 
 SIZE, FOV_DEG = (640, 360), 70.0  # The game's view; 299 tokens of Qwen2.5-VL.
 QUALITY = 90

@@ -14,7 +14,7 @@ from scipy.spatial import KDTree
 
 from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import UsageError
-from world2minecraft.render.views.tour_file import read_tour
+from world2minecraft.rendering.views.pose_file import read_tour
 from world2minecraft.vln.data.stream import StreamFrame, frame_of, timed
 from world2minecraft.vln.running.trace import TRACE_FILE, read_trace, stances_of, traces_in
 from world2minecraft.vln.scene import VlnScene

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.render.views.tour_file import TourPose
+from world2minecraft.rendering.views.pose_file import TourPose
 from world2minecraft.vln.values import Stance
 
 

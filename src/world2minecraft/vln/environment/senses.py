@@ -9,8 +9,8 @@ import numpy as np
 from gymnasium import spaces
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.render.lamps import DAY
-from world2minecraft.render.light import LookLight
+from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light_parameters import DAY
 from world2minecraft.vln.moves import wrapped_yaw
 from world2minecraft.vln.scene import VlnScene, camera_of
 from world2minecraft.vln.values import Stance

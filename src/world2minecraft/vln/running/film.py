@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from world2minecraft.render.output.moving import FrameWriter, moving_picture
+from world2minecraft.rendering.output.animation import FrameWriter, moving_picture
 from world2minecraft.vln.agents.values import Decision, Sight
 from world2minecraft.vln.agents.words import MOVE_NAMES
 from world2minecraft.vln.running.ground import Ground

@@ -7,8 +7,8 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.render.cutaway import storeys_of
-from world2minecraft.render.preview import plan_view
+from world2minecraft.rendering.cutaway import storeys_of
+from world2minecraft.rendering.preview import plan_view
 from world2minecraft.vln.scene import VlnScene
 from world2minecraft.vln.values import Stance
 

@@ -18,8 +18,8 @@ from world2minecraft.formats.build_source import Source, Start
 from world2minecraft.formats.labelled import labelled
 from world2minecraft.formats.scene import read_scene
 from world2minecraft.formats.volume_crop import trimmed
-from world2minecraft.render.live_scene import LiveScene
-from world2minecraft.render.scene import BlockScene
+from world2minecraft.rendering.editable_scene import LiveScene
+from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.vln.scene import VlnScene, layouts_beside
 from world2minecraft.vln.server.blocks import Box, checked_box
 from world2minecraft.vln.server.body import ServerBody

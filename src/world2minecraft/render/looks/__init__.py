@@ -1,5 +1,0 @@
-"""Our own looks of every block: models and textures without a file of the game."""
-
-from world2minecraft.render.looks.own import OwnLooks, stand_in_share, stand_ins
-
-__all__ = ["OwnLooks", "stand_in_share", "stand_ins"]

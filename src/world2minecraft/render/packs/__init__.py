@@ -1,9 +1,0 @@
-"""Resource packs and client jars of the user as a source of looks: ``PackLooks``.
-
-``archive`` opens a pack, ``resources`` stacks several, ``blockstates`` and ``model_files`` read
-the files of a block, ``shapes`` and ``turning`` make elements of them, ``textures`` makes pictures.
-"""
-
-from world2minecraft.render.packs.looks import PackLooks
-
-__all__ = ["PackLooks"]

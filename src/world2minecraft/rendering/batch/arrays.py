@@ -1,0 +1,176 @@
+"""The arrays of a batch: made once, filled as often as one likes.
+
+``BatchArrays`` is what a user sees, ``ManyPixels`` the same memory as the kernel wants it.
+"""
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.rendering.batch.kernel import ManyPixels
+from world2minecraft.rendering.picture import MAX_PIXELS, MOST_SAMPLES, Picture
+from world2minecraft.rendering.picture_arrays import WANTED
+
+MOST_BYTES = 1 << 36  # 64 GiB of outputs: a slip of the hand, and not a batch.
+MOST_PICTURES = 1_000_000
+NOTHING = np.empty(0)
+
+Size = tuple[int, int]  # height, width
+
+
+@dataclass(frozen=True, eq=False)
+class BatchArrays:
+    """What N looks at a volume give; arrays that were not asked for are None.
+
+    Each is what ``Picture`` says of it, with an axis for the pictures before the others.
+    """
+
+    depth_m: np.ndarray | None = None  # float32 [N, H, W], z-depth
+    range_m: np.ndarray | None = None  # float32 [N, H, W], along the ray
+    block_index: np.ndarray | None = None  # int32 [N, H, W]
+    face: np.ndarray | None = None  # uint8 [N, H, W]
+    cube_index: np.ndarray | None = None  # int32 [N, H, W]
+    colour: np.ndarray | None = None  # uint8 [N, H, W, 3]
+    semantic: np.ndarray | None = None  # uint8 [N, H, W]
+    instance: np.ndarray | None = None  # uint16 [N, H, W]
+    opaque_depth_m: np.ndarray | None = None  # float32 [N, H, W]
+    opaque_index: np.ndarray | None = None  # int32 [N, H, W]
+    opaque_cube_index: np.ndarray | None = None  # int32 [N, H, W]
+    normal: np.ndarray | None = None  # float32 [N, H, W, 3]
+    free: np.ndarray | None = None  # bool [N, X, Y, Z]
+
+    def picture(self, number: int) -> Picture:
+        """Return one picture; it shares the batch's memory.
+
+        An array that every ``Picture`` has, and that was not asked for, is empty.
+        """
+        parts = {field.name: getattr(self, field.name) for field in fields(self)}
+        given = {name: array[number] for name, array in parts.items() if array is not None}
+        always = dict.fromkeys(("depth_m", "range_m", "block_index", "face", "cube_index"), NOTHING)
+        return Picture(**{**always, **given})
+
+    def named(self) -> Iterator[tuple[str, np.ndarray]]:
+        """Give each array that is there, with its name."""
+        for field in fields(self):
+            if (array := getattr(self, field.name)) is not None:
+                yield field.name, array
+
+
+# Of each array: its output, its name in the kernel, its dtype, and numbers a pixel.
+_PLAN = {
+    "depth_m": ("depth", "depth", np.float32, ()),
+    "range_m": ("range", "distance", np.float32, ()),
+    "block_index": ("block", "block", np.int32, ()),
+    "face": ("face", "face", np.uint8, ()),
+    "cube_index": ("cube", "thing", np.int32, ()),
+    "colour": ("colour", "colour", np.uint8, (3,)),
+    "semantic": ("semantic", "semantic", np.uint8, ()),
+    "instance": ("instance", "instance", np.uint16, ()),
+    "opaque_depth_m": ("opaque", "opaque_depth", np.float32, ()),
+    "opaque_index": ("opaque", "opaque_index", np.int32, ()),
+    "opaque_cube_index": ("opaque", "opaque_thing", np.int32, ()),
+    "normal": ("normal", "normal", np.float32, (3,)),
+}
+_ALWAYS = ("depth", "distance", "block", "face", "thing")  # The kernel writes these for everyone.
+BATCH_OUTPUTS = (*dict.fromkeys(output for output, *_ in _PLAN.values()), "free")
+# What ``render_volume`` makes where nothing is said, and what it makes always.
+PICTURE_OUTPUTS = ("depth", "range", "block", "face", "cube")
+
+Room = tuple[tuple[int, ...], np.dtype]
+
+
+def rooms_of(
+    count: int, size: Size, outputs: Collection[str], shape: tuple[int, ...]
+) -> dict[str, Room]:
+    """Return the shape and dtype of each array of a batch, by its name.
+
+    Args:
+        count: N, pictures.
+        size: height and width.
+        outputs: which of ``BATCH_OUTPUTS``.
+        shape: of the volume, X, Y and Z.
+
+    Raises:
+        UsageError: an output is not known, or the batch takes too much memory.
+    """
+    unknown = sorted(set(outputs) - set(BATCH_OUTPUTS))
+    if unknown:
+        raise UsageError(f"outputs may be {', '.join(BATCH_OUTPUTS)}, not {unknown[0]!r}")
+    rooms: dict[str, Room] = {
+        name: ((count, *size, *rest), np.dtype(kind))
+        for name, (output, _, kind, rest) in _PLAN.items()
+        if output in outputs
+    }
+    if "free" in outputs:
+        rooms["free"] = ((count, *shape), np.dtype(bool))
+    total = bytes_of(rooms)
+    if total > MOST_BYTES:
+        raise UsageError(
+            f"{count:,} pictures of {size[1]}x{size[0]} take {total / 2**30:,.0f} GiB at once; "
+            "take fewer poses a batch, or render_stream, which keeps a few pictures alone"
+        )
+    return rooms
+
+
+def bytes_of(rooms: dict[str, Room]) -> int:
+    """Return the bytes of all arrays."""
+    return sum(int(np.prod(shape, dtype=object)) * kind.itemsize for shape, kind in rooms.values())
+
+
+def batch_arrays(
+    count: int, size: Size, outputs: Collection[str], shape: tuple[int, ...] = (0, 0, 0)
+) -> BatchArrays:
+    """Return arrays for ``render_batch`` to fill, zeros until then; see ``rooms_of``."""
+    rooms = rooms_of(count, size, outputs, shape)
+    return BatchArrays(**{name: np.zeros(*room) for name, room in rooms.items()})
+
+
+def check_batch(count: int, size: Size, samples: int) -> None:
+    """Refuse batches that cannot be drawn. Raises UsageError."""
+    if count > MOST_PICTURES:
+        raise UsageError(f"a batch may have {MOST_PICTURES:,} poses, not {count:,}")
+    if not 1 <= samples <= MOST_SAMPLES:
+        raise UsageError(f"samples may be 1 to {MOST_SAMPLES}, not {samples}")
+    if size[0] * size[1] * samples**2 > MAX_PIXELS:
+        raise UsageError(f"a picture may have {MAX_PIXELS:,} samples, not {size[1]}x{size[0]}")
+
+
+def check_arrays(given: BatchArrays, rooms: dict[str, Room]) -> None:
+    """Refuse arrays that do not suit a batch. Raises UsageError."""
+    arrays = dict(given.named())
+    for name, (shape, kind) in rooms.items():
+        array = arrays.pop(name, None)
+        told = "nothing" if array is None else f"{array.dtype} {list(array.shape)}"
+        if array is None or array.shape != shape or array.dtype != kind:
+            raise UsageError(f"out.{name} must be {kind} {list(shape)}, not {told}")
+        if not (array.flags.c_contiguous and array.flags.writeable):
+            raise UsageError(f"out.{name} must be in C order, whole and open to writing")
+    if arrays:
+        raise UsageError(f"out.{min(arrays)} is given, but no output fills it")
+
+
+def pixels_of(
+    arrays: BatchArrays, size: Size, slots: int, outputs: Collection[str], *, fine: bool
+) -> ManyPixels:
+    """Return the arrays for the kernel, with scratch for what it writes unasked.
+
+    Args:
+        arrays: of a batch.
+        size: height and width.
+        slots: how many may draw at once.
+        outputs: what was asked for.
+        fine: whether the colour is drawn apart.
+    """
+    wanted = sum(bit for name, bit in WANTED.items() if name in outputs)
+    parts = {}
+    for name, (_, kernel_name, kind, rest) in _PLAN.items():
+        array = getattr(arrays, name)
+        if array is None:
+            room = (slots, *size) if kernel_name in _ALWAYS else (1, 1, 1)
+            array = np.zeros((*room, *rest), kind)
+        parts[kernel_name] = array
+    if fine:
+        wanted &= ~WANTED["colour"]
+    return ManyPixels(**parts, wanted=wanted)

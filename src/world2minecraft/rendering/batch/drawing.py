@@ -1,0 +1,202 @@
+"""Pictures of many poses in one call."""
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Camera
+from world2minecraft.rendering.batch.arrays import (
+    BatchArrays,
+    Size,
+    batch_arrays,
+    check_arrays,
+    check_batch,
+    pixels_of,
+    rooms_of,
+)
+from world2minecraft.rendering.batch.kernel import ManyPixels, draw_poses
+from world2minecraft.rendering.free_space import crossed_air
+from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light_parameters import DAY, Paper, lamp_of
+from world2minecraft.rendering.picture import DEFAULT_OUTPUTS
+from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
+from world2minecraft.rendering.ray_caster.picture_kernel import TILE, band_memory, draw_rows
+from world2minecraft.rendering.ray_caster.shading import Lamp
+from world2minecraft.rendering.scene import BlockScene
+from world2minecraft.rendering.scene_tables import SceneTables
+from world2minecraft.rendering.thread_pool import bands, side_by_side
+
+LARGE_PX = 200_000  # From here on threads share each picture and not the poses: less scratch.
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """What pictures are drawn of, as the kernels read it."""
+
+    tables: SceneTables
+    side_px: int
+
+
+@dataclass(frozen=True, eq=False)
+class Views:
+    """N cameras of one size, as the kernels read them."""
+
+    size: Size
+    poses: np.ndarray  # float64 [N, 3, 4], camera to grid
+    rays: np.ndarray  # float64 [N, 4]: fx, fy, cx, cy in pixels
+
+
+def render_batch(
+    scene: BlockScene,
+    cameras: Camera | Sequence[Camera],
+    poses: np.ndarray | Sequence[np.ndarray],
+    *,
+    outputs: Collection[str] = DEFAULT_OUTPUTS,
+    light: LookLight = DAY,
+    samples: int = 1,
+    threads: int = 1,
+    background: Paper | None = None,
+    out: BatchArrays | None = None,
+) -> BatchArrays:
+    """Take the pictures of many poses in one call of the kernel.
+
+    They share one exposure, that of all the eyes together, unless the light or the scene names
+    one. Whatever the number of threads, each picture has the same bytes.
+
+    Args:
+        scene: ``prepare_scene`` of a volume, or ``LiveScene.scene``.
+        cameras: one for all poses, or one for each; all of one size.
+        poses: ``camera_to_room``, float64 [N, 4, 4].
+        outputs: which of ``BATCH_OUTPUTS`` to make; no others are made.
+        light: the hour, the exposure and the like.
+        samples: a pixel's colour is the mean of so many by so many.
+        threads: how many draw at once.
+        background: sRGB colours of the first and last row behind all; None for the sky.
+        out: arrays of an earlier batch, or of ``batch_arrays``, to be filled; new ones where None.
+
+    Raises:
+        UsageError: what is asked for cannot be, or ``out`` does not suit it.
+    """
+    matrices = checked_poses(poses)
+    each = checked_cameras(cameras, len(matrices))
+    size = (each[0].height_px, each[0].width_px) if each else (1, 1)
+    check_batch(len(matrices), size, samples)
+    shape = scene.semantic.shape
+    rooms = rooms_of(len(matrices), size, outputs, shape)
+    arrays = out or batch_arrays(len(matrices), size, outputs, shape)
+    if out is not None:
+        check_arrays(out, rooms)
+    if len(matrices) == 0:
+        return arrays
+    views = views_of(scene, each, matrices)
+    lamp = lamp_of(light, scene, background, views.poses[:, :, 3])
+    draw_views(Stage(scene.tables, scene.side_px), views, lamp, outputs, samples, threads, arrays)
+    return arrays
+
+
+def views_of(scene: BlockScene, cameras: Sequence[Camera], poses: np.ndarray) -> Views:
+    """Return N >= 1 cameras of one size, with their poses, float64 [N, 4, 4], in a scene."""
+    first = cameras[0]
+    return Views(
+        (first.height_px, first.width_px),
+        np.stack([(scene.room_to_grid @ pose)[:3] for pose in poses]),
+        np.array([[one.fx_px, one.fy_px, one.cx_px, one.cy_px] for one in cameras], np.float64),
+    )
+
+
+def checked_poses(poses: np.ndarray | Sequence[np.ndarray]) -> np.ndarray:
+    """Return poses as float64 [N, 4, 4]. Raises UsageError."""
+    matrices = np.asarray(poses, np.float64)
+    if matrices.size == 0:
+        return np.empty((0, 4, 4))
+    if matrices.ndim != 3 or matrices.shape[1:] != (4, 4):
+        raise UsageError(f"poses must be [N, 4, 4], not {list(matrices.shape)}")
+    wrong = np.flatnonzero(~np.isfinite(matrices).all(axis=(1, 2)))
+    if len(wrong):
+        raise UsageError(f"pose {wrong[0]} has numbers that are not finite")
+    return matrices
+
+
+def checked_cameras(cameras: Camera | Sequence[Camera], count: int) -> Sequence[Camera]:
+    """Return a camera for each of the poses, all of one size. Raises UsageError."""
+    each = [cameras] * count if isinstance(cameras, Camera) else list(cameras)
+    if len(each) != count:
+        raise UsageError(f"{count} poses need one camera or {count}, not {len(each)}")
+    for number, camera in enumerate(each):
+        if (camera.width_px, camera.height_px) != (each[0].width_px, each[0].height_px):
+            raise UsageError(
+                f"the pictures of a batch have one size: camera {number} is "
+                f"{camera.width_px}x{camera.height_px}, the first "
+                f"{each[0].width_px}x{each[0].height_px}; RenderPool takes any"
+            )
+    return each
+
+
+def draw_views(
+    stage: Stage,
+    views: Views,
+    lamp: Lamp,
+    outputs: Collection[str],
+    samples: int,
+    threads: int,
+    arrays: BatchArrays,
+) -> None:
+    """Draw N views into the arrays of a batch, which suit them."""
+    fine = "colour" in outputs and samples > 1
+    count, (height, width) = len(views.poses), views.size
+    depth = arrays.depth_m
+    if "free" in outputs and depth is None:
+        depth = np.empty((count, height, width), np.float32)
+    by_rows = fine or count < 4 * threads or height * width > LARGE_PX
+    slots = 1 if by_rows else max(1, threads)
+    out = pixels_of(arrays, views.size, slots, outputs, fine=fine)
+    if depth is not None:
+        out = out._replace(depth=depth)
+    out.normal[...] = 0.0
+    draw = _drawer(stage, views, lamp, samples, out)
+    if by_rows:
+        parts = bands(height, max(1, threads), TILE)
+        side_by_side(lambda rows: draw(0, 1, rows, 0), parts)
+    else:
+        side_by_side(lambda slot: draw(slot, slots, (0, height), slot), range(slots))
+    if arrays.free is not None and depth is not None:
+        for n in range(count):
+            arrays.free[n] = crossed_air(stage.tables, views.poses[n], views.rays[n], 1.0, depth[n])
+
+
+Drawer = Callable[[int, int, tuple[int, int], int], None]
+
+
+def _drawer(stage: Stage, views: Views, lamp: Lamp, samples: int, out: ManyPixels) -> Drawer:
+    """Return what draws some rows of every so many pictures."""
+    height, width = views.size
+    apart = samples > 1 and out.colour.shape[1:3] == views.size
+    fine = pixel_arrays((height * samples, width * samples), ("colour",)) if apart else None
+
+    def draw(start: int, stride: int, rows: tuple[int, int], slot: int) -> None:
+        cells, scratch = band_memory()
+        draw_poses(
+            stage.tables, stage.side_px, views.poses, views.rays, 1.0, start, stride, *rows, slot,
+            lamp, cells, scratch, out,
+        )  # fmt: skip
+        if fine is None:
+            return
+        for n in range(start, len(views.poses), stride):
+            draw_rows(
+                stage.tables, stage.side_px, views.poses[n], views.rays[n] * samples, 1.0,
+                rows[0] * samples, rows[1] * samples, lamp, cells, scratch, fine,
+            )  # fmt: skip
+            _shrink(fine, samples, rows, out.colour[n])
+
+    return draw
+
+
+def _shrink(fine: PixelArrays, samples: int, rows: tuple[int, int], colour: np.ndarray) -> None:
+    """Write the mean of every samples x samples of pixels, in some rows of a picture."""
+    first, last = rows
+    part = fine.colour[first * samples : last * samples]
+    squares = part.reshape(last - first, samples, -1, samples, 3)
+    total = squares.sum(axis=(1, 3), dtype=np.uint16)
+    colour[first:last] = (total + samples * samples // 2) // (samples * samples)

@@ -1,0 +1,308 @@
+"""Processes that share one scene in memory and take its pictures.
+
+The scene's arrays are written to shared memory once. Each process has a pipe of its own, so that
+one that is killed locks nobody out; pictures come back through a ring of slots of shared memory,
+so that memory is bounded however many poses there are. All is taken away again at the end, also
+after an error, after Ctrl-C, and when a process dies.
+"""
+
+# Not by concurrent.futures: ProcessPoolExecutor sends results through a pipe, pickled, and sets no
+# bound to those that nobody has taken yet; here pictures are copied once, out of a ring of slots.
+
+import pickle
+import weakref
+from collections import deque
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+from multiprocessing.connection import wait
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.errors import UsageError, WorkerError
+from world2minecraft.core.machine import usable_cores
+from world2minecraft.core.types import Camera
+from world2minecraft.rendering.batch.arrays import (
+    PICTURE_OUTPUTS,
+    BatchArrays,
+    check_batch,
+    rooms_of,
+)
+from world2minecraft.rendering.batch.drawing import (
+    Stage,
+    Views,
+    checked_poses,
+    draw_views,
+    views_of,
+)
+from world2minecraft.rendering.batch.hands import (
+    PATIENCE_S,
+    Hand,
+    deaf_to_interrupts,
+    release,
+    started,
+)
+from world2minecraft.rendering.batch.ring import Ring, pictures_of, runs_of
+from world2minecraft.rendering.batch.shared_memory import Block, placed
+from world2minecraft.rendering.batch.worker import Job, Make, Reply, SceneMessage
+from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light_parameters import DAY, Paper, lamp_of
+from world2minecraft.rendering.picture import DEFAULT_OUTPUTS
+from world2minecraft.rendering.scene import BlockScene
+from world2minecraft.rendering.scene_tables import SceneTables
+
+MOST_WORKERS = 256
+WAITING = 2  # Tasks that each worker has, so that it never waits for the next.
+PLAIN = LookLight(exposure=1.0)
+
+
+class RenderPool:
+    """Processes that take pictures of one scene; a context manager.
+
+    Example::
+
+        with RenderPool(scene, workers=8) as pool:
+            for number, picture in pool.render(camera, poses):
+                ...
+
+    Workers are new interpreters on every system (``spawn``), so a script that makes a pool has
+    ``if __name__ == "__main__":`` around what it runs. One thread at a time may use a pool.
+    """
+
+    def __init__(self, scene: BlockScene, workers: int | None = None):
+        """Share the scene, compile what is not compiled yet, and start the workers.
+
+        Args:
+            scene: ``prepare_scene`` of a volume, or ``LiveScene.scene``.
+            workers: how many processes; as many as there are cores where None.
+
+        Raises:
+            UsageError: the number is out of range, or there is no shared memory.
+        """
+        count = usable_cores() if workers is None else workers
+        if not 1 <= count <= MOST_WORKERS:
+            raise UsageError(f"a pool has 1 to {MOST_WORKERS} workers, not {count}")
+        self.workers, self._scene, self._busy = count, scene, False
+        self._blocks: list[Block] = [_shared(scene)]
+        self._hands: list[Hand] = []
+        self._end = weakref.finalize(self, release, self._hands, self._blocks)
+        try:
+            _compile(self._blocks[0], scene)
+            with deaf_to_interrupts():
+                for number in range(count):
+                    self._hands.append(started(number))
+            self._tell(SceneMessage(self._blocks[0].plan, scene.side_px))
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> "RenderPool":
+        """Return the pool."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close the pool."""
+        self.close()
+
+    def close(self) -> None:
+        """End the workers and take the shared memory away; may be called twice."""
+        self._end()
+
+    def update(self, scene: BlockScene) -> None:
+        """Show the workers a scene that has changed, or another one, from the next job on.
+
+        Raises:
+            UsageError: the pool is closed, or its pictures are still being taken.
+        """
+        self._check_idle()
+        old, new = self._blocks[0], _shared(scene)
+        self._scene, self._blocks[0] = scene, new
+        self._tell(SceneMessage(new.plan, scene.side_px))
+        old.close()
+
+    def render(
+        self,
+        cameras: Camera | Sequence[Camera],
+        poses: np.ndarray | Sequence[np.ndarray],
+        *,
+        outputs: Collection[str] = DEFAULT_OUTPUTS,
+        light: LookLight = DAY,
+        samples: int = 1,
+        background: Paper | None = None,
+        ordered: bool = True,
+        make: Make | None = None,
+    ) -> Iterator[tuple[int, Any]]:
+        """Take the pictures of poses and give each with its number.
+
+        They share one exposure, that of all the eyes together, unless the light or the scene
+        names one; so they have the bytes that ``render_batch`` gives, for any number of workers.
+        Memory holds a few pictures for each worker, however many there are in all.
+
+        Args:
+            cameras: one for all poses, or one for each, of any sizes.
+            poses: ``camera_to_room``, float64 [N, 4, 4].
+            outputs: as in ``render_volume``; depth, range, block and face always come.
+            light: the hour, the exposure and the like.
+            samples: a pixel's colour is the mean of so many by so many.
+            background: sRGB colours of the first and last row behind all; None for the sky.
+            ordered: whether pictures come in the order of their poses, or as they are done.
+            make: called in the worker with the number and the picture, whose arrays pass away;
+                what it returns, such as the bytes of a JPEG, comes in the picture's place. A
+                function at the top of a module, or a partial of one.
+
+        Raises:
+            UsageError: what is asked for cannot be, or the pool is closed or at work.
+            WorkerError: a worker has died; the pool is closed then.
+        """
+        self._check_idle()
+        matrices = checked_poses(poses)
+        each = [cameras] * len(matrices) if isinstance(cameras, Camera) else list(cameras)
+        if len(each) != len(matrices):
+            raise UsageError(f"{len(matrices)} poses need one camera or as many, not {len(each)}")
+        for size in {(one.height_px, one.width_px) for one in each}:
+            check_batch(len(each), size, samples)
+        wanted = tuple(outputs)
+        runs = [views_of(self._scene, each[a:b], matrices[a:b]) for a, b in runs_of(each)]
+        rooms_of(1, (1, 1), wanted, self._scene.semantic.shape)  # Unknown names are said now.
+        if not runs:
+            return iter(())
+        eyes = np.concatenate([run.poses[:, :, 3] for run in runs])
+        lamp = lamp_of(light, self._scene, background, eyes)
+        return self._draw(runs, Job("", lamp, wanted, samples, make), ordered)
+
+    def _draw(self, runs: list[Views], job: Job, ordered: bool) -> Iterator[tuple[int, Any]]:
+        """Hand out the tasks and give what comes back."""
+        self._check_idle()
+        self._busy = True
+        outputs, shape = (*PICTURE_OUTPUTS, *job.outputs), self._scene.semantic.shape
+        rooms = [rooms_of(len(run.poses), run.size, outputs, shape) for run in runs]
+        ends = [placed(each)[1] for each in rooms]
+        slots = min(len(runs), WAITING * self.workers + 1)
+        block = Block.create({}, slots * max(ends))
+        self._blocks.append(block)
+        ring = Ring(slots, max(ends))
+        try:
+            self._tell(replace(job, slots=block.plan.name))
+            firsts = np.cumsum([0, *(len(run.poses) for run in runs)]).tolist()
+            tasks = deque(zip(firsts, runs, rooms, strict=False))
+            while tasks or ring.taken:
+                self._hand_out(tasks, ring)
+                reply = ring.next_reply(ordered)
+                if reply is None:
+                    self._listen(ring)
+                    continue
+                pictures = pictures_of(reply, ring, block)
+                ring.give_back(reply.first)
+                yield from pictures
+        finally:
+            self._drain()
+            if block in self._blocks:  # Else the pool was closed, and this with it.
+                self._blocks.remove(block)
+            block.close()
+            self._busy = False
+
+    def _hand_out(self, tasks: deque, ring: Ring) -> None:
+        """Give tasks to those workers that have few, as long as there are slots."""
+        while tasks and ring.free:
+            hand = min(self._hands, key=lambda one: len(one.tasks))
+            if len(hand.tasks) >= WAITING:
+                return
+            task = ring.take(*tasks.popleft())
+            hand.tasks.append(task.first)
+            self._send(hand, task)
+
+    def _listen(self, ring: Ring) -> None:
+        """Wait for replies."""
+        by_pipe = {hand.pipe: hand for hand in self._hands}
+        for pipe in wait(list(by_pipe)):
+            hand = by_pipe[pipe]  # type: ignore[index]
+            reply = self._receive(hand)
+            if reply.error is not None:
+                raise reply.error
+            ring.done[reply.first] = reply
+
+    def _receive(self, hand: Hand) -> Reply:
+        try:
+            reply = hand.pipe.recv()
+        except (EOFError, OSError):
+            raise self._lost(hand) from None
+        hand.tasks.popleft()
+        return reply
+
+    def _send(self, hand: Hand, message: object) -> None:
+        try:
+            hand.pipe.send(message)
+        except OSError:
+            raise self._lost(hand) from None
+
+    def _tell(self, message: SceneMessage | Job) -> None:
+        """Send all workers a message, pickled once."""
+        try:
+            data = pickle.dumps(message)
+        except (pickle.PicklingError, AttributeError, TypeError) as error:
+            raise UsageError(
+                "make must be a function at the top of a module, or a partial of one, so that "
+                f"it can be sent to the workers ({error})"
+            ) from error
+        for hand in self._hands:
+            try:
+                hand.pipe.send_bytes(data)
+            except OSError:
+                raise self._lost(hand) from None
+
+    def _drain(self) -> None:
+        """Wait for what workers still draw into slots; a pool that is closed has none."""
+        for hand in self._hands:
+            while hand.tasks:
+                try:
+                    hand.pipe.recv()
+                except (EOFError, OSError):
+                    hand.tasks.clear()
+                    break
+                hand.tasks.popleft()
+
+    def _lost(self, hand: Hand) -> WorkerError:
+        """Close the pool and return the error that says which worker died, and of what."""
+        hand.process.join(PATIENCE_S)
+        code, number, doing = hand.process.exitcode, hand.number + 1, list(hand.tasks)
+        hand.tasks.clear()
+        at = f" while it drew picture {doing[0]}" if doing else ""
+        if code is not None and code < 0:
+            why = "it was killed, perhaps because memory ran out: take fewer workers"
+        else:
+            why = (
+                "its own words are above; a script that makes a RenderPool needs "
+                "'if __name__ == \"__main__\":' around what it runs"
+            )
+        total = self.workers
+        self.close()
+        return WorkerError(f"worker {number} of {total} ended with code {code}{at}; {why}")
+
+    def _check_idle(self) -> None:
+        if not self._end.alive:
+            raise UsageError("this RenderPool is closed; make a new one")
+        if self._busy:
+            raise UsageError(
+                "this RenderPool is still taking pictures; use up or close what render() gave"
+            )
+
+
+def _shared(scene: BlockScene) -> Block:
+    """Copy the tables of a scene to shared memory."""
+    tables = {name: np.ascontiguousarray(array) for name, array in scene.tables._asdict().items()}
+    places, size = placed({name: (array.shape, array.dtype) for name, array in tables.items()})
+    block = Block.create(places, size)
+    for name, array in block.arrays().items():
+        array[...] = tables[name]
+    return block
+
+
+def _compile(block: Block, scene: BlockScene) -> None:
+    """Draw a tiny picture just as workers do, so that they find all kernels compiled."""
+    stage = Stage(SceneTables(**block.arrays()), scene.side_px)
+    lamp = pickle.loads(pickle.dumps(lamp_of(PLAIN, scene)))
+    views = Views((8, 8), np.eye(4)[None, :3].copy(), np.array([[8.0, 8.0, 4.0, 4.0]]))
+    outputs = ("colour", "depth", "free")
+    rooms = rooms_of(1, (8, 8), outputs, scene.semantic.shape)
+    arrays = BatchArrays(**{name: np.zeros(*room) for name, room in rooms.items()})
+    draw_views(stage, views, lamp, outputs, 2, 1, arrays)

@@ -1,0 +1,157 @@
+"""What a process of a pool does: it joins the scene in shared memory and draws what it is told.
+
+It gets ``SceneMessage``, ``Job`` and ``Task`` through a pipe, draws into the slot that the task
+names, and answers each task with a ``Reply``. It ends with its pipe.
+"""
+
+import pickle
+import signal
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from typing import Any
+
+from world2minecraft.core.errors import WorkerError
+from world2minecraft.rendering.batch.arrays import PICTURE_OUTPUTS, BatchArrays
+from world2minecraft.rendering.batch.drawing import Stage, Views, draw_views
+from world2minecraft.rendering.batch.shared_memory import Block, BlockPlan, Place
+from world2minecraft.rendering.picture import Picture
+from world2minecraft.rendering.ray_caster.shading import Lamp
+from world2minecraft.rendering.scene_tables import SceneTables
+
+Make = Callable[[int, Picture], Any]  # Number of the picture, picture; may be sent as a pickle.
+
+
+@dataclass(frozen=True, eq=False)
+class SceneMessage:
+    """Where the tables of the scene lie."""
+
+    plan: BlockPlan
+    side_px: int
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """What tasks have in common."""
+
+    slots: str  # the name of the memory that pictures are drawn into
+    lamp: Lamp
+    outputs: tuple[str, ...]
+    samples: int
+    make: Make | None
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """Some pictures of one size, and the places of their arrays."""
+
+    first: int  # the number of the first picture
+    views: Views
+    places: dict[str, Place]
+
+
+@dataclass(frozen=True, eq=False)
+class Reply:
+    """A task is done, or has failed; ``made`` where the job says what to make of pictures."""
+
+    first: int
+    made: list[Any] | None = None
+    error: Exception | None = None
+
+
+def serve(pipe: Connection) -> None:
+    """Do what comes through the pipe until it ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent is told, and closes the pipe.
+    desk = Desk()
+    try:
+        while (message := pipe.recv()) is not None:
+            reply = desk.take(message)
+            if reply is not None:
+                _send(pipe, reply)
+    except (EOFError, ConnectionError):  # The parent is gone.
+        return
+    finally:
+        desk.clear()
+
+
+def _send(pipe: Connection, reply: Reply) -> None:
+    try:
+        pipe.send(reply)
+    except (pickle.PicklingError, TypeError, AttributeError) as error:
+        text = f"what was made of picture {reply.first} cannot be sent back: {error}"
+        pipe.send(Reply(reply.first, error=WorkerError(text)))
+
+
+class Desk:
+    """What a worker was told, and the memory that it has joined.
+
+    It joins memory with the first task that needs it: a job that others were quicker to finish is
+    gone, with its memory, before a slow worker hears of it.
+    """
+
+    def __init__(self):
+        """Begin with nothing."""
+        self._scene: SceneMessage | None = None
+        self._job: Job | None = None
+        self._stage: Stage | None = None
+        self._blocks: dict[str, Block] = {}
+
+    def take(self, message: SceneMessage | Job | Task) -> Reply | None:
+        """Do what a message says; return the answer to a task."""
+        if isinstance(message, Task):
+            return self._draw(message)
+        if isinstance(message, SceneMessage):
+            self._scene, self._stage = message, None
+        else:
+            self._job = message
+        return None
+
+    def _draw(self, task: Task) -> Reply:
+        try:
+            return Reply(task.first, self._made(task))
+        except Exception as error:
+            return Reply(task.first, error=sendable(error))
+
+    def _made(self, task: Task) -> list[Any] | None:
+        job, scene = self._job, self._scene
+        if job is None or scene is None:
+            raise WorkerError("a worker was given a task before its scene")
+        if self._stage is None:
+            tables = self._joined("scene", scene.plan).arrays()
+            self._stage = Stage(SceneTables(**tables), scene.side_px)
+        slots = self._joined("slots", BlockPlan(job.slots, {}))
+        arrays = BatchArrays(**{name: slots.array(at) for name, at in task.places.items()})
+        outputs = (*PICTURE_OUTPUTS, *job.outputs)
+        draw_views(self._stage, task.views, job.lamp, outputs, job.samples, 1, arrays)
+        if job.make is None:
+            return None
+        numbers = range(len(task.views.poses))
+        return [job.make(task.first + number, arrays.picture(number)) for number in numbers]
+
+    def _joined(self, use: str, plan: BlockPlan) -> Block:
+        """Return the memory for a use; what was there for it before is let go."""
+        block = self._blocks.get(use)
+        if block is None or block.plan.name != plan.name:
+            if block is not None:
+                block.close()
+            block = self._blocks[use] = Block.join(plan)
+        return block
+
+    def clear(self) -> None:
+        """Let go of all memory."""
+        self._stage = None
+        for block in self._blocks.values():
+            block.close()
+
+
+def sendable(error: Exception) -> Exception:
+    """Return an error as it is where that can be sent, else one that tells it."""
+    try:
+        copied = pickle.loads(pickle.dumps(error))
+    except Exception:
+        copied = None
+    if type(copied) is type(error) and str(copied) == str(error):
+        return error.with_traceback(None)  # Its frames hold shared memory.
+    told = "".join(traceback.format_exception_only(error)).strip()
+    return WorkerError(f"a worker failed: {told}")

@@ -1,0 +1,251 @@
+"""What to leave out of a room so that one can look into it.
+
+The ceiling goes; of the walls on the near sides only a low rim stays, with whatever hangs on them
+gone too, and walls between rooms end at breast height. A house of several storeys is taken apart:
+its storeys stand side by side. Nothing is decided by names of blocks, only by the classes and
+places in the volume.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.rendering.standing import entities_within, kept_entities, moved_entities
+
+RIM_M = 0.25  # So much of a near wall stays, to show where it is.
+HUNG_M = 0.12  # What hangs on a near wall reaches this far into the room,
+HIGH_M = 1.0  # and hangs above this height; lower things stand on the floor.
+BREAST_M = 1.1  # So much of a wall between two rooms stays.
+ROOM_M2 = 1.0
+STRIP_M = 0.4  # A strip of floor so narrow is no room.
+STOREY_M = 1.9  # Floors lie at least this far over one another,
+STOREY_SHARE = 0.15  # and have at least this share of the largest one's area.
+APART_M = 1.5  # Between storeys that stand side by side.
+_WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))
+
+
+def without_ceiling(volume: BlockVolume) -> BlockVolume:
+    """Return the volume without its ceiling and all above it."""
+    semantic = volume.semantic
+    drop = semantic == SemanticClass.CEILING
+    level = ceiling_level(semantic)
+    if level is not None:
+        drop = drop.copy()
+        drop[:, level:, :] = True
+    return _without(volume, drop)
+
+
+def ceiling_level(semantic: np.ndarray) -> int | None:
+    """Return the lowest layer (y) of the flat ceiling, or None where there is none."""
+    counts = (semantic == SemanticClass.CEILING).sum(axis=(0, 2))
+    if not counts.any():
+        return None
+    # Drops and beams lie under the flat part; half of the fullest layer tells them apart.
+    return int(np.flatnonzero(counts >= counts.max() / 2)[0])
+
+
+def storeys_of(volume: BlockVolume) -> list[BlockVolume]:
+    """Return the storeys of a house, from the ground up, each from its floor to the next.
+
+    A room is its own and only storey.
+    """
+    counts = (volume.semantic == SemanticClass.FLOOR).sum(axis=(0, 2))
+    least = max(STOREY_SHARE * counts.max(initial=0), 1)
+    apart = STOREY_M * volume.blocks_per_metre
+    floors: list[int] = []
+    for level in np.flatnonzero(counts >= least).tolist():
+        if floors and level - floors[-1] < apart:
+            continue
+        floors.append(level)
+    if len(floors) < 2:
+        return [volume]
+    edges = [0, *floors[1:], volume.states.shape[1]]
+    return [_layers(volume, low, high) for low, high in pairwise(edges)]
+
+
+def side_by_side(volumes: Sequence[BlockVolume]) -> BlockVolume:
+    """Return volumes of one plan in a row, on one level, in the order given.
+
+    They stand along the shorter side of their plan, so that the row is about square.
+    """
+    if len(volumes) == 1:
+        return volumes[0]
+    first = volumes[0]
+    axis = 0 if first.states.shape[0] <= first.states.shape[2] else 2
+    height = max(one.states.shape[1] for one in volumes)
+    gap = round(APART_M * first.blocks_per_metre)
+    entities, moved = [], np.zeros(3)
+    for one in volumes:
+        entities += moved_entities(one, moved + np.subtract(first.corner, one.corner))
+        moved[axis] += one.states.shape[axis] + gap
+    return replace(
+        first,
+        entities=tuple(entities),
+        states=_in_a_row([one.states for one in volumes], axis, height, gap),
+        semantic=_in_a_row([one.semantic for one in volumes], axis, height, gap),
+        instance=_in_a_row([one.instance for one in volumes], axis, height, gap),
+    )
+
+
+def without_partitions(volume: BlockVolume) -> BlockVolume:
+    """Return the volume with the walls between its rooms, and what hangs on them, cut down.
+
+    Such a wall has floor before and behind it, within half a metre.
+    """
+    semantic = volume.semantic
+    bpm = volume.blocks_per_metre
+    floor = room_columns(semantic, bpm)
+    reach = max(2, round(0.5 * bpm))
+    walls = np.isin(semantic, _WALLS).any(axis=1)  # A lintel too, over the floor of its doorway.
+    between = walls & (_both_sides(floor, 0, reach) | _both_sides(floor, 1, reach))
+    if not between.any():
+        return volume
+    level = floor_level(semantic) + 1 + round(BREAST_M * bpm)
+    drop = np.zeros(semantic.shape, bool)
+    drop[:, level:, :] = between[:, None, :]
+    low = np.unique(volume.instance[:, :level, :])
+    near = _dilate(between, max(1, round(HUNG_M * bpm)))[:, None, :]
+    hangs = (volume.instance > 0) & ~np.isin(volume.instance, low) & near
+    drop |= np.isin(volume.instance, np.unique(volume.instance[hangs])) & (volume.instance > 0)
+    return _without(volume, drop)
+
+
+def without_near_walls(volume: BlockVolume, near_x: int, near_z: int) -> BlockVolume:
+    """Return the volume with the walls on two sides cut down to a rim.
+
+    Args:
+        volume: the blocks.
+        near_x: which end of block x is near: +1 for its far end, -1 for its start.
+        near_z: the same for block z.
+    """
+    semantic = volume.semantic
+    floor = room_columns(semantic, volume.blocks_per_metre)
+    outside = _beyond(floor, 0, near_x) | _beyond(floor, 1, near_z)
+    level = floor_level(semantic) + 1 + round(RIM_M * volume.blocks_per_metre)
+    drop = np.zeros(semantic.shape, bool)
+    drop[:, level:, :] = outside[:, None, :]
+    far = _beyond(floor, 0, -near_x) | _beyond(floor, 1, -near_z)
+    flush = ~far & _dilate(outside, max(1, round(HUNG_M * volume.blocks_per_metre)))
+    # What reaches into the room stands there: a floor lamp keeps its shade.
+    inside = np.unique(volume.instance[np.broadcast_to(~flush[:, None, :], semantic.shape)])
+    stands = np.isin(volume.instance, inside[inside > 0])
+    hangs = np.isin(semantic, (*_WALLS, int(SemanticClass.OBJS))) & flush[:, None, :] & ~stands
+    high = floor_level(semantic) + 1 + round(HIGH_M * volume.blocks_per_metre)
+    hangs[:, :high, :] &= np.isin(semantic[:, :high, :], _WALLS)
+    hangs[:, :level, :] = False
+    return _without(volume, drop | hangs)
+
+
+def floor_level(semantic: np.ndarray) -> int:
+    """Return the fullest floor layer (y), or 0 where there is no floor."""
+    counts = (semantic == SemanticClass.FLOOR).sum(axis=(0, 2))
+    return int(counts.argmax())
+
+
+def floor_columns(semantic: np.ndarray) -> np.ndarray:
+    """Return bool [X, Z]: columns with floor in them and no wall at a man's height."""
+    return (semantic == SemanticClass.FLOOR).any(axis=1) & ~_wall_columns(semantic)
+
+
+def _wall_columns(semantic: np.ndarray) -> np.ndarray:
+    """Return bool [X, Z]: columns that are wall or window for most of a man's height."""
+    return np.isin(semantic, _WALLS).mean(axis=1) > 0.4
+
+
+def room_columns(semantic: np.ndarray, blocks_per_metre: float) -> np.ndarray:
+    """Return bool [X, Z]: where rooms are: floor, and things under which nobody saw any.
+
+    Without what a scan saw of a floor past a door or under a wall, sills, hedges round a house. All
+    of the floor where nothing as large as a room is left.
+    """
+    floor = floor_columns(semantic)
+    named = (semantic >= SemanticClass.CHAIR) & (semantic != UNKNOWN)
+    things = named.any(axis=1) & ~_wall_columns(semantic)
+    side = 2 * int(STRIP_M / 2 * blocks_per_metre) + 1
+    wide = np.asarray(ndimage.binary_opening(floor | things, np.ones((side, side))), bool)
+    parts, count = connected_parts(wide, corners=False)
+    floors = np.bincount(parts[floor], minlength=count + 1)
+    rooms = wide & (floors[parts] >= ROOM_M2 * blocks_per_metre**2)
+    return rooms if rooms.any() else floor
+
+
+def _beyond(floor: np.ndarray, axis: int, side: int) -> np.ndarray:
+    """Tell which columns [X, Z] lie past the last floor of their row, towards ``side``."""
+    rows = np.moveaxis(floor, axis, 0)
+    rows = rows[::-1] if side > 0 else rows
+    beyond = ~np.logical_or.accumulate(rows, axis=0)
+    beyond = beyond[::-1] if side > 0 else beyond
+    # A row without any floor runs along a wall: it is cut where its neighbours are.
+    empty = ~rows.any(axis=0)
+    if empty.any() and not empty.all():
+        last = np.flatnonzero(~empty)
+        nearest = last[np.abs(last[None] - np.flatnonzero(empty)[:, None]).argmin(axis=1)]
+        beyond[:, empty] = beyond[:, nearest]
+    return np.moveaxis(beyond, 0, axis)
+
+
+def _both_sides(floor: np.ndarray, axis: int, reach: int) -> np.ndarray:
+    """Tell which columns [X, Z] have floor within reach on either side along an axis."""
+    sides = []
+    for step in (-1, 1):
+        near = np.zeros_like(floor)
+        for distance in range(1, reach + 1):
+            moved = np.roll(floor, step * distance, axis=axis)
+            edge = [slice(None), slice(None)]
+            edge[axis] = slice(0, distance) if step > 0 else slice(-distance, None)
+            moved[tuple(edge)] = False
+            near |= moved
+        sides.append(near)
+    return sides[0] & sides[1]
+
+
+def _layers(volume: BlockVolume, low: int, high: int) -> BlockVolume:
+    """Return the layers [low, high) of a volume, at their place."""
+    x, y, z = volume.corner
+    return replace(
+        volume,
+        states=volume.states[:, low:high],
+        semantic=volume.semantic[:, low:high],
+        instance=volume.instance[:, low:high],
+        corner=(x, y + low, z),
+        entities=entities_within(volume, low, high),
+    )
+
+
+def _in_a_row(arrays: list[np.ndarray], axis: int, height: int, gap: int) -> np.ndarray:
+    pieces: list[np.ndarray] = []
+    for values in arrays:
+        tall = np.pad(values, ((0, 0), (0, height - values.shape[1]), (0, 0)))
+        if pieces:
+            shape = list(tall.shape)
+            shape[axis] = gap
+            pieces.append(np.zeros(shape, values.dtype))
+        pieces.append(tall)
+    return np.concatenate(pieces, axis=axis)
+
+
+def _dilate(mask: np.ndarray, steps: int) -> np.ndarray:
+    grown = mask.copy()
+    for _ in range(steps):
+        grown[1:] |= mask[:-1]
+        grown[:-1] |= mask[1:]
+        grown[:, 1:] |= mask[:, :-1]
+        grown[:, :-1] |= mask[:, 1:]
+        mask = grown.copy()
+    return grown
+
+
+def _without(volume: BlockVolume, drop: np.ndarray) -> BlockVolume:
+    return replace(
+        volume,
+        states=np.where(drop, np.uint16(0), volume.states),
+        semantic=np.where(drop, np.uint8(0), volume.semantic),
+        instance=np.where(drop, np.uint16(0), volume.instance),
+        entities=kept_entities(volume, drop),
+    )

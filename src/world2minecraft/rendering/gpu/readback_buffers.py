@@ -1,0 +1,131 @@
+"""Buffers that pictures come back through: two sets, so that one is drawn while one is read.
+
+A picture is drawn in bands of rows, as many as fit; a job is one band of one pose. Several jobs go
+into one submission and come back in one piece.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.rendering.gpu.adapters import wgpu_module
+from world2minecraft.rendering.gpu.shader import BINDINGS
+from world2minecraft.rendering.gpu.uniforms import (
+    PARAMETER_BYTES,
+    TONE_BYTES,
+    VIEW,
+    Ask,
+    tone_words,
+)
+from world2minecraft.rendering.ray_caster.shading import Lamp
+
+SLOT_BYTES = 64 << 20  # Of one set; large enough that its overhead is small, small for memory.
+MOST_JOBS = 256  # Of one submission.
+MOST_SAMPLES = 16_000_000  # Rays from the eye of one submission.
+TILE = 8  # Pixels a side of a workgroup.
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How the jobs of a call are cut: rows of a band, and jobs of a submission."""
+
+    band_rows: int
+    jobs: int
+    words: int  # 32-bit words of one job
+
+
+def plan_of(ask: Ask, pictures: int | None, most_bytes: int = SLOT_BYTES) -> Plan:
+    """Cut pictures so that a submission fits into ``most_bytes``, and one row at least.
+
+    ``pictures`` is how many there are, None where that is not known.
+    """
+    height, width = ask.size
+    row_words = width * ask.layout.planes
+    # Many samples are much work: a submission that lasts seconds is stopped by some drivers.
+    most_pixels = MOST_SAMPLES // ask.samples**2
+    room = max(min(most_bytes // 4, most_pixels * ask.layout.planes), row_words)
+    band_rows = min(height, room // row_words)
+    words = band_rows * row_words
+    jobs = max(1, min(MOST_JOBS, room // words))
+    if pictures is not None:
+        jobs = min(jobs, pictures * -(-height // band_rows))
+    return Plan(band_rows, max(jobs, 1), words)
+
+
+class Slot:
+    """One set of buffers, which one call uses at a time."""
+
+    def __init__(self, engine: Any, scene: Mapping[str, Any], out_bytes: int):
+        """Make the buffers.
+
+        Args:
+            engine: ``device`` and ``pipeline``.
+            scene: the buffers of ``PackedScene`` by name.
+            out_bytes: room for outputs.
+        """
+        usage = wgpu_module().BufferUsage
+        self.scene, self.out_bytes, self._engine, self._bytes = scene, out_bytes, engine, 0
+        self._promise: Any = None
+        self._lamp: Lamp | None = None
+
+        def made(size: int, flags: int) -> Any:
+            return engine.device.create_buffer(size=size, usage=flags)
+
+        self._own = {
+            "parameters": made(PARAMETER_BYTES, usage.UNIFORM | usage.COPY_DST),
+            "tone": made(TONE_BYTES, usage.STORAGE | usage.COPY_DST),
+            "views": made(MOST_JOBS * VIEW.itemsize, usage.STORAGE | usage.COPY_DST),
+            "out": made(out_bytes, usage.STORAGE | usage.COPY_SRC),
+        }
+        self._back = made(out_bytes, usage.COPY_DST | usage.MAP_READ)
+        named = {**scene, **self._own}
+        self._group = engine.device.create_bind_group(
+            layout=engine.pipeline.get_bind_group_layout(0),
+            entries=[
+                {"binding": place, "resource": {"buffer": one, "offset": 0, "size": one.size}}
+                for place, one in enumerate(named[name] for name in BINDINGS)
+            ],
+        )
+
+    def prepare(self, parameters: bytes, lamp: Lamp) -> None:
+        """Take what the next submission is drawn with."""
+        self._write("parameters", parameters)
+        if self._lamp is not lamp:
+            self._write("tone", tone_words(lamp))
+            self._lamp = lamp
+
+    def _write(self, name: str, data: bytes | np.ndarray) -> None:
+        self._engine.device.queue.write_buffer(self._own[name], 0, data)
+
+    def submit(self, views: np.ndarray, ask: Ask, plan: Plan) -> None:
+        """Begin to draw some views, ``VIEW`` [N]."""
+        self._write("views", views)
+        self._bytes = 4 * plan.words * len(views)
+        encoder = self._engine.device.create_command_encoder()
+        work = encoder.begin_compute_pass()
+        work.set_pipeline(self._engine.pipeline)
+        work.set_bind_group(0, self._group)
+        work.dispatch_workgroups(-(-ask.size[1] // TILE), -(-plan.band_rows // TILE), len(views))
+        work.end()
+        encoder.copy_buffer_to_buffer(self._own["out"], 0, self._back, 0, self._bytes)
+        self._engine.device.queue.submit([encoder.finish()])
+        self._promise = self._back.map_async("READ", 0, self._bytes)
+
+    def words(self) -> np.ndarray:
+        """Wait for what was submitted; a view, uint32, that is good until ``release``."""
+        self._promise.sync_wait()
+        return np.frombuffer(self._back.read_mapped(0, self._bytes, copy=False), np.uint32)
+
+    def release(self) -> None:
+        """Let go of the words, so that the set may be used again."""
+        if self._promise is not None:
+            self._promise.sync_wait()
+            self._back.unmap()
+            self._promise = None
+
+    def destroy(self) -> None:
+        """Free the memory on the GPU."""
+        for buffer in (*self._own.values(), self._back):
+            buffer.destroy()

@@ -1,0 +1,284 @@
+"""Pictures by a compute shader: the scene goes to the GPU once; poses in, pictures out."""
+
+from collections import deque
+from collections.abc import Collection, Iterable, Iterator, Sized
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.core.types import Camera
+from world2minecraft.rendering.free_space import crossed_air
+from world2minecraft.rendering.gpu.adapters import GpuError, find_adapter
+from world2minecraft.rendering.gpu.engine import engine_for, failures, forget
+from world2minecraft.rendering.gpu.planes import fill
+from world2minecraft.rendering.gpu.readback_buffers import Plan, Slot, plan_of
+from world2minecraft.rendering.gpu.scene_buffers import packed
+from world2minecraft.rendering.gpu.uniforms import (
+    VIEW,
+    Ask,
+    check_pose,
+    layout_of,
+    parameter_bytes,
+    view_of,
+    way_ahead,
+)
+from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light_parameters import DAY, Paper, lamp_of
+from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, check_request, picture_of
+from world2minecraft.rendering.picture_arrays import PixelArrays, pixel_arrays
+from world2minecraft.rendering.ray_caster.shading import Lamp
+from world2minecraft.rendering.scene import BlockScene
+
+AHEAD = 2  # Submissions under way: one is drawn while another is read.
+MOST_FREE = AHEAD  # Sets of buffers that are kept for the next call.
+LOST = "{} stopped answering: {}; use --device cpu"
+
+
+class GpuRenderer:
+    """Draws one scene on a graphics card; the methods are those of ``CpuRenderer``.
+
+    It is used from one thread at a time. A lost device is opened anew, once a call.
+    """
+
+    def __init__(self, scene: BlockScene, *, adapter: str | None = None):
+        """Copy a scene to the GPU.
+
+        Args:
+            scene: what pictures are taken of.
+            adapter: a part of an adapter's name, or ``software``; None for the best hardware.
+
+        Raises:
+            MissingExtraError: wgpu is not installed.
+            GpuError: there is no such adapter, or the scene does not fit.
+        """
+        self._adapter = find_adapter(adapter)
+        self._scene = scene
+        self._open()
+
+    @property
+    def name(self) -> str:
+        """The adapter's name."""
+        return self._engine.name
+
+    def update(self, scene: BlockScene) -> None:
+        """Draw another scene from now on, or the same after its blocks were changed."""
+        self._scene = scene
+        self._close_buffers()
+        self._open()
+
+    def close(self) -> None:
+        """Free the memory on the GPU; the renderer is of no use after that."""
+        self._close_buffers()
+
+    def render(
+        self,
+        camera: Camera,
+        camera_to_room: np.ndarray,
+        *,
+        outputs: Collection[str] = DEFAULT_OUTPUTS,
+        light: LookLight = DAY,
+        samples: int = 1,
+        background: Paper | None = None,
+    ) -> Picture:
+        """Take a picture; the arguments are those of ``render_volume``."""
+        (picture,) = self.render_many(
+            camera, [camera_to_room], outputs=outputs, light=light, samples=samples,
+            background=background,
+        )  # fmt: skip
+        return picture
+
+    def render_many(
+        self,
+        camera: Camera,
+        poses: Iterable[np.ndarray],
+        *,
+        outputs: Collection[str] = DEFAULT_OUTPUTS,
+        light: LookLight = DAY,
+        samples: int = 1,
+        background: Paper | None = None,
+    ) -> Iterator[Picture]:
+        """Take a picture from each pose, in their order; some poses are asked for ahead.
+
+        Args:
+            camera: one for all.
+            poses: ``camera_to_room``, 4x4 each.
+            outputs: see ``render_volume``; the others too.
+            light: the hour, the exposure and the like.
+            samples: a pixel's colour is the mean of so many by so many.
+            background: sRGB colours of the first and last row behind all.
+
+        Raises:
+            ValueError: as ``render_volume``, or a pose holds a number that is none.
+            GpuError: the graphics card stopped answering.
+        """
+        rays = (camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px)
+        size = (camera.height_px, camera.width_px)
+        yield from self._pictures(rays, 1.0, size, poses, outputs, light, samples, background)
+
+    def render_parallel(
+        self,
+        px_per_metre: float,
+        size: tuple[int, int],
+        camera_to_room: np.ndarray,
+        *,
+        outputs: Collection[str] = DEFAULT_OUTPUTS,
+        light: LookLight = DAY,
+        samples: int = 1,
+        background: Paper | None = None,
+    ) -> Picture:
+        """Take a picture by parallel rays; see the function of that name."""
+        rays = (px_per_metre, px_per_metre, size[1] / 2, size[0] / 2)
+        (picture,) = self._pictures(
+            rays, 0.0, size, [camera_to_room], outputs, light, samples, background
+        )
+        return picture
+
+    def _open(self) -> None:
+        self._engine = engine_for(self._adapter)
+        self._engine.check_fits(self._scene)
+        scene = packed(self._scene)
+        self._offsets = scene.offsets
+        self._buffers = self._engine.upload(scene.buffers)
+        self._free: list[Slot] = []
+
+    def _close_buffers(self) -> None:
+        for slot in self._free:
+            slot.destroy()
+        for buffer in self._buffers.values():
+            buffer.destroy()
+        self._free, self._buffers = [], {}
+
+    def _pictures(
+        self, rays, spread, size, poses, outputs, light, samples, background
+    ) -> Iterator[Picture]:
+        check_request(outputs, size, samples)
+        scene = self._scene
+        layout = layout_of(tuple(outputs), len(scene.things) > 0)
+        ask = Ask(size, rays, spread, samples, layout)
+        plan = plan_of(ask, _count(poses))
+
+        def jobs() -> Iterator[_Job]:
+            for camera_to_room in poses:
+                pose = (scene.room_to_grid @ np.asarray(camera_to_room, np.float64))[:3]
+                check_pose(pose)
+                lamp = lamp_of(light, scene, background, pose[:, 3][None] if spread else None)
+                for row in range(0, size[0], plan.band_rows):
+                    yield _Job(pose, row, lamp)
+
+        for pose, arrays in self._drawn(ask, plan, alike(jobs(), plan.jobs), outputs):
+            picture = picture_of(arrays, outputs)
+            if "free" in outputs:
+                free = crossed_air(scene.tables, pose, np.array(rays), spread, arrays.depth)
+                picture = replace(picture, free=free)
+            yield picture
+
+    def _drawn(
+        self, ask: Ask, plan: Plan, lots: "Iterator[list[_Job]]", outputs: Collection[str]
+    ) -> Iterator[tuple[np.ndarray, PixelArrays]]:
+        """Draw lots of jobs; two submissions are under way at a time."""
+        under_way: deque[_Work] = deque()
+        arrays, lost = pixel_arrays((1, 1), ()), False
+        try:
+            while True:
+                under_way += [_Work(lot) for lot in islice(lots, AHEAD - len(under_way))]
+                if not under_way:
+                    return
+                try:
+                    words = self._begin(under_way, ask, plan)
+                except failures() as error:
+                    if lost:
+                        raise GpuError(LOST.format(self.name, error)) from error
+                    lost = True
+                    self._open_again(under_way)
+                    continue
+                for job, planes in zip(under_way[0].jobs, words, strict=True):
+                    arrays = pixel_arrays(ask.size, outputs) if job.row == 0 else arrays
+                    fill(arrays, planes, job.row, ask.layout)
+                    if job.row + plan.band_rows >= ask.size[0]:
+                        yield job.pose, arrays
+                self._give_back(under_way.popleft().slot)
+        finally:
+            for work in under_way:
+                self._give_back(work.slot)
+
+    def _begin(self, under_way: "deque[_Work]", ask: Ask, plan: Plan) -> np.ndarray:
+        """Submit what is not yet; return the first one's words [jobs, planes, rows, W]."""
+        for work in under_way:
+            if work.slot is None:
+                work.slot = self._slot(4 * plan.words * plan.jobs)
+                lamp = work.jobs[0].lamp
+                parameters = parameter_bytes(ask, lamp, self._scene, self._offsets, plan.band_rows)
+                work.slot.prepare(parameters, lamp)
+                work.slot.submit(_views(work.jobs, self._scene, ask), ask, plan)
+        first = under_way[0]
+        shape = (len(first.jobs), ask.layout.planes, plan.band_rows, ask.size[1])
+        return first.slot.words().reshape(shape) if first.slot else np.empty(shape, np.uint32)
+
+    def _open_again(self, under_way: "deque[_Work]") -> None:
+        """Open the device anew after it was lost."""
+        forget(self._engine)
+        for work in under_way:
+            work.slot = None
+        self._open()
+
+    def _slot(self, out_bytes: int) -> Slot:
+        """Return a set of buffers of a size."""
+        for place, slot in enumerate(self._free):
+            if slot.out_bytes == out_bytes:
+                return self._free.pop(place)
+        return Slot(self._engine, self._buffers, out_bytes)
+
+    def _give_back(self, slot: Slot | None) -> None:
+        if slot is None:
+            return
+        try:
+            slot.release()
+        except failures():  # Its device is lost.
+            return
+        if slot.scene is not self._buffers:  # The scene has changed since.
+            slot.destroy()
+            return
+        self._free.append(slot)
+        if len(self._free) > MOST_FREE:
+            self._free.pop(0).destroy()
+
+
+class _Job(NamedTuple):
+    """One band of rows of one picture."""
+
+    pose: np.ndarray  # float64 [3, 4], camera to grid
+    row: int  # the band's first
+    lamp: Lamp
+
+
+@dataclass
+class _Work:
+    """Jobs of one submission, and the buffers that it was submitted with."""
+
+    jobs: list[_Job]
+    slot: Slot | None = None
+
+
+def alike(jobs: Iterable[_Job], most: int) -> Iterator[list[_Job]]:
+    """Give lots of up to so many jobs, in their order; the jobs of a lot have one light."""
+    lot: list[_Job] = []
+    for job in jobs:
+        if lot and (len(lot) == most or lot[0].lamp is not job.lamp):
+            yield lot
+            lot = []
+        lot.append(job)
+    if lot:
+        yield lot
+
+
+def _count(poses: object) -> int | None:
+    return len(poses) if isinstance(poses, Sized) else None
+
+
+def _views(jobs: list[_Job], scene: BlockScene, ask: Ask) -> np.ndarray:
+    shape = scene.tables.space.shape
+    ahead = [0.0 if ask.spread else way_ahead(job.pose, shape) for job in jobs]
+    views = [view_of(job.pose, job.row, way) for job, way in zip(jobs, ahead, strict=True)]
+    return np.array(views, VIEW)

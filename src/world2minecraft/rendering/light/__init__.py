@@ -1,0 +1,52 @@
+"""Light: of the sky, of lamps, of the hour; and from light to the screen.
+
+A scene keeps a ``LightField`` (``light_field(states, palette, reach)``), whose ``lattice`` the
+kernel reads, and ``edit_light`` keeps it true where cells change. A ``LookLight`` says how a
+picture is lit, ``scene_exposure(field, look, eyes)`` how far that is opened up; the look gives the
+kernel
+
+- ``parameters(exposure) -> LitParameters``, floats alone,
+- ``background(exposure) -> Background``, the sky,
+- ``tone -> Tone``, the tables ``decode`` (texel to light) and ``encode`` (light to screen).
+
+For kernels, a pixel at a time (the picture kernel keeps what the lattice's entries stand for in a
+table, ``shade.corner_lights``, in place of the first and third):
+
+- ``sky, block, occluders = lattice_light(light, side, i, j, k, layer_step, p, q)``
+- ``shade = direction_shade(nx, ny, nz, cosine, params)``
+- ``r, g, b = lit_colour(sky, block, occluders, shade, sun, params)``, the multipliers of the linear
+  texel; ``glow_light(emission, params)`` is the least of them for what shines by itself
+- ``r, g, b = background_light(dx, dy, dz, background)`` where a ray meets nothing
+- ``finish(r, g, b, tone)``, three uint8
+"""
+
+from world2minecraft.rendering.light.background import Background, background_light
+from world2minecraft.rendering.light.exposure import scene_exposure
+from world2minecraft.rendering.light.field import LightField, light_field
+from world2minecraft.rendering.light.pixel_light import (
+    LitParameters,
+    direction_shade,
+    glow_light,
+    lattice_light,
+    lit_colour,
+)
+from world2minecraft.rendering.light.relight import edit_light
+from world2minecraft.rendering.light.settings import LookLight
+from world2minecraft.rendering.light.tone_mapping import Tone, finish
+
+__all__ = [
+    "Background",
+    "LightField",
+    "LitParameters",
+    "LookLight",
+    "Tone",
+    "background_light",
+    "direction_shade",
+    "edit_light",
+    "finish",
+    "glow_light",
+    "lattice_light",
+    "light_field",
+    "lit_colour",
+    "scene_exposure",
+]

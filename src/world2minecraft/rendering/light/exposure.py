@@ -1,0 +1,137 @@
+"""How far a scene's light is opened up, so that rooms are neither black nor washed out.
+
+One number for a scene, or for the eyes of one tour, so that pictures of it belong together. It
+comes from the light at surfaces, in the geometric mean: what a camera's meter would see if all of
+them were grey.
+"""
+
+import numpy as np
+
+from world2minecraft.core.jit import njit
+from world2minecraft.minecraft.rules.flood import SHUT, SOLID, steps_of
+from world2minecraft.rendering.light.field import LightField
+from world2minecraft.rendering.light.flood import BRIGHTEST, units
+from world2minecraft.rendering.light.settings import LookLight
+
+# The light that surfaces shall have by day, at night under lamps, at night without: a night stays
+# a night.
+DAY_KEY, LAMP_KEY, NIGHT_KEY = 1.20, 0.70, 0.32
+ADAPTS = 0.80  # How much of the way there: dim rooms stay a little dimmer than bright ones.
+LEAST, MOST = 0.6, 4.0
+REACH_BLOCKS = 24  # Steps from an eye: at 4 blocks per metre, a room.
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+def scene_exposure(field: LightField, look: LookLight, eyes: np.ndarray | None = None) -> float:
+    """Return the exposure of a scene for ``LookLight.parameters`` and ``background``.
+
+    Args:
+        field: the light of the volume.
+        look: how it is lit; its exposure is returned where it names one. Only ``shader`` is
+            exposed; the others give 1.
+        eyes: float [N, 3], where cameras stand, in cells of the volume: only what lies around
+            them counts, and of a volume that is seen from outside the open air. None for all
+            places where one can stand.
+    """
+    if look.exposure is not None:
+        return look.exposure
+    if look.preset != "shader":
+        return 1.0
+    cells = standing_cells(field)
+    if eyes is not None:
+        near = _around(field, np.atleast_2d(np.asarray(eyes, np.float64)))
+        cells = near if len(near) else _outdoors(field, cells)
+    if not len(cells):
+        return 1.0
+    sky, lamps = _surface_light(field, look, cells)
+    light = np.exp(np.log(sky + lamps).mean())
+    daylight = min(float(LUMINANCE @ look.sky.light), 1.0)
+    at_night = NIGHT_KEY + (LAMP_KEY - NIGHT_KEY) * lamps.sum() / (sky + lamps).sum()
+    key = at_night + (DAY_KEY - at_night) * daylight
+    return float(np.clip((key / light) ** ADAPTS, LEAST, MOST))
+
+
+def _surface_light(field: LightField, look: LookLight, cells: np.ndarray) -> np.ndarray:
+    """Return the luminance of the sky's and of the lamps' light in cells, float64 [2, N]."""
+    lit = look.parameters(1.0)
+    ambient, sky, block = (
+        float(LUMINANCE @ colour)
+        for colour in (
+            (lit.ambient_r, lit.ambient_g, lit.ambient_b),
+            (lit.sky_r, lit.sky_g, lit.sky_b),
+            (lit.block_r, lit.block_g, lit.block_b),
+        )
+    )
+    full = 15 * field.reach
+    levels = (field.sky.reshape(-1)[cells] / full, field.block.reshape(-1)[cells] / full)
+    shines = [level / (1 + lit.curve * (1 - level)) for level in levels]
+    sky_light = ambient + sky * shines[0]
+    if look.sun_shadow:  # In the open the sun shines on about as much as it does not.
+        sky_light += (levels[0] == 1) * (float(LUMINANCE @ look.sky.light) - sky)
+    return np.array([sky_light, block * shines[1]])
+
+
+def standing_cells(field: LightField) -> np.ndarray:
+    """Return where one can stand: free flat cells over something, int64 [N], margin counted."""
+    words = field.words[field.kinds]
+    free = words & (SHUT | SOLID) == 0
+    below = np.zeros_like(free)
+    below[:, 1:] = words[:, :-1] & (0b1111 << 12 | SOLID) != 0
+    below[:, 1] = False  # The margin holds nobody.
+    return np.flatnonzero(free & below)
+
+
+def _outdoors(field: LightField, cells: np.ndarray) -> np.ndarray:
+    """Return those of some flat cells that have the whole light of the sky, or all, if none has."""
+    sky = field.sky.reshape(-1)[cells]
+    open_air = cells[sky >= units(BRIGHTEST, field.reach)]
+    return open_air if len(open_air) else cells
+
+
+def _around(field: LightField, eyes: np.ndarray) -> np.ndarray:
+    """Return the flat free cells near surfaces that light reaches from the eyes in few steps."""
+    shape = np.array(field.kinds.shape)
+    cells = np.floor(eyes).astype(np.int64) + 1
+    inside = ((cells >= 1) & (cells < shape - 1)).all(axis=1)
+    if not inside.any():
+        return np.empty(0, np.int64)
+    starts = np.unique(np.ravel_multi_index(tuple(cells[inside].T), field.kinds.shape))
+    kinds, steps = field.kinds.reshape(-1), steps_of(field.kinds.shape)
+    return _reach(kinds, field.words, steps, starts, REACH_BLOCKS)
+
+
+@njit
+def _reach(kinds, words, steps, starts, most):
+    """Return the free cells up to ``most`` steps from the starts that touch a solid one."""
+    seen = np.zeros(len(kinds), np.bool_)
+    queue, count = np.empty(1024, np.int64), 0
+    found, kept = np.empty(1024, np.int64), 0
+    for start in starts:
+        if words[kinds[start]] & SOLID == 0:
+            seen[start] = True
+            if count == len(queue):
+                queue = np.concatenate((queue, np.empty(count, np.int64)))
+            queue[count] = start
+            count += 1
+    first = 0
+    for _ in range(most):
+        last = count
+        for n in range(first, last):
+            cell, touches = queue[n], False
+            for side in range(6):
+                near = cell + steps[side]
+                touches |= words[kinds[near]] & SOLID != 0
+                if seen[near] or words[kinds[near]] & SHUT == SHUT:
+                    continue
+                seen[near] = True
+                if count == len(queue):
+                    queue = np.concatenate((queue, np.empty(count, np.int64)))
+                queue[count] = near
+                count += 1
+            if touches:
+                if kept == len(found):
+                    found = np.concatenate((found, np.empty(kept, np.int64)))
+                found[kept] = cell
+                kept += 1
+        first = last
+    return found[:kept]

@@ -1,0 +1,158 @@
+"""Light after an edit: only what a change reaches is worked out again.
+
+The light of the changed cells, and all that may have come through them, is put out; what still
+shines around it then spreads back in. The result is that of a whole new flood.
+"""
+
+import numpy as np
+
+from world2minecraft.core.jit import njit
+from world2minecraft.minecraft.rules.flood import spread, steps_of
+from world2minecraft.rendering.light.field import MOST_STATES, LightField
+from world2minecraft.rendering.light.flood import BRIGHTEST, enters, falls_into, units
+from world2minecraft.rendering.light.lattice import fill_lattice, quarters
+from world2minecraft.rendering.light.passage import light_rows
+
+
+def edit_light(
+    field: LightField,
+    corner: tuple[int, int, int],
+    states: np.ndarray,
+    palette: tuple[str, ...] | None = None,
+) -> None:
+    """Bring the light of a volume up to date, in place, after a box of its cells was set.
+
+    Args:
+        field: the light before the edit.
+        corner: the first cell of the box.
+        states: uint16 [A, B, C], what the box's cells are now.
+        palette: the volume's palette where the edit made it longer; None where it is the same.
+
+    Raises:
+        ValueError: the box does not lie in the volume, or the palette is too long or shorter than
+            it was.
+    """
+    low = np.array(corner, np.int64) + 1
+    high = low + states.shape
+    if (low < 1).any() or (high > np.array(field.kinds.shape) - 1).any():
+        raise ValueError(f"the box at {tuple(corner)} of {states.shape} is not in the volume")
+    if palette is not None:
+        _learn(field, palette)
+    if not states.size:
+        return
+    box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
+    field.kinds[box] = states.astype(np.uint16) + np.uint16(1)
+    unit = np.array([units(level, field.reach) for level in range(BRIGHTEST + 1)], np.uint8)
+    top = units(BRIGHTEST, field.reach)
+    first, last = low.copy(), high.copy()
+    dark = np.zeros_like(field.gives)
+    for light, gives, full in ((field.sky, dark, top), (field.block, unit[field.gives], 0)):
+        reached = _reached(light.shape, low, high, top, full > 0)
+        before = light[reached].copy()
+        _relight(light, field.kinds, field.words, gives, low, high, full)
+        _grow(first, last, reached, before != light[reached])
+    table = quarters(field.reach)
+    fill_lattice(
+        field.lattice, field.sky, field.block, field.kinds, field.words, table, first, last
+    )
+
+
+def _reached(shape, low, high, top: int, to_ground: bool) -> tuple[slice, ...]:
+    """Return the box that a change between ``low`` and ``high`` may light or darken."""
+    first, last = np.maximum(low - top, 0), np.minimum(high + top, shape)
+    if to_ground:  # Full light of the sky goes straight down.
+        first[1] = 0
+    return tuple(slice(int(a), int(b)) for a, b in zip(first, last, strict=True))
+
+
+def _grow(first, last, reached: tuple[slice, ...], changed: np.ndarray) -> None:
+    """Let ``first`` and ``last`` hold all cells that changed."""
+    for axis in range(3):
+        others = tuple(n for n in range(3) if n != axis)
+        found = np.flatnonzero(changed.any(axis=others)) + reached[axis].start
+        if len(found):
+            first[axis] = min(first[axis], found[0])
+            last[axis] = max(last[axis], found[-1] + 1)
+
+
+def _learn(field: LightField, palette: tuple[str, ...]) -> None:
+    """Add the rows of states that are new."""
+    known = len(field.words) - 1
+    if not known <= len(palette) <= MOST_STATES:
+        raise ValueError(f"the palette may have {known} to {MOST_STATES:,} states now")
+    words, gives = light_rows(palette[known:], field.hidden_lamps)
+    field.words = np.concatenate([field.words, words[1:]])
+    field.gives = np.concatenate([field.gives, gives[1:]])
+
+
+def _relight(light, kinds, words, gives, low, high, top: int) -> None:
+    """Renew one kind of light; ``top`` is the sky's full light, 0 for the light of blocks."""
+    flat, steps = light.reshape(-1), steps_of(light.shape)
+    ranges = [np.arange(a, b) for a, b in zip(low, high, strict=True)]
+    cells = np.ravel_multi_index(np.meshgrid(*ranges, indexing="ij"), light.shape).reshape(-1)
+    rows = kinds.reshape(-1)
+    dark, edge = _put_out(flat, rows, steps, cells, top)
+    seeds = _kindle(flat, rows, words, gives, steps, dark, edge, top)
+    spread(flat, rows, words, steps, seeds)
+
+
+@njit
+def _put_out(light, kinds, steps, cells, top):
+    """Darken cells and all that they may have lit; return those, and the lit cells beside them."""
+    dark, levels, edge = cells.copy(), light[cells], np.empty(64, np.int64)
+    count, edges, done = len(cells), 0, 0
+    light[cells] = 0
+    while done < count:
+        cell, level = dark[done], levels[done]
+        done += 1
+        for side in range(6):
+            near = cell + steps[side]
+            if light[near] == 0 or kinds[near] == 0:
+                continue
+            fell = side == 2 and level == top and light[near] == top
+            if light[near] < level or fell:
+                if count == len(dark):
+                    dark = np.concatenate((dark, np.empty(count, np.int64)))
+                    levels = np.concatenate((levels, np.empty(count, np.uint8)))
+                dark[count], levels[count] = near, light[near]
+                count += 1
+                light[near] = 0
+            else:
+                if edges == len(edge):
+                    edge = np.concatenate((edge, np.empty(edges, np.int64)))
+                edge[edges] = near
+                edges += 1
+    return dark[:count], edge[:edges]
+
+
+@njit
+def _kindle(light, kinds, words, gives, steps, dark, edge, top):
+    """Light again what shines by itself or under the sky; return all cells to spread from."""
+    seeds, count = np.empty(len(dark) + len(edge) + 64, np.int64), 0
+    for cell in edge:
+        if light[cell] > 0:
+            seeds[count] = cell
+            count += 1
+    for cell in dark:
+        level = gives[kinds[cell]]
+        for side in range(6):
+            beside_air = top > 0 and side != 2 and kinds[cell + steps[side]] == 0
+            if beside_air and enters(words, kinds[cell], side):
+                level = max(level, np.uint8(top - 1))
+        if level > light[cell]:
+            light[cell] = level
+        if light[cell] > 0:
+            seeds[count] = cell
+            count += 1
+    for start in dark if top > 0 else dark[:0]:
+        cell, above = start, start + steps[3]
+        while kinds[cell] != 0 and light[cell] < top and light[above] == top:
+            if not falls_into(words, kinds[above], kinds[cell]):
+                break
+            light[cell] = top
+            if count == len(seeds):
+                seeds = np.concatenate((seeds, np.empty(count, np.int64)))
+            seeds[count] = cell
+            count += 1
+            cell, above = cell + steps[2], cell
+    return seeds[:count]

@@ -1,0 +1,68 @@
+"""What the kernels read of a light, made from what a user chose and what a scene is like."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light.exposure import scene_exposure
+from world2minecraft.rendering.ray_caster.shading import Lamp, corner_lights, shades_of
+from world2minecraft.rendering.scene import BlockScene
+
+Paper = tuple[tuple[int, int, int], tuple[int, int, int]]
+
+LUMP_CELLS = 8  # Eyes so near to each other see by one exposure.
+DAY = LookLight()
+NEUTRAL = LookLight(preset="neutral")
+# A quiet, warm light grey, a little darker towards the bottom.
+PAPER: Paper = ((238, 238, 236), (214, 214, 212))
+
+
+def lamp_of(
+    light: LookLight,
+    scene: BlockScene,
+    background: Paper | None = None,
+    eyes: np.ndarray | None = None,
+) -> Lamp:
+    """Return a light as the kernels read it.
+
+    Args:
+        light: what the user chose.
+        scene: its exposure counts where the light names none.
+        background: sRGB colours of the first and last row; None for the sky of the hour, or for
+            paper where the light knows no hour.
+        eyes: float64 [N, 3], where the cameras stand, in cells of the scene; None for anywhere.
+    """
+    return _lamp(light, exposure_of(light, scene, eyes), background)
+
+
+def exposure_of(light: LookLight, scene: BlockScene, eyes: np.ndarray | None = None) -> float:
+    """Return the exposure of pictures from some eyes; those in a lump of cells share one."""
+    for stated in (light.exposure, scene.exposure):
+        if stated is not None:
+            return stated
+    if eyes is None:
+        key: object = light
+    else:
+        lumps = np.unique(np.floor(np.asarray(eyes) / LUMP_CELLS).astype(int), axis=0)
+        key = (light, lumps.tobytes())
+        eyes = np.unique(np.floor(np.asarray(eyes)) + 0.5, axis=0)
+    if key not in scene.exposures:
+        scene.exposures[key] = scene_exposure(scene.light, light, eyes)
+    return scene.exposures[key]
+
+
+@lru_cache(maxsize=64)
+def _lamp(light: LookLight, exposure: float, background: Paper | None) -> Lamp:
+    parameters, tone = light.parameters(exposure), light.tone
+    if background is None and light.preset == "neutral":
+        background = PAPER
+    return Lamp(
+        lit=parameters,
+        corners=corner_lights(parameters),
+        shades=shades_of(parameters),
+        tone=tone,
+        background=light.background(exposure),
+        paper=tone.decode[np.array(background or PAPER)].astype(np.float64),
+        by_row=background is not None,
+    )

@@ -1,0 +1,222 @@
+"""A block volume becomes quads: faces that can be seen, with texture, tint and light.
+
+Full cubes hide what lies against them and are joined where they look alike; everything else is
+one quad a face. What can be hidden as a whole (a class, or what a cut of ``cuts`` takes away) keeps
+the faces behind it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.displays import display_cubes
+from world2minecraft.rendering.atlas import Atlas, to_srgb
+from world2minecraft.rendering.block_elements import BlockModel, LookSource
+from world2minecraft.rendering.block_models import OwnLooks
+from world2minecraft.rendering.freestanding_boxes import standing_things
+from world2minecraft.rendering.light.field import light_field
+from world2minecraft.rendering.light.flood import MOST_REACH
+from world2minecraft.rendering.mesh.cuts import cuts_of
+from world2minecraft.rendering.mesh.lit import OPEN, light_at
+from world2minecraft.rendering.mesh.merge import merged
+from world2minecraft.rendering.mesh.quads import INSIDE, Quads, covered, joined, quads_of
+from world2minecraft.rendering.scene import bake_model
+from world2minecraft.rendering.scene_baking import Baker, joins, kind_of, models_of
+from world2minecraft.rendering.scene_tables import ABSOLUTE, FULL
+
+NO_STATE = NO_COVER = 65_535
+
+
+@dataclass(frozen=True, eq=False)
+class BlockMesh:
+    """Q quads in coordinates of the volume's cells; those that are drawn over others come last.
+
+    ``light`` is sky light and block light, 0 to 60, and what darkens a corner, 0 to 240.
+    ``state`` indexes the palette, 65535 for display entities. ``cuts`` are bits of ``cuts_of``. A
+    quad with a ``cover`` is seen only where that is hidden.
+    """
+
+    position: np.ndarray  # float32 [Q, 4, 3]
+    uv: np.ndarray  # float32 [Q, 4, 2], one texture is [0, 1] wide and repeats
+    light: np.ndarray  # uint8 [Q, 4, 3]
+    emission: np.ndarray  # uint8 [Q], 0 to 255
+    tint: np.ndarray  # uint8 [Q, 3], sRGB
+    shade: np.ndarray  # uint8 [Q], 255 for 1, a screen value
+    layer: np.ndarray  # uint16 [Q], of the atlas
+    state: np.ndarray  # uint16 [Q]
+    instance: np.ndarray  # uint16 [Q]
+    semantic: np.ndarray  # uint8 [Q]
+    cuts: np.ndarray  # uint8 [Q]
+    cover: np.ndarray  # uint16 [Q], class + 256 * cuts of what lies on it; 65535 for nothing
+    clear_from: int  # the first quad that is drawn over what is behind it
+    atlas: Atlas
+
+    def __len__(self) -> int:
+        return len(self.layer)
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """Quads in cells of the volume, and whose they are."""
+
+    quads: Quads
+    cells: np.ndarray  # int64 [Q, 3]
+    state: np.ndarray
+    semantic: np.ndarray
+    instance: np.ndarray
+    cuts: np.ndarray
+    cover: np.ndarray
+
+
+def mesh_of(
+    volume: BlockVolume, looks: LookSource | None = None, *, texture_px: int = 16
+) -> BlockMesh:
+    """Return the mesh of a volume, display entities too.
+
+    Args:
+        volume: the blocks.
+        looks: where models and textures come from; our own set where None.
+        texture_px: the side of a texture, 16, 32, 64 or 128.
+    """
+    baker = Baker(looks or OwnLooks(texture_px), texture_px)
+    models = models_of(volume.palette, baker.looks)
+    numbers = [bake_model(s, m, baker) for s, m in zip(volume.palette, models, strict=True)]
+    guests = standing_things(volume, baker.looks)[1]
+    free = [(guest, baker.add(guest.element, ABSOLUTE | guest.flags)) for guest in guests]
+    table = baker.table()
+    cuts, thing_cuts = cuts_of(volume)
+    reach = min(max(1.0, volume.blocks_per_metre / 2), MOST_REACH)
+    lattice = light_field(volume.states, volume.palette, reach).lattice
+    templates = [
+        joined([quads_of(n, baker.elements[n][0], table) for n in rows]) for rows in numbers
+    ]
+    parts = _of_blocks(volume, models, baker.looks, templates, cuts, lattice)
+    things = display_cubes(volume.entities)
+    for guest, number in free:
+        cube = things[guest.owner]
+        facts = (NO_STATE, cube.class_id, cube.instance, thing_cuts[guest.owner])
+        parts.append(_lit(_standing(quads_of(number, guest.element, table), facts), lattice))
+    return _mesh(parts, table.atlas)
+
+
+def _of_blocks(
+    volume: BlockVolume,
+    models: list[BlockModel],
+    looks: LookSource,
+    templates: list[Quads],
+    cuts: np.ndarray,
+    lattice: np.ndarray,
+) -> list[tuple[_Placed, np.ndarray]]:
+    """Return the visible quads of all blocks with their light, uint8 [Q, 4, 3]."""
+    states = volume.states
+    kinds = np.array([kind_of(model, looks) for model in models], np.int8)
+    joining = np.array([joins(*pair) for pair in zip(volume.palette, models, strict=True)], bool)
+    groups = cuts.astype(np.int32) * 256 + volume.semantic
+    hidden = covered(states, kinds, joining, groups)
+    full = (kinds == FULL)[states]
+    owners = volume.semantic + cuts * np.uint16(256)
+    covers = np.pad(np.where(full, owners, NO_COVER), 1, constant_values=NO_COVER)
+    order = np.argsort(states.ravel(), kind="stable")
+    ends = np.searchsorted(states.ravel()[order], np.arange(len(templates) + 1))
+    parts = []
+    for row, template in enumerate(templates):
+        flat = order[ends[row] : ends[row + 1]]
+        if not len(flat) or not len(template.layer):
+            continue
+        cells = np.stack(np.unravel_index(flat, states.shape), axis=1)
+        at = tuple(cells.T)
+        gone = [
+            hidden[(side, *at)] if side != INSIDE else np.zeros(len(cells), bool)
+            for side in template.side
+        ]
+        which, quad = np.nonzero(~np.stack(gone, axis=1))
+        quads, cells = template.taken(quad), cells[which]
+        at = tuple(cells.T)
+        facts = (volume.semantic[at], volume.instance[at], cuts[at])
+        state = np.full(len(cells), row, np.uint16)
+        placed = _Placed(quads, cells, state, *facts, _cover(quads, cells, covers))
+        lit = _lit(placed, lattice)
+        parts.append(_joined(*lit) if kinds[row] == FULL else lit)
+    return parts
+
+
+def _cover(quads: Quads, cells: np.ndarray, covers: np.ndarray) -> np.ndarray:
+    """Return what lies on each quad; ``covers`` has a margin of one cell."""
+    ahead = cells + 1
+    ahead[np.arange(len(cells)), quads.facing // 2] += np.where(quads.facing % 2, 1, -1)
+    return np.where(quads.side == INSIDE, NO_COVER, covers[tuple(ahead.T)])
+
+
+def _lit(placed: _Placed, lattice: np.ndarray) -> tuple[_Placed, np.ndarray]:
+    """Return quads with the light at their corners; what a cut lays bare is in the open."""
+    count = len(placed.cells)
+    cells = np.repeat(placed.cells, 4, axis=0)
+    points = placed.quads.corners.reshape(-1, 3)
+    facing = np.repeat(placed.quads.facing.astype(np.int64), 4)
+    light = light_at(lattice, cells, facing, points).reshape(count, 4, 3)
+    light[placed.cover != NO_COVER] = OPEN
+    return placed, light
+
+
+def _standing(quads: Quads, facts: tuple[int, int, int, int]) -> _Placed:
+    """Place quads in grid coordinates in the cell of their middle."""
+    middle = quads.corners.mean(axis=1)
+    cells = np.floor(middle).astype(np.int64)
+    count = len(cells)
+    moved = quads._replace(corners=quads.corners - cells[:, None])
+    held = (np.full(count, fact) for fact in (*facts, NO_COVER))
+    return _Placed(moved, cells, *held)
+
+
+def _joined(placed: _Placed, light: np.ndarray) -> tuple[_Placed, np.ndarray]:
+    """Join the faces of cubes of one state; only such that are lit evenly."""
+    facts = (placed.semantic, placed.instance, placed.cuts, placed.cover)
+    facts = np.stack(facts, axis=1).astype(np.int64)
+    keys = np.concatenate([facts, light[:, 0].astype(np.int64)], axis=1)
+    look = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
+    even = (light == light[:, :1]).all(axis=(1, 2))
+    found = merged(placed.cells, placed.quads.side, np.where(even, look, -1))
+    rows, length = found
+    grown = placed.quads.corners[rows] * length[:, None]
+    quads = placed.quads.taken(rows)
+    slope = quads.uv[:, 1:2] - quads.uv[:, 0:1], quads.uv[:, 3:4] - quads.uv[:, 0:1]
+    one = np.abs(quads.corners[:, 1] - quads.corners[:, 0])
+    two = np.abs(quads.corners[:, 3] - quads.corners[:, 0])
+    along_one = (one * (length - 1)).sum(axis=1)[:, None, None]
+    along_two = (two * (length - 1)).sum(axis=1)[:, None, None]
+    ends = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)
+    uv = quads.uv + slope[0] * along_one * ends[:, :1] + slope[1] * along_two * ends[:, 1:]
+    names = ("cells", "state", "semantic", "instance", "cuts", "cover")
+    held = {name: getattr(placed, name)[rows] for name in names}
+    quads = quads._replace(corners=grown, uv=uv.astype(np.float32))
+    return _Placed(quads=quads, **held), light[rows]
+
+
+def _mesh(parts: list[tuple[_Placed, np.ndarray]], atlas: Atlas) -> BlockMesh:
+    """Put all quads into one mesh, the clear ones last."""
+    quads = joined([placed.quads for placed, _ in parts])
+    order = np.argsort(quads.clear, kind="stable")
+
+    def all_of(name: str, dtype: type) -> np.ndarray:
+        found = [np.asarray(getattr(placed, name)) for placed, _ in parts]
+        return np.concatenate(found or [np.zeros(0)]).astype(dtype)[order]
+
+    cells = np.concatenate([placed.cells for placed, _ in parts] or [np.zeros((0, 3))])
+    light = np.concatenate([lit for _, lit in parts] or [np.zeros((0, 4, 3), np.uint8)])
+    return BlockMesh(
+        position=(quads.corners + cells[:, None])[order].astype(np.float32),
+        uv=quads.uv[order],
+        light=light[order],
+        emission=np.round(quads.emission[order] * 255).astype(np.uint8),
+        tint=to_srgb(quads.tint[order].astype(np.float64)),
+        shade=np.round(quads.shade[order] * 255).astype(np.uint8),
+        layer=quads.layer[order].astype(np.uint16),
+        state=all_of("state", np.uint16),
+        instance=all_of("instance", np.uint16),
+        semantic=all_of("semantic", np.uint8),
+        cuts=all_of("cuts", np.uint8),
+        cover=all_of("cover", np.uint16),
+        clear_from=int(np.count_nonzero(~quads.clear)),
+        atlas=atlas,
+    )

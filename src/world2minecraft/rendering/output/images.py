@@ -1,0 +1,101 @@
+"""Single pictures as files' bytes: colour, depth and numbers.
+
+- Colour: PNG, JPEG or WebP.
+- Depth: 16-bit PNG in whole parts of a metre (0 nothing, the largest number all that is farther),
+  EXR (float32 channel ``Z``, metres, 0 nothing) or NPY (the same).
+- Numbers: grey PNG of 8 or 16 bits, or RGBA whose four bytes, red lowest, are number + 1.
+"""
+
+import io
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.rendering.output.exr import exr_bytes
+
+COLOUR_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
+DEPTH_SUFFIXES = (".png", ".exr", ".npy")
+QUALITY = 92
+PER_METRE = 1000  # Of 16-bit depth: millimetres, as most RGB-D data sets have it.
+FARTHEST = 65535
+_PNG_LEVEL = 4  # Of deflate; 6, the usual, takes twice as long and saves 3 %.
+_LOSSLESS = 100  # The WebP quality from which it keeps every pixel.
+
+
+def colour_bytes(colour: np.ndarray, suffix: str, quality: int = QUALITY) -> bytes:
+    """Return a colour picture, uint8 [H, W, 3], as a file.
+
+    Args:
+        colour: sRGB.
+        suffix: ``.png``, ``.jpg``, ``.jpeg`` or ``.webp``.
+        quality: 1 to 100, of JPEG and WebP; at 100 WebP is lossless.
+
+    Raises:
+        UsageError: another suffix.
+    """
+    if suffix == ".png":
+        return _saved(Image.fromarray(colour), "PNG", compress_level=_PNG_LEVEL)
+    if suffix in (".jpg", ".jpeg"):
+        return _saved(Image.fromarray(colour), "JPEG", quality=quality, subsampling=0)
+    if suffix == ".webp":
+        lossless = quality >= _LOSSLESS
+        return _saved(Image.fromarray(colour), "WEBP", quality=quality, lossless=lossless)
+    raise UsageError(f"a colour picture ends in {', '.join(COLOUR_SUFFIXES)}, not {suffix!r}")
+
+
+def depth_bytes(depth_m: np.ndarray, suffix: str, per_metre: int = PER_METRE) -> bytes:
+    """Return depth, float32 [H, W] in metres and 0 where there is nothing, as a file.
+
+    Args:
+        depth_m: z-depth or range.
+        suffix: ``.png``, ``.exr`` or ``.npy``.
+        per_metre: of PNG, the number that stands for a metre.
+
+    Raises:
+        UsageError: another suffix.
+    """
+    if suffix == ".png":
+        return number_bytes(depth_numbers(depth_m, per_metre))
+    if suffix == ".exr":
+        return exr_bytes({"Z": depth_m}, notes={"comments": "metres; 0 where there is nothing"})
+    if suffix == ".npy":
+        stream = io.BytesIO()
+        np.lib.format.write_array(stream, depth_m.astype(np.float32), allow_pickle=False)
+        return stream.getvalue()
+    raise UsageError(f"depth ends in {', '.join(DEPTH_SUFFIXES)}, not {suffix!r}")
+
+
+def depth_numbers(depth_m: np.ndarray, per_metre: int = PER_METRE) -> np.ndarray:
+    """Return depth as whole parts of a metre, uint16 [H, W]: 0 for nothing, else 1 to 65535."""
+    whole = np.minimum(np.rint(depth_m.astype(np.float64) * per_metre), FARTHEST)
+    near = (depth_m > 0) & (whole < 1)  # 0 means that there is nothing.
+    return np.where(near, 1, whole).astype(np.uint16)
+
+
+def number_bytes(numbers: np.ndarray) -> bytes:
+    """Return numbers, uint8 or uint16 [H, W], as a grey PNG."""
+    return _saved(Image.fromarray(numbers), "PNG", compress_level=_PNG_LEVEL)
+
+
+def index_bytes(index: np.ndarray) -> bytes:
+    """Return an index, int32 [H, W] with -1 for nothing, as an RGBA PNG.
+
+    Read it back with ``numpy.asarray(image).view("<u4")[..., 0].astype(int) - 1``.
+    """
+    packed = (index.astype(np.int64) + 1).astype("<u4")
+    rgba = packed.view(np.uint8).reshape(*index.shape, 4)
+    return _saved(Image.fromarray(rgba, "RGBA"), "PNG", compress_level=_PNG_LEVEL)
+
+
+def normal_bytes(normal: np.ndarray) -> bytes:
+    """Return unit normals, float32 [H, W, 3], as a PNG: 128 + 127 n, and black for nothing."""
+    packed = np.rint(128 + 127 * normal).astype(np.uint8)
+    packed[~normal.any(axis=2)] = 0
+    return _saved(Image.fromarray(packed), "PNG", compress_level=_PNG_LEVEL)
+
+
+def _saved(image: Image.Image, kind: str, **options: int | bool) -> bytes:
+    stream = io.BytesIO()
+    image.save(stream, kind, **options)
+    return stream.getvalue()

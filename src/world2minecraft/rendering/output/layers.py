@@ -1,0 +1,177 @@
+"""The layers of a picture, by the names that commands and files use.
+
+A layer says what the renderer must make for it, and how its array becomes a file.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.rendering.output.images import (
+    PER_METRE,
+    QUALITY,
+    colour_bytes,
+    depth_bytes,
+    index_bytes,
+    normal_bytes,
+    number_bytes,
+)
+from world2minecraft.rendering.picture import Picture
+
+
+@dataclass(frozen=True)
+class FileChoice:
+    """How layers become files: suffixes, quality, and what a metre of 16-bit depth is."""
+
+    colour_suffix: str = ".png"
+    depth_suffix: str = ".png"
+    quality: int = QUALITY
+    per_metre: int = PER_METRE
+
+
+@dataclass(frozen=True)
+class Layer:
+    """One layer: what it needs of the renderer, its file, and what it holds."""
+
+    title: str
+    needs: str | None
+    make: Callable[[Picture, BlockVolume, FileChoice], bytes]
+    suffix: Callable[[FileChoice], str]
+
+
+def _state(picture: Picture, volume: BlockVolume, choice: FileChoice) -> bytes:
+    index = picture.block_index
+    rows = volume.states.reshape(-1)[np.maximum(index, 0)]
+    return number_bytes(np.where(index >= 0, rows, 0).astype(np.uint16))
+
+
+def _png(choice: FileChoice) -> str:
+    return ".png"
+
+
+LAYERS: dict[str, Layer] = {
+    "rgb": Layer(
+        "colour",
+        "colour",
+        lambda picture, _, choice: colour_bytes(
+            _there(picture.colour), choice.colour_suffix, choice.quality
+        ),
+        lambda choice: choice.colour_suffix,
+    ),
+    "depth": Layer(
+        "distance along the camera's z",
+        "depth",
+        lambda picture, _, choice: depth_bytes(
+            picture.depth_m, choice.depth_suffix, choice.per_metre
+        ),
+        lambda choice: choice.depth_suffix,
+    ),
+    "range": Layer(
+        "distance along the ray",
+        "depth",
+        lambda picture, _, choice: depth_bytes(
+            picture.range_m, choice.depth_suffix, choice.per_metre
+        ),
+        lambda choice: choice.depth_suffix,
+    ),
+    "block": Layer(
+        "which block of the volume, RGBA",
+        None,
+        lambda picture, *_: index_bytes(picture.block_index),
+        _png,
+    ),
+    "state": Layer("which block state, 16 bits", None, _state, _png),
+    "class": Layer(
+        "semantic class, 8 bits",
+        "semantic",
+        lambda picture, *_: number_bytes(_there(picture.semantic)),
+        _png,
+    ),
+    "instance": Layer(
+        "which object, 16 bits",
+        "instance",
+        lambda picture, *_: number_bytes(_there(picture.instance)),
+        _png,
+    ),
+    "face": Layer(
+        "which side of the block: -x +x -y +y -z +z, 255 for none",
+        None,
+        lambda picture, *_: number_bytes(picture.face),
+        _png,
+    ),
+    "normal": Layer(
+        "the surface's normal in block axes, red x, green y, blue z, 128 for 0",
+        "normal",
+        lambda picture, *_: normal_bytes(_there(picture.normal)),
+        _png,
+    ),
+    "opaque": Layer(
+        "which block lies behind all glass, RGBA",
+        "opaque",
+        lambda picture, *_: index_bytes(_there(picture.opaque_index)),
+        _png,
+    ),
+    "opaque_depth": Layer(
+        "depth behind all glass",
+        "opaque",
+        lambda picture, _, choice: depth_bytes(
+            _there(picture.opaque_depth_m), choice.depth_suffix, choice.per_metre
+        ),
+        lambda choice: choice.depth_suffix,
+    ),
+}
+GROUPS = {"id": ("state", "class", "instance"), "all": tuple(LAYERS)}
+
+
+def layers_named(text: str) -> tuple[str, ...]:
+    """Return the layers that a list such as ``rgb,depth,id`` names, each once, in its order.
+
+    Raises:
+        UnknownNameError: there is no such layer.
+    """
+    names: list[str] = []
+    for word in [part.strip().lower() for part in text.split(",") if part.strip()]:
+        if word not in LAYERS and word not in GROUPS:
+            raise UnknownNameError("output", word, [*LAYERS, *GROUPS])
+        names += [name for name in GROUPS.get(word, (word,)) if name not in names]
+    if not names:
+        raise UnknownNameError("output", text, [*LAYERS, *GROUPS])
+    return tuple(names)
+
+
+def needs_of(names: Iterable[str]) -> tuple[str, ...]:
+    """Return what the renderer must make for layers."""
+    return tuple(sorted({need for name in names if (need := LAYERS[name].needs)}))
+
+
+def file_name(stem: str, name: str, choice: FileChoice) -> str:
+    """Return the file of a layer: ``STEM.png`` for colour, ``STEM.depth.png`` for the rest."""
+    suffix = LAYERS[name].suffix(choice)
+    return f"{stem}{suffix}" if name == "rgb" else f"{stem}.{name}{suffix}"
+
+
+def table_of_names(volume: BlockVolume) -> dict[str, Any]:
+    """Return what the numbers of id layers mean, as it goes into ``names.json``."""
+    return {
+        "state": {str(n): state for n, state in enumerate(volume.palette)},
+        "class": {str(n): name for n, name in enumerate(CLASS_NAMES)},
+        "face": {str(n): name for n, name in enumerate(("-x", "+x", "-y", "+y", "-z", "+z"))},
+        "block": {
+            "corner": list(volume.corner),
+            "size": list(volume.states.shape),
+            "packing": "red + 256 green + 65536 blue + 16777216 alpha - 1; -1 is nothing",
+            "order": "number = (x * size_y + y) * size_z + z, counted from the corner",
+        },
+        "block_to_room": volume.block_to_room.tolist(),
+    }
+
+
+def _there(values: np.ndarray | None) -> np.ndarray:
+    if values is None:
+        raise ValueError("the renderer was not asked for a layer that is to be written")
+    return values

@@ -1,0 +1,118 @@
+"""From a film to a picture: light and shares put together again, exposed, and brought to sRGB."""
+
+import numpy as np
+
+from world2minecraft.core.jit import lean
+from world2minecraft.rendering.light import Tone, finish
+from world2minecraft.rendering.light.exposure import LUMINANCE
+from world2minecraft.rendering.path_tracing.denoise import (
+    GLOSS_SWEEPS,
+    SWEEPS,
+    Bands,
+    filtered,
+    same_surface,
+)
+from world2minecraft.rendering.path_tracing.film import Film
+
+KEY = 0.36  # What the geometric mean of the surfaces' light is exposed to, by day.
+ADAPTS = 0.85  # How much of the way there: what is dim stays a little dim.
+LEAST, MOST = 0.25, 60.0
+SEEN_POWER = 0.5  # Sky and lamps themselves are opened up half as far as what they light.
+
+
+def surface_light(film: Film, denoise: bool, run: Bands) -> np.ndarray:
+    """Return the light of surfaces, float32 [H, W, 3], without what is seen of sky and lamps.
+
+    Args:
+        film: sums over samples.
+        denoise: whether to filter.
+        run: calls a function for bands of rows that cover so many.
+    """
+    count = np.maximum(film.samples[..., 1:], 1)
+    if not denoise:
+        return (film.light + film.other_light + film.gloss) / count
+    guides = (film.place, film.normal, film.out, film.far)
+    own = np.ascontiguousarray(film.samples[..., 0])
+    squares = film.squares[..., 0] / np.maximum(own, 1)
+    light = filtered(_over(film.light, film.share), squares, own, guides, SWEEPS, run)
+    result = film.share / count * light
+    _add_other(light, own, film, guides, result)
+    if film.gloss_share.any():
+        every = np.ascontiguousarray(film.samples[..., 1])
+        squares = film.squares[..., 1] / np.maximum(every, 1)
+        gloss = _over(film.gloss, film.gloss_share)
+        result += (
+            film.gloss_share / count * filtered(gloss, squares, every, guides, GLOSS_SWEEPS, run)
+        )
+    return result
+
+
+def _over(light: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Return light over share, where there is enough of it to tell."""
+    return light / np.maximum(share, 1e-6)
+
+
+def _add_other(light, own, film: Film, guides, result) -> None:
+    """Add what pixels at edges see of surfaces that their middle does not look at."""
+    add_other(light, own, film.other_light, film.other_share, film.samples, guides, result)
+
+
+@lean
+def add_other(light, own, other_light, other_share, count, guides, result):
+    """Light the other surfaces of each pixel as those of its neighbours are lit."""
+    height, width = own.shape
+    for v in range(height):
+        for u in range(width):
+            share = other_share[v, u, 0] + other_share[v, u, 1] + other_share[v, u, 2]
+            if share <= 0:
+                continue
+            red, green, blue, found = 0.0, 0.0, 0.0, 0
+            for y in range(max(v - 1, 0), min(v + 2, height)):
+                for x in range(max(u - 1, 0), min(u + 2, width)):
+                    if own[y, x] > 0 and not same_surface(guides, v, u, y, x):
+                        red, green = red + light[y, x, 0], green + light[y, x, 1]
+                        blue, found = blue + light[y, x, 2], found + 1
+            if found > 0:
+                result[v, u, 0] += other_share[v, u, 0] / count[v, u, 1] * red / found
+                result[v, u, 1] += other_share[v, u, 1] / count[v, u, 1] * green / found
+                result[v, u, 2] += other_share[v, u, 2] / count[v, u, 1] * blue / found
+            else:
+                for n in range(3):
+                    result[v, u, n] += other_light[v, u, n] / count[v, u, 1]
+
+
+def picture_exposure(light: np.ndarray, film: Film, daylight: float) -> float:
+    """Return how far a picture is opened up, from its own light.
+
+    Args:
+        light: of surfaces, float32 [H, W, 3].
+        film: tells where surfaces are.
+        daylight: 0 to 1: a night stays a little darker.
+    """
+    shows = film.far > 0
+    if not shows.any():
+        return 1.0
+    bright = light[shows].astype(np.float64) @ LUMINANCE
+    mean = np.exp(np.log(np.maximum(bright, 1e-4)).mean())
+    key = KEY * (0.5 + 0.5 * daylight)
+    return float(np.clip((key / mean) ** ADAPTS, LEAST, MOST))
+
+
+@lean
+def to_screen(radiance, exposure, tone, colour):
+    """Fill uint8 [H, W, 3] from linear light."""
+    for v in range(radiance.shape[0]):
+        for u in range(radiance.shape[1]):
+            colour[v, u, 0], colour[v, u, 1], colour[v, u, 2] = finish(
+                radiance[v, u, 0] * exposure,
+                radiance[v, u, 1] * exposure,
+                radiance[v, u, 2] * exposure,
+                tone,
+            )
+
+
+def screen_colours(radiance: np.ndarray, exposure: float, tone: Tone) -> np.ndarray:
+    """Return sRGB, uint8 [H, W, 3], of linear light."""
+    colour = np.empty(radiance.shape, np.uint8)
+    to_screen(radiance, exposure, tone, colour)
+    return colour

@@ -1,0 +1,180 @@
+"""A photo of a block scene: path-traced, filtered, exposed."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from itertools import pairwise
+from multiprocessing.pool import ThreadPool
+
+import numpy as np
+
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Camera
+from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light.exposure import LUMINANCE
+from world2minecraft.rendering.light_parameters import DAY
+from world2minecraft.rendering.path_tracing.develop import (
+    SEEN_POWER,
+    picture_exposure,
+    screen_colours,
+    surface_light,
+)
+from world2minecraft.rendering.path_tracing.emitters import Lamps, lamps_of
+from world2minecraft.rendering.path_tracing.film import Film, new_film
+from world2minecraft.rendering.path_tracing.path import new_path
+from world2minecraft.rendering.path_tracing.path_kernel import trace_rows
+from world2minecraft.rendering.path_tracing.sky_light import sky_light
+from world2minecraft.rendering.picture import MAX_PIXELS, Picture, render_volume
+from world2minecraft.rendering.scene import BlockScene
+
+OUTPUTS = ("depth", "semantic", "instance", "opaque", "normal")
+MOST_SAMPLES = 4096
+MOST_DEPTH = 64
+BAND = 8  # Rows that a thread takes at a time.
+PASS = 4  # Samples a pixel between two looks at the clock.
+
+
+@dataclass(frozen=True, eq=False)
+class Photo(Picture):
+    """A picture whose colour is path-traced; depth, ids and normals are those of ``Picture``.
+
+    ``albedo`` is what the matt surface behind all glass sends on, tinted by the glass.
+    """
+
+    radiance: np.ndarray | None = None  # float32 [H, W, 3], linear; times exposure it is shown
+    albedo: np.ndarray | None = None  # float32 [H, W, 3]
+    exposure: float = 1.0
+    samples: int = 0  # that each pixel got: fewer than asked for where the budget ended
+
+
+def render_photo(
+    scene: BlockScene,
+    camera: Camera,
+    camera_to_room: np.ndarray,
+    *,
+    light: LookLight = DAY,
+    samples: int = 16,
+    seed: int = 0,
+    depth: int = 8,
+    threads: int = 1,
+    denoise: bool = True,
+    budget_s: float | None = None,
+    progress: Progress = silent,
+    lamps: Lamps | None = None,
+) -> Photo:
+    """Take a photo of a scene.
+
+    Args:
+        scene: from ``prepare_scene``.
+        camera: intrinsics; its distortion is ignored.
+        camera_to_room: 4x4, OpenCV axes, metres.
+        light: the hour, and the exposure unless the photo's own light shall decide.
+        samples: paths a pixel, 1 to 4096.
+        seed: the same one gives the same picture, whatever the threads.
+        depth: surfaces by which light comes to the eye at most, 1 to 64; 1 is direct light.
+        threads: how many bands of rows are traced at a time.
+        denoise: whether to filter the light.
+        budget_s: wall time after which no further pass over the picture begins; one is made.
+        progress: told of the stage ``photo`` after each pass: samples done, and the time left.
+        lamps: of ``lamps_of(scene)``, where many photos are taken of one scene.
+
+    Raises:
+        ValueError: a number is out of range, or the light knows no hour.
+    """
+    _check(camera, samples, depth)
+    sky = sky_light(light)
+    lamps = lamps_of(scene) if lamps is None else lamps
+    pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
+    rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
+    film = new_film(camera.height_px, camera.width_px)
+
+    def band(rows: tuple[int, int], of: tuple[int, int]) -> None:
+        trace_rows(
+            scene.tables, scene.material, scene.side_px, light.tone.decode, lamps, sky, pose, rays,
+            rows, of, np.uint32(seed & 0xFFFFFFFF), depth, new_path(), film,
+        )  # fmt: skip
+
+    with _Bands(threads) as run:
+        done = _in_passes(band, run, len(film.far), samples, budget_s, progress)
+        surfaces = surface_light(film, denoise, run)
+    picture = render_volume(scene, camera, camera_to_room, outputs=OUTPUTS, threads=threads)
+    return _developed(picture, light, film, surfaces, done)
+
+
+def _check(camera: Camera, samples: int, depth: int) -> None:
+    if not 1 <= samples <= MOST_SAMPLES:
+        raise ValueError(f"samples may be 1 to {MOST_SAMPLES}, not {samples}")
+    if not 1 <= depth <= MOST_DEPTH:
+        raise ValueError(f"depth may be 1 to {MOST_DEPTH}, not {depth}")
+    if camera.width_px * camera.height_px > MAX_PIXELS // 8:
+        most = f"{MAX_PIXELS // 8:,}"
+        raise ValueError(
+            f"a photo may have {most} pixels, not {camera.width_px}x{camera.height_px}"
+        )
+
+
+class _Bands:
+    """Runs a function over bands of rows, on some threads."""
+
+    def __init__(self, threads: int):
+        self._pool = ThreadPool(threads) if threads > 1 else None
+
+    def __enter__(self) -> "_Bands":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._pool is not None:
+            self._pool.terminate()
+
+    def __call__(self, band: Callable[[tuple[int, int]], None], rows: int) -> None:
+        bands = pairwise([*range(0, rows, BAND), rows])
+        if self._pool is None:
+            for one in bands:
+                band(one)
+        else:
+            self._pool.map(band, bands, chunksize=1)
+
+
+def _in_passes(
+    band: Callable[[tuple[int, int], tuple[int, int]], None],
+    run: _Bands,
+    rows: int,
+    samples: int,
+    budget_s: float | None,
+    progress: Progress,
+) -> int:
+    """Trace pass by pass; return how many samples each pixel got."""
+    start, done = time.monotonic(), 0
+    while done < samples:
+        until = min(done + PASS, samples)
+        run(lambda one, of=(done, until): band(one, of), rows)
+        done = until
+        spent = time.monotonic() - start
+        left = spent / done * (samples - done)
+        progress("photo", done, samples, f"{left:.0f} s left")
+        if budget_s is not None and spent >= budget_s:
+            break
+    return done
+
+
+def _developed(
+    picture: Picture, light: LookLight, film: Film, surfaces: np.ndarray, done: int
+) -> Photo:
+    exposure = light.exposure
+    if exposure is None:
+        daylight = min(float(LUMINANCE @ light.sky.light), 1.0)
+        exposure = picture_exposure(surfaces, film, daylight)
+    count = np.float32(done)
+    radiance = surfaces + film.seen / count * np.float32(exposure ** (SEEN_POWER - 1))
+    return Photo(
+        **{
+            field.name: getattr(picture, field.name)
+            for field in fields(picture)
+            if field.name != "colour"
+        },
+        colour=screen_colours(radiance, exposure, light.tone),
+        radiance=radiance.astype(np.float32),
+        albedo=(film.share + film.other_share) / count,
+        exposure=exposure,
+        samples=done,
+    )

@@ -1,0 +1,104 @@
+"""The sun and the sky as sources of light, from the hour that a ``LookLight`` names.
+
+The sky that is seen is the one of ``rendering.light.background``; the sky that lights is the same,
+each channel scaled so that open ground in the shade gets what the hour says.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.core.jit import inlined
+from world2minecraft.rendering.light.background import (
+    DISC,
+    DISC_COSINE,
+    HALO,
+    Background,
+    background_light,
+)
+from world2minecraft.rendering.light.settings import LookLight
+
+SUN = 3.0  # The sun beside the sky's shade: on a clear day three to five times as much.
+SUN_COSINE = 0.99985  # Of its disc's radius, 1 degree: twice the true one, for soft shadows.
+
+
+class SkyLight(NamedTuple):
+    """What the kernel reads of sky and sun."""
+
+    background: Background  # at exposure 1
+    scale_r: float  # what lights, beside what is seen
+    scale_g: float
+    scale_b: float
+    sun_r: float  # what a surface gets that faces the sun, over pi
+    sun_g: float
+    sun_b: float
+    disc_cosine: float  # of the disc that light comes from
+
+
+def sky_light(light: LookLight) -> SkyLight:
+    """Return the sky and the sun of a light's hour.
+
+    Raises:
+        ValueError: the light's preset knows no sky.
+    """
+    if light.preset != "shader":
+        raise ValueError(f"photos are lit by the hour: preset 'shader', not {light.preset!r}")
+    sky = light.sky
+    ground = 0.5 * np.array(sky.horizon)
+    colours = np.array([sky.zenith, sky.horizon, ground, sky.sun])
+    background = Background._make([*colours.reshape(-1).tolist(), *sky.sun_direction])
+    scale = np.array(sky.shade) / _open_light(sky.zenith, sky.horizon)
+    red, green, blue = (SUN * value for value in sky.sun)
+    scale_r, scale_g, scale_b = (float(value) for value in scale)
+    return SkyLight(background, scale_r, scale_g, scale_b, red, green, blue, SUN_COSINE)
+
+
+def even_sky(red: float, green: float, blue: float) -> SkyLight:
+    """Return a sky that is the same everywhere, with no sun: a white furnace."""
+    colour = (red, green, blue)
+    background = Background._make([*colour, *colour, *colour, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+    return SkyLight(background, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, SUN_COSINE)
+
+
+def _open_light(zenith: tuple[float, ...], horizon: tuple[float, ...]) -> np.ndarray:
+    """Return what open ground gets of the sky without its sun, over pi: float64 [3].
+
+    The mean, weighed by the cosine, of the background's (1 - y) ** 3 is 1 / 10.
+    """
+    return 0.9 * np.array(zenith) + 0.1 * np.array(horizon)
+
+
+@inlined
+def lighting_sky(dx, dy, dz, sky):
+    """Return the linear light that comes from a direction of the sky, without the sun's disc."""
+    r, g, b = background_light(dx, dy, dz, sky.background)
+    bg = sky.background
+    if dx * bg.sun_x + dy * bg.sun_y + dz * bg.sun_z > DISC_COSINE and dy > -0.05:
+        r -= (DISC - HALO) * bg.sun_r
+        g -= (DISC - HALO) * bg.sun_g
+        b -= (DISC - HALO) * bg.sun_b
+    return r * sky.scale_r, g * sky.scale_g, b * sky.scale_b
+
+
+@inlined
+def around(x, y, z):
+    """Return two unit vectors square to a unit vector and to each other."""
+    sign = 1.0 if z >= 0 else -1.0
+    a = -1.0 / (sign + z)
+    b = x * y * a
+    return 1.0 + sign * x * x * a, sign * b, -sign * x, b, sign + y * y * a, -y
+
+
+@inlined
+def towards_sun(sky, first, second):
+    """Return a unit direction into the sun's disc from two numbers of [0, 1)."""
+    bg = sky.background
+    ax, ay, az, bx, by, bz = around(bg.sun_x, bg.sun_y, bg.sun_z)
+    cosine = 1.0 - first * (1.0 - sky.disc_cosine)
+    sine = np.sqrt(max(0.0, 1.0 - cosine * cosine))
+    p, q = sine * np.cos(2 * np.pi * second), sine * np.sin(2 * np.pi * second)
+    return (
+        cosine * bg.sun_x + p * ax + q * bx,
+        cosine * bg.sun_y + p * ay + q * by,
+        cosine * bg.sun_z + p * az + q * bz,
+    )

@@ -1,0 +1,164 @@
+"""A picture of a block volume through a camera of the room."""
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from world2minecraft.core.types import BlockVolume, Camera
+from world2minecraft.rendering.free_space import crossed_air
+from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light_parameters import DAY, Paper, lamp_of
+from world2minecraft.rendering.picture_arrays import PixelArrays, draw_into, pixel_arrays
+from world2minecraft.rendering.scene import BlockScene, prepare_scene
+
+OUTPUTS = ("colour", "depth", "semantic", "instance", "opaque", "normal", "free")
+DEFAULT_OUTPUTS = ("colour", "depth", "semantic", "instance")
+MAX_PIXELS = 64_000_000  # Two gigabytes of outputs.
+MOST_SAMPLES = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """What one look at a volume gives; arrays that were not asked for are None.
+
+    The first surface counts, be it glass; a hole in a texture is none. Where a ray meets nothing,
+    depth and range are 0, ``block_index`` is -1, ``face`` is 255, ``semantic`` and ``instance``
+    are 0. Where it meets a display entity ``block_index`` is -1 too, ``cube_index`` is 0 or more,
+    and ``face`` the one of a block that looks most like it. The ``opaque_*`` arrays say the same
+    of what lies behind all glass.
+    """
+
+    depth_m: np.ndarray  # float32 [H, W], z-depth
+    range_m: np.ndarray  # float32 [H, W], along the ray
+    block_index: np.ndarray  # int32 [H, W], C-order index into volume.states
+    face: np.ndarray  # uint8 [H, W], of block axes: -x +x -y +y -z +z
+    cube_index: np.ndarray  # int32 [H, W], into the scene's things; -1 for none
+    colour: np.ndarray | None = None  # uint8 [H, W, 3]
+    semantic: np.ndarray | None = None  # uint8 [H, W]
+    instance: np.ndarray | None = None  # uint16 [H, W]
+    opaque_depth_m: np.ndarray | None = None  # float32 [H, W]
+    opaque_index: np.ndarray | None = None  # int32 [H, W]
+    opaque_cube_index: np.ndarray | None = None  # int32 [H, W]
+    normal: np.ndarray | None = None  # float32 [H, W, 3], outward, of block axes
+    free: np.ndarray | None = None  # bool [X, Y, Z]: air that some ray has crossed
+
+    @property
+    def glass_index(self) -> np.ndarray:
+        """The first glass that a ray meets before what is opaque, int32 [H, W], else -1."""
+        if self.opaque_index is None or self.opaque_depth_m is None:
+            raise ValueError("glass is told apart only where the outputs name 'opaque'")
+        return np.where(self.opaque_depth_m == self.depth_m, -1, self.block_index)
+
+
+def render_volume(
+    volume: BlockVolume | BlockScene,
+    camera: Camera,
+    camera_to_room: np.ndarray,
+    *,
+    outputs: Collection[str] = DEFAULT_OUTPUTS,
+    light: LookLight = DAY,
+    samples: int = 1,
+    threads: int = 1,
+    background: Paper | None = None,
+) -> Picture:
+    """Take a picture of a volume.
+
+    Args:
+        volume: the blocks, or their scene where many pictures are taken.
+        camera: intrinsics; its distortion is ignored.
+        camera_to_room: 4x4, OpenCV axes, metres.
+        outputs: which of ``OUTPUTS`` to make; depth, range, block and face always come.
+        light: the hour, the exposure and the like.
+        samples: a pixel's colour is the mean of so many by so many; all else is of its middle.
+        threads: how many bands of rows are drawn at a time; the result is the same for any.
+        background: sRGB colours of the first and last row behind all; None for the sky.
+
+    Raises:
+        ValueError: an output is not known, or the image has over 64 million pixels.
+    """
+    rays = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
+    size = (camera.height_px, camera.width_px)
+    return _draw(
+        volume, rays, 1.0, camera_to_room, size, outputs, light, samples, threads, background
+    )
+
+
+def render_parallel(
+    volume: BlockVolume | BlockScene,
+    px_per_metre: float,
+    size: tuple[int, int],
+    camera_to_room: np.ndarray,
+    *,
+    outputs: Collection[str] = DEFAULT_OUTPUTS,
+    light: LookLight = DAY,
+    samples: int = 1,
+    threads: int = 1,
+    background: Paper | None = None,
+) -> Picture:
+    """Take a picture by parallel rays along the camera's z, its middle at the camera's place.
+
+    Args: as ``render_volume``, with ``size`` (height, width) in pixels.
+    """
+    rays = np.array([px_per_metre, px_per_metre, size[1] / 2, size[0] / 2])
+    return _draw(
+        volume, rays, 0.0, camera_to_room, size, outputs, light, samples, threads, background
+    )
+
+
+def _draw(
+    volume, rays, spread, camera_to_room, size, outputs, light, samples, threads, background
+) -> Picture:
+    check_request(outputs, size, samples)
+    scene = prepare_scene(volume) if isinstance(volume, BlockVolume) else volume
+    pose = np.ascontiguousarray((scene.room_to_grid @ camera_to_room)[:3], np.float64)
+    lamp = lamp_of(light, scene, background, pose[:, 3][None] if spread else None)
+    fine = "colour" in outputs and samples > 1
+    arrays = pixel_arrays(size, [name for name in outputs if not (fine and name == "colour")])
+    draw_into(arrays, scene, pose, rays, spread, lamp, threads)
+    if fine:
+        many = pixel_arrays((size[0] * samples, size[1] * samples), ("colour",))
+        draw_into(many, scene, pose, rays * samples, spread, lamp, threads)
+        arrays = arrays._replace(colour=_mean_of_squares(many.colour, samples))
+    picture = picture_of(arrays, outputs)
+    if "free" in outputs:
+        picture = replace(picture, free=crossed_air(scene.tables, pose, rays, spread, arrays.depth))
+    return picture
+
+
+def check_request(outputs: Collection[str], size: tuple[int, int], samples: int) -> None:
+    """Raise ``ValueError`` where a picture cannot be asked for so; see ``render_volume``."""
+    unknown = sorted(set(outputs) - set(OUTPUTS))
+    if unknown:
+        raise ValueError(f"outputs may be {', '.join(OUTPUTS)}, not {unknown[0]!r}")
+    if not 1 <= samples <= MOST_SAMPLES:
+        raise ValueError(f"samples may be 1 to {MOST_SAMPLES}, not {samples}")
+    if size[0] * size[1] * samples**2 > MAX_PIXELS:
+        raise ValueError(f"a picture may have {MAX_PIXELS:,} samples, not {size[1]}x{size[0]}")
+
+
+def picture_of(arrays: PixelArrays, outputs: Collection[str]) -> Picture:
+    """Return what drawn arrays show; the picture shares their memory."""
+    opaque = "opaque" in outputs
+    return Picture(
+        depth_m=arrays.depth,
+        range_m=arrays.distance,
+        block_index=arrays.index,
+        face=arrays.face,
+        cube_index=arrays.thing,
+        colour=arrays.colour if "colour" in outputs else None,
+        semantic=arrays.semantic if "semantic" in outputs else None,
+        instance=arrays.instance if "instance" in outputs else None,
+        opaque_depth_m=arrays.opaque_depth if opaque else None,
+        opaque_index=arrays.opaque_index if opaque else None,
+        opaque_cube_index=arrays.opaque_thing if opaque else None,
+        normal=arrays.normal if "normal" in outputs else None,
+    )
+
+
+def _mean_of_squares(colour: np.ndarray, samples: int) -> np.ndarray:
+    """Return the mean of every samples x samples of pixels."""
+    height, width = colour.shape[0] // samples, colour.shape[1] // samples
+    squares = colour.reshape(height, samples, width, samples, 3).astype(np.uint16)
+    count = samples * samples
+    return ((squares.sum(axis=(1, 3)) + count // 2) // count).astype(np.uint8)

@@ -1,0 +1,1 @@
+"""Pictures of many shots: opened rooms, turntables and streams of frames."""

@@ -1,0 +1,77 @@
+"""A room as one looks into it from outside: without its ceiling and the walls that are near."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import carry_camera, invert
+from world2minecraft.core.types import BlockVolume, Camera
+from world2minecraft.rendering.cutaway import (
+    side_by_side,
+    storeys_of,
+    without_ceiling,
+    without_near_walls,
+    without_partitions,
+)
+from world2minecraft.rendering.plain_models import PlainLooks
+from world2minecraft.rendering.presentation.shot_frames import DrawOptions, frames_of
+from world2minecraft.rendering.scene import prepare_scene
+from world2minecraft.rendering.views.cameras import camera_of
+from world2minecraft.rendering.views.orbit import TURN_DEG, orbit_shots
+
+SCOUT_PX, SCOUT_FOV_DEG = (96, 72), 24.0
+
+
+def has_ceiling(volume: BlockVolume) -> bool:
+    """Whether blocks are labelled as a ceiling, which hides the rooms from above."""
+    return bool((volume.semantic == SemanticClass.CEILING).any())
+
+
+@dataclass(eq=False)
+class OpenedBuild:
+    """A volume opened for views from above; the storeys of a house stand side by side."""
+
+    volume: BlockVolume
+    _parts: list[BlockVolume] = field(init=False)
+    _cuts: dict[tuple[int, int], BlockVolume] = field(init=False, default_factory=dict)
+
+    def __post_init__(self):
+        storeys = storeys_of(self.volume)
+        self._parts = [without_partitions(without_ceiling(one)) for one in storeys]
+
+    @property
+    def whole(self) -> BlockVolume:
+        """All that is seen of it from any side."""
+        return side_by_side(self._parts)
+
+    def best_start_deg(self, elevation_deg: float) -> float:
+        """Return where a circle should begin: at the corner that shows most of the furniture."""
+        camera = camera_of(*SCOUT_PX, vertical_fov_deg=SCOUT_FOV_DEG)
+        starts = [TURN_DEG + 90.0 * n for n in range(4)]
+        return max(starts, key=lambda start: self._shown(camera, start, elevation_deg))
+
+    def _shown(self, camera: Camera, start_deg: float, elevation_deg: float) -> float:
+        """Return how many pixels show objects, counted by the root of each object's own number."""
+        shot = orbit_shots(self.whole, camera, 1, start_deg=start_deg, elevation_deg=elevation_deg)[
+            0
+        ]
+        scene = prepare_scene(self.seen_by(shot.camera_to_room), PlainLooks())
+        options = DrawOptions(outputs=("semantic", "instance"))
+        picture = next(frames_of(scene, [shot], options))
+        if picture.instance is None or picture.semantic is None:
+            return 0.0
+        is_object = picture.semantic >= SemanticClass.CHAIR
+        return float(np.sqrt(np.bincount(picture.instance[is_object].astype(np.int64))).sum())
+
+    def seen_by(self, camera_to_room: np.ndarray) -> BlockVolume:
+        """Return what a camera outside sees of it: the walls on its side are cut to a rim.
+
+        The same value comes back for all cameras on the same two sides.
+        """
+        forward = carry_camera(camera_to_room, invert(self.volume.block_to_room))[:3, 2]
+        near = (1 if forward[0] < 0 else -1, 1 if forward[2] < 0 else -1)
+        if near not in self._cuts:
+            cut = [without_near_walls(one, *near) for one in self._parts]
+            self._cuts[near] = side_by_side(cut)
+        return self._cuts[near]

@@ -1,0 +1,149 @@
+"""Pictures of many shots, one after another: what every command and data set reads from.
+
+This is the one door to the renderer: whoever overlaps work with writing, or spreads it over
+processes, does so behind it.
+"""
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import partial
+from importlib import import_module
+from itertools import repeat
+from types import ModuleType
+
+import numpy as np
+
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Camera
+from world2minecraft.rendering.batch.pool import RenderPool
+from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light_parameters import DAY, Paper, exposure_of
+from world2minecraft.rendering.picture import Picture, render_volume
+from world2minecraft.rendering.scene import BlockScene
+from world2minecraft.rendering.views.poses import Shot
+
+GPU = "world2minecraft.rendering.gpu"  # Loaded late: most machines have no use for it.
+LEAST_A_JOB = 16  # Pictures: a process takes some seconds to begin.
+
+
+@dataclass(frozen=True)
+class DrawOptions:
+    """How pictures are drawn; each means what it means in ``render_volume``.
+
+    ``device`` is ``cpu``, ``gpu``, or ``auto``: a graphics card where there is one. ``jobs`` says
+    how many processes draw at once (``rendering.batch``), each on one thread of the CPU.
+    """
+
+    outputs: tuple[str, ...] = ("colour",)
+    light: LookLight = DAY
+    samples: int = 1
+    threads: int = 1
+    background: Paper | None = None
+    device: str = "cpu"
+    jobs: int = 1
+
+
+def frames(
+    scene: BlockScene,
+    cameras: Camera | Iterable[Camera],
+    poses: Iterable[np.ndarray],
+    options: DrawOptions | None = None,
+) -> Iterator[Picture]:
+    """Take the pictures of poses, in their order, one at a time.
+
+    Several jobs are begun only where each has a few pictures to draw, and their pictures share one
+    exposure.
+
+    Args:
+        scene: ``prepare_scene`` of a volume.
+        cameras: one for all poses, or one for each.
+        poses: ``camera_to_room``, float64 [4, 4] each.
+        options: what to make, and how it looks.
+
+    Raises:
+        ValueError: what ``render_volume`` raises. UsageError: there is no such device here.
+    """
+    how = options or DrawOptions()
+    each = repeat(cameras) if isinstance(cameras, Camera) else cameras
+    if how.jobs > 1:
+        shots = list(zip(each, poses, strict=False))
+        jobs = min(how.jobs, len(shots) // LEAST_A_JOB)
+        if jobs > 1:
+            yield from _by_processes(scene, shots, replace(how, jobs=jobs))
+            return
+        each, poses = [camera for camera, _ in shots], [pose for _, pose in shots]
+    with _drawing(scene, how) as draw:
+        for camera, camera_to_room in zip(each, poses, strict=False):
+            yield draw(
+                camera,
+                camera_to_room,
+                outputs=how.outputs,
+                light=how.light,
+                samples=how.samples,
+                background=how.background,
+            )
+
+
+def _by_processes(
+    scene: BlockScene, shots: Sequence[tuple[Camera, np.ndarray]], how: DrawOptions
+) -> Iterator[Picture]:
+    cameras, poses = [camera for camera, _ in shots], [pose for _, pose in shots]
+    with RenderPool(scene, how.jobs) as pool:
+        pictures = pool.render(
+            cameras,
+            poses,
+            outputs=how.outputs,
+            light=how.light,
+            samples=how.samples,
+            background=how.background,
+        )
+        for _, picture in pictures:
+            yield picture
+
+
+@contextmanager
+def _drawing(scene: BlockScene, how: DrawOptions) -> Iterator[Callable[..., Picture]]:
+    """Give what takes a picture of a scene on the device that is asked for."""
+    module = None if how.device == "cpu" else _gpu_module(how.device)
+    if module is None:
+        yield partial(render_volume, scene, threads=how.threads)
+        return
+    renderer = module.renderer_for(how.device, scene, threads=how.threads)
+    try:
+        yield renderer.render
+    finally:
+        renderer.close()
+
+
+def _gpu_module(device: str) -> ModuleType | None:
+    """Return what draws on a graphics card; None where ``auto`` may do without."""
+    try:
+        return import_module(GPU)
+    except ImportError:
+        if device == "auto":
+            return None
+        raise UsageError(f"device {device!r} is not in this version; cpu is") from None
+
+
+def frames_of(
+    scene: BlockScene, shots: Collection[Shot], options: DrawOptions | None = None
+) -> Iterator[Picture]:
+    """Take the pictures of shots; see ``frames``."""
+    cameras, poses = [shot.camera for shot in shots], [shot.camera_to_room for shot in shots]
+    return frames(scene, cameras, poses, options)
+
+
+def exposed(scene: BlockScene, light: LookLight, shots: Sequence[Shot]) -> BlockScene:
+    """Return the scene, opened up as far as the light around the cameras wants it.
+
+    One exposure for all shots: pictures of one tour belong together.
+
+    Args:
+        scene: ``prepare_scene`` of a volume.
+        light: how it is lit.
+        shots: from where; cameras outside of the volume do not count.
+    """
+    eyes = np.array([apply(scene.room_to_grid, shot.camera_to_room[:3, 3]) for shot in shots])
+    return replace(scene, exposure=exposure_of(light, scene, eyes))

@@ -1,0 +1,163 @@
+"""Two views that show a whole room at once: a dollhouse seen at an angle, and a plan."""
+
+import numpy as np
+
+from world2minecraft.core.coordinates import apply, look_at
+from world2minecraft.core.types import BlockVolume, Camera
+from world2minecraft.rendering.cutaway import (
+    side_by_side,
+    storeys_of,
+    without_ceiling,
+    without_near_walls,
+    without_partitions,
+)
+from world2minecraft.rendering.light_parameters import NEUTRAL, PAPER
+from world2minecraft.rendering.picture import MAX_PIXELS, Picture, render_parallel, render_volume
+from world2minecraft.rendering.plain_models import PlainLooks
+from world2minecraft.rendering.scene import prepare_scene
+
+ELEVATION_DEG = 48.0  # Steep enough to see over the furniture, flat enough to see its fronts.
+TURN_DEG = 34.0  # Off the diagonal, so that the two far walls do not mirror each other.
+FOV_DEG = 26.0  # Narrow: nearly parallel edges read as a model of the room.
+MARGIN = 1.06
+SCOUT_PX = 96
+SUPERSAMPLE = 2
+
+
+def preview(volume: BlockVolume, width_px: int = 1280, height_px: int = 960) -> np.ndarray:
+    """Return a cutaway picture of a room from above at an angle, uint8 [height, width, 3].
+
+    The ceiling and the two near walls are left out. Of the four corners it looks from the one
+    that shows most of the furniture. The storeys of a house stand side by side.
+
+    Args:
+        volume: a built room.
+        width_px: the width of the picture.
+        height_px: its height.
+
+    Raises:
+        ValueError: the picture would be too large.
+    """
+    _check_size(width_px, height_px)
+    opened = [without_partitions(without_ceiling(one)) for one in storeys_of(volume)]
+    sides = ((-1, 1), (1, 1), (1, -1), (-1, -1))
+    best = max(range(4), key=lambda n: sum(_furniture_seen(one, *sides[n]) for one in opened))
+    cut = side_by_side([without_near_walls(one, *sides[best]) for one in opened])
+    camera, pose = dollhouse_camera(cut, *sides[best], width_px, height_px)
+    picture = render_volume(
+        cut, camera, pose, outputs=("colour",), light=NEUTRAL, samples=SUPERSAMPLE
+    )
+    return _colour_of(picture)
+
+
+def _furniture_seen(opened: BlockVolume, near_x: int, near_z: int) -> float:
+    """Return how many pixels show objects, counted by the root of each object's own number."""
+    cut = without_near_walls(opened, near_x, near_z)
+    camera, pose = dollhouse_camera(cut, near_x, near_z, SCOUT_PX, SCOUT_PX * 3 // 4)
+    scene = prepare_scene(cut, PlainLooks())
+    picture = render_volume(scene, camera, pose, outputs=("semantic", "instance"))
+    if picture.instance is None or picture.semantic is None:
+        return 0.0
+    shown = np.bincount(picture.instance[picture.semantic >= 5].astype(np.int64))
+    return float(np.sqrt(shown).sum())
+
+
+def dollhouse_camera(
+    volume: BlockVolume, near_x: int, near_z: int, width_px: int, height_px: int
+) -> tuple[Camera, np.ndarray]:
+    """Return a camera and its ``camera_to_room`` that see all blocks from one upper corner."""
+    points_m = _corner_points_m(volume)
+    low, high = points_m.min(axis=0), points_m.max(axis=0)
+    along, across = np.cos(np.radians(TURN_DEG)), np.sin(np.radians(TURN_DEG))
+    if high[0] - low[0] > high[1] - low[1]:  # The long side lies across the picture.
+        along, across = across, along
+    flat = np.array([near_x * along, -near_z * across])  # Block z is room -y.
+    up = np.radians(ELEVATION_DEG)
+    toward_eye = np.array([*(flat * np.cos(up)), np.sin(up)])
+    focal = min(width_px, height_px * 4 / 3) / (2 * np.tan(np.radians(FOV_DEG) / 2))
+    middle = (low + high) / 2
+    distance = _distance_that_fits(points_m - middle, toward_eye, focal, width_px, height_px)
+    pose = look_at(middle + toward_eye * distance, middle)
+    seen = apply(np.linalg.inv(pose), points_m)
+    u, v = focal * seen[:, 0] / seen[:, 2], focal * seen[:, 1] / seen[:, 2]
+    centre_x = width_px / 2 - (u.min() + u.max()) / 2
+    centre_y = height_px / 2 - (v.min() + v.max()) / 2
+    return Camera(width_px, height_px, focal, focal, centre_x, centre_y), pose
+
+
+def _distance_that_fits(points, toward_eye, focal, width_px, height_px) -> float:
+    """Return the least distance from which all points lie within the picture, by bisection."""
+    near, far = 0.5, 500.0
+    for _ in range(40):
+        distance = (near + far) / 2
+        seen = apply(np.linalg.inv(look_at(toward_eye * distance, np.zeros(3))), points)
+        if (seen[:, 2] <= 0.1).any():
+            near = distance
+            continue
+        spans = focal * np.ptp(seen[:, :2] / seen[:, 2:], axis=0) * MARGIN
+        if spans[0] > width_px or spans[1] > height_px:
+            near = distance
+        else:
+            far = distance
+    return far
+
+
+def _corner_points_m(volume: BlockVolume) -> np.ndarray:
+    """Return the corners, float64 [8, 3] in room metres, of the box around all blocks."""
+    filled = volume.states != 0
+    if not filled.any():
+        filled = np.ones_like(filled)
+    spans = []
+    for axis in range(3):
+        others = tuple(other for other in range(3) if other != axis)
+        used = np.flatnonzero(filled.any(axis=others))
+        spans.append((used[0] + volume.corner[axis], used[-1] + 1 + volume.corner[axis]))
+    corners = np.stack(np.meshgrid(*spans, indexing="ij"), axis=-1).reshape(-1, 3)
+    return apply(volume.block_to_room, corners.astype(np.float64))
+
+
+def plan_view(volume: BlockVolume, px_per_block: int = 8) -> np.ndarray:
+    """Return a plan of the room from under its ceiling, uint8 [H, W, 3].
+
+    Room +x points right and room +y up. The storeys of a house stand side by side.
+
+    Args:
+        volume: a built room.
+        px_per_block: pixels a block.
+
+    Raises:
+        ValueError: ``px_per_block`` is not 1 or more, or the plan would be too large.
+    """
+    if px_per_block < 1:
+        raise ValueError(f"px_per_block must be 1 or more, not {px_per_block}")
+    opened = side_by_side([without_ceiling(one) for one in storeys_of(volume)])
+    x_blocks, _, z_blocks = opened.states.shape
+    size = (z_blocks * px_per_block, x_blocks * px_per_block)
+    _check_size(size[1], size[0])
+    middle = np.array(opened.corner) + np.array(opened.states.shape) / 2
+    middle[1] = opened.corner[1] + opened.states.shape[1] + 1
+    down = np.diag([1.0, -1.0, -1.0, 1.0])
+    down[:3, 3] = apply(volume.block_to_room, middle)
+    picture = render_parallel(
+        prepare_scene(opened),
+        px_per_block * volume.blocks_per_metre,
+        size,
+        down,
+        outputs=("colour",),
+        samples=SUPERSAMPLE,
+        light=NEUTRAL,
+        background=(PAPER[0], PAPER[0]),
+    )
+    return _colour_of(picture)
+
+
+def _check_size(width_px: int, height_px: int) -> None:
+    samples = width_px * height_px * SUPERSAMPLE**2
+    if width_px < 1 or height_px < 1 or samples > MAX_PIXELS:
+        raise ValueError(f"the picture's size is out of range: {width_px}x{height_px} pixels")
+
+
+def _colour_of(picture: Picture) -> np.ndarray:
+    if picture.colour is None:
+        raise ValueError("the picture has no colour")
+    return picture.colour

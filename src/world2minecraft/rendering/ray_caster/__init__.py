@@ -1,0 +1,1 @@
+"""The CPU ray caster: compiled kernels from rays through blocks to shaded pixels."""

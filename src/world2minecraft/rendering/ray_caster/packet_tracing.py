@@ -1,0 +1,129 @@
+"""Bundles of rays: what all pixels of a small tile have in common, found once for the tile.
+
+Empty boxes are convex. Where the four corner rays of a tile leave a box by the same face, all rays
+between them do, and none has met anything on the way. So a bundle goes from box to box until the
+cells before it are all full cubes, and then every pixel's hit is one plane; or until they differ,
+and then each pixel goes on alone from the box that was reached.
+"""
+
+import numpy as np
+
+from world2minecraft.core.jit import inlined, lean
+from world2minecraft.rendering.ray_caster.ray import OUTSIDE, steep, within
+from world2minecraft.rendering.scene_tables import FULL, NO_FACE
+
+# What a bundle meets.
+ALONE = 0  # Each ray goes on alone.
+PLANE = 1  # Full cubes behind one plane.
+NOTHING = 2  # It leaves the grid.
+MOST_BEHIND = 64  # Cells of a plane that are looked at.
+MOST_BOXES = 64  # Of air, in a row.
+
+
+@lean
+def follow(space, bounds, corners, cells):
+    """Return ``(mode, face, layer)`` of a bundle: the face by which it enters ``layer``.
+
+    Args:
+        space: int32 [X, Y, Z].
+        bounds: int16 [V, 6].
+        corners: float64 [4, 6], origin and direction of the four corner rays, which all begin in
+            one box; where they do not, or where nothing is in common, the answer is
+            ``(ALONE, NO_FACE, 0)``.
+        cells: int64 [4, 3]; its first two rows become the first and the last of the cells of
+            ``layer`` that the bundle covers; the others are scratch.
+    """
+    row = _box_of_origins(space, bounds, corners)
+    face, layer = NO_FACE, 0
+    if row < 0:
+        return ALONE, NO_FACE, 0
+    low, high = cells[2], cells[3]
+    for _ in range(MOST_BOXES):
+        ahead = _common_exit(bounds, row, corners, low, high)
+        if ahead == NO_FACE:
+            return ALONE, face, layer
+        axis = ahead // 2
+        behind = int(bounds[row, axis + 3]) if ahead % 2 == 0 else int(bounds[row, axis]) - 1
+        if behind < 0 or behind >= space.shape[axis]:
+            return NOTHING, ahead, behind
+        low[axis], high[axis] = behind, behind
+        kind = _kind_behind(space, bounds, low, high)
+        if kind != FULL and kind < 0:
+            return ALONE, face, layer
+        for axis in range(3):
+            cells[0, axis], cells[1, axis] = low[axis], high[axis]
+        if kind == FULL:
+            return PLANE, ahead, behind
+        row, face, layer = kind, ahead, behind
+    return ALONE, face, layer
+
+
+@inlined
+def _box_of_origins(space, bounds, corners):
+    """Return the empty box that holds the origins of all corner rays, or -1."""
+    nx, ny, nz = space.shape
+    i, j, k = (
+        int(np.floor(corners[0, 0])),
+        int(np.floor(corners[0, 1])),
+        int(np.floor(corners[0, 2])),
+    )
+    if not (0 <= i < nx and 0 <= j < ny and 0 <= k < nz):
+        return -1
+    row = space[i, j, k]
+    if row < 0:
+        return -1
+    for corner in range(4):
+        for axis in range(3):
+            at = corners[corner, axis]
+            if at < bounds[row, axis] or at >= bounds[row, axis + 3]:
+                return -1
+    return row
+
+
+@inlined
+def _common_exit(bounds, row, corners, low, high):
+    """Return the face by which all corner rays leave a box, seen from behind it, and where.
+
+    ``low`` and ``high`` become the first and last cells, along the other two axes, of the part of
+    the face that the bundle covers.
+    """
+    common = NO_FACE
+    for corner in range(4):
+        nearest, face = np.inf, NO_FACE
+        for axis in range(3):
+            d = steep(corners[corner, axis + 3])
+            t = (bounds[row, axis + 3 if d > 0 else axis] - corners[corner, axis]) / d
+            if t < nearest:
+                nearest, face = t, 2 * axis + (0 if d > 0 else 1)
+        if corner == 0:
+            common = face
+        elif face != common:
+            return NO_FACE
+        for axis in range(3):
+            at = corners[corner, axis] + nearest * corners[corner, axis + 3]
+            cell = within(at, int(bounds[row, axis]), int(bounds[row, axis + 3]))
+            low[axis] = cell if corner == 0 else min(low[axis], cell)
+            high[axis] = cell if corner == 0 else max(high[axis], cell)
+    return common
+
+
+@inlined
+def _kind_behind(space, bounds, low, high):
+    """Return the box that holds all cells from ``low`` to ``high``, FULL, or OUTSIDE."""
+    first = space[low[0], low[1], low[2]]
+    if first >= 0:
+        for axis in range(3):
+            if low[axis] < bounds[first, axis] or high[axis] >= bounds[first, axis + 3]:
+                return OUTSIDE
+        return first
+    if first != FULL:
+        return OUTSIDE
+    count = (high[0] - low[0] + 1) * (high[1] - low[1] + 1) * (high[2] - low[2] + 1)
+    if count > MOST_BEHIND:
+        return OUTSIDE
+    for i in range(low[0], high[0] + 1):
+        for j in range(low[1], high[1] + 1):
+            for k in range(low[2], high[2] + 1):
+                if space[i, j, k] != FULL:
+                    return OUTSIDE
+    return FULL

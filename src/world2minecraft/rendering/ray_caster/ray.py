@@ -1,0 +1,286 @@
+"""One ray through a scene of blocks: empty boxes are crossed at a step, elements are met exactly.
+
+Coordinates are those of the grid: cell (i, j, k) spans [i, i + 1]. ``t`` counts in lengths of the
+direction; a direction whose camera z is 1 gives z-depth. Scalars are float64: on a CPU that costs
+no time in scalar code, and the ids come out exact. Directions have no component of exactly 0
+(``steep``), so that their reciprocals are finite.
+"""
+
+import numpy as np
+
+from world2minecraft.core.jit import inlined, inner, inner_call, lean
+from world2minecraft.rendering.scene_tables import (
+    ABSOLUTE,
+    BOXES,
+    FLAGS,
+    FULL,
+    JOINS,
+    NO_FACE,
+    PANE,
+    SEE_THROUGH,
+    TURN,
+)
+
+OUTSIDE = -3  # What ``walk`` gives as kind where the ray has left the grid.
+SOLID = 250  # Alpha of a texel of glass from which on nothing is seen behind it.
+_TINY = 1e-12
+_SLACK = 1e-9  # Cells: how far a standing box may be met outside the cell that lists it.
+
+
+@inlined
+def steep(d):
+    """Return a direction's component, moved away from 0."""
+    return d if abs(d) > _TINY else _TINY
+
+
+@inlined
+def within(value, low, high):
+    """Return the whole number under a coordinate, from ``low`` to ``high`` - 1."""
+    return min(max(int(np.floor(value)), low), high - 1)
+
+
+@inlined
+def onward(cell, found, d):
+    """Return the cell that was found on a ray, or the one before where that lies behind it.
+
+    On an edge between cells rounding, or an eye that stands right on it, may point back: two boxes
+    that overlap would then pass the ray to each other for ever.
+    """
+    return max(cell, found) if d > 0 else min(cell, found)
+
+
+@inlined
+def ray_of_pixel(pose, x, y, spread):
+    """Return origin and direction, in the grid, of the ray through (x, y) at z = 1."""
+    sx, sy = x * (1 - spread), y * (1 - spread)
+    x, y = x * spread, y * spread
+    return (
+        pose[0, 0] * sx + pose[0, 1] * sy + pose[0, 3],
+        pose[1, 0] * sx + pose[1, 1] * sy + pose[1, 3],
+        pose[2, 0] * sx + pose[2, 1] * sy + pose[2, 3],
+        pose[0, 0] * x + pose[0, 1] * y + pose[0, 2],
+        pose[1, 0] * x + pose[1, 1] * y + pose[1, 2],
+        pose[2, 0] * x + pose[2, 1] * y + pose[2, 2],
+    )
+
+
+@lean
+def enter_grid(shape, ox, oy, oz, rx, ry, rz):
+    """Return ``(t, face)`` where a ray from outside enters the grid; ``NO_FACE`` if it does not."""
+    nx, ny, nz = shape
+    ax, bx = min(-ox * rx, (nx - ox) * rx), max(-ox * rx, (nx - ox) * rx)
+    ay, by = min(-oy * ry, (ny - oy) * ry), max(-oy * ry, (ny - oy) * ry)
+    az, bz = min(-oz * rz, (nz - oz) * rz), max(-oz * rz, (nz - oz) * rz)
+    t = max(ax, ay, az)
+    if t <= 0 or t >= min(bx, by, bz):
+        return 0.0, NO_FACE
+    if t == ax:
+        return t, 0 if rx > 0 else 1
+    if t == ay:
+        return t, 2 if ry > 0 else 3
+    return t, 4 if rz > 0 else 5
+
+
+@inlined
+def begin(shape, ox, oy, oz, dx, dy, dz, rx, ry, rz):
+    """Return ``(t, i, j, k, face)`` of the first cell of a ray; i is -1 where it misses all."""
+    nx, ny, nz = shape
+    if 0 <= ox < nx and 0 <= oy < ny and 0 <= oz < nz:
+        return 0.0, int(ox), int(oy), int(oz), NO_FACE
+    t, face = enter_grid(shape, ox, oy, oz, rx, ry, rz)
+    if face == NO_FACE:
+        return 0.0, -1, 0, 0, NO_FACE
+    i = within(ox + t * dx, 0, nx)
+    j = within(oy + t * dy, 0, ny)
+    k = within(oz + t * dz, 0, nz)
+    return t, i, j, k, face
+
+
+@inner
+def walk(space, bounds, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face):
+    """Cross air from a cell on; return ``(t, i, j, k, face, kind)`` of the first that is none."""
+    nx, ny, nz = np.uint64(space.shape[0]), np.uint64(space.shape[1]), np.uint64(space.shape[2])
+    # Whole numbers without a sign: no code for counting from the end, and one comparison each.
+    while np.uint64(i) < nx and np.uint64(j) < ny and np.uint64(k) < nz:
+        row = space[np.uint64(i), np.uint64(j), np.uint64(k)]
+        if row < 0:
+            return t, i, j, k, face, row
+        box = bounds[np.uint64(row)]
+        x0, y0, z0 = np.int64(box[0]), np.int64(box[1]), np.int64(box[2])
+        x1, y1, z1 = np.int64(box[3]), np.int64(box[4]), np.int64(box[5])
+        tx = ((x1 if dx > 0 else x0) - ox) * rx
+        ty = ((y1 if dy > 0 else y0) - oy) * ry
+        tz = ((z1 if dz > 0 else z0) - oz) * rz
+        t = min(tx, ty, tz)
+        if t == tx:
+            i, face = (x1, 0) if dx > 0 else (x0 - 1, 1)
+            j = onward(j, within(oy + t * dy, y0, y1), dy)
+            k = onward(k, within(oz + t * dz, z0, z1), dz)
+        elif t == ty:
+            j, face = (y1, 2) if dy > 0 else (y0 - 1, 3)
+            i = onward(i, within(ox + t * dx, x0, x1), dx)
+            k = onward(k, within(oz + t * dz, z0, z1), dz)
+        else:
+            k, face = (z1, 4) if dz > 0 else (z0 - 1, 5)
+            i = onward(i, within(ox + t * dx, x0, x1), dx)
+            j = onward(j, within(oy + t * dy, y0, y1), dy)
+    return t, i, j, k, face, OUTSIDE
+
+
+@inlined
+def meet_box(boxes, n, ox, oy, oz, rx, ry, rz):
+    """Return ``(t, leave, face)`` where a ray enters box n from outside; ``NO_FACE`` for never."""
+    ax, bx = (boxes[n, 0] - ox) * rx, (boxes[n, 3] - ox) * rx
+    ay, by = (boxes[n, 1] - oy) * ry, (boxes[n, 4] - oy) * ry
+    az, bz = (boxes[n, 2] - oz) * rz, (boxes[n, 5] - oz) * rz
+    enter_x, enter_y, enter_z = min(ax, bx), min(ay, by), min(az, bz)
+    enter = max(enter_x, enter_y, enter_z)
+    leave = min(max(ax, bx), max(ay, by), max(az, bz))
+    if enter > leave:
+        return enter, leave, NO_FACE
+    if enter == enter_x:
+        return enter, leave, 0 if rx > 0 else 1
+    if enter == enter_y:
+        return enter, leave, 2 if ry > 0 else 3
+    return enter, leave, 4 if rz > 0 else 5
+
+
+@inlined
+def carried(turns, row, x, y, z, w):
+    """Carry a point (w = 1) or a direction (w = 0) by a row of ``turns``."""
+    m = turns[row]
+    return (
+        m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3] * w,
+        m[1, 0] * x + m[1, 1] * y + m[1, 2] * z + m[1, 3] * w,
+        m[2, 0] * x + m[2, 1] * y + m[2, 2] * z + m[2, 3] * w,
+    )
+
+
+@inlined
+def texel_at(uv, n, face, x, y, z, side_px):
+    """Return the column and row of the finest texel at a point of an element's frame."""
+    u = uv[n, face, 0, 0] * x + uv[n, face, 0, 1] * y + uv[n, face, 0, 2] * z + uv[n, face, 0, 3]
+    v = uv[n, face, 1, 0] * x + uv[n, face, 1, 1] * y + uv[n, face, 1, 2] * z + uv[n, face, 1, 3]
+    column, row = int((u - np.floor(u)) * side_px), int((v - np.floor(v)) * side_px)
+    return min(column, side_px - 1), min(row, side_px - 1)
+
+
+@inner_call
+def meet_cell(
+    looks, look_start, refs, boxes, traits, turns, layers, uv, texels, translucent, side_px,
+    i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz, after, until,
+):  # fmt: skip
+    """Return ``(t, face, element)`` of what a ray meets first among the elements of a cell.
+
+    Only what lies after ``after``; of standing boxes only what lies before ``until``, where the
+    ray leaves the cell. Where two lie at one place, the later one counts, as in the game.
+    """
+    best, side, found = np.inf, NO_FACE, -1
+    look = looks[i, j, k]
+    for place in range(look_start[look], look_start[look + 1]):
+        n = refs[place]
+        flags, turn = traits[n, FLAGS], traits[n, TURN]
+        px, py, pz = ox - i, oy - j, oz - k
+        ex, ey, ez = dx, dy, dz
+        if flags & ABSOLUTE:
+            px, py, pz = ox, oy, oz
+        if turn >= 0:
+            px, py, pz = carried(turns, turn, px, py, pz, 1.0)
+            ex, ey, ez = carried(turns, turn, dx, dy, dz, 0.0)
+            ex, ey, ez = steep(ex), steep(ey), steep(ez)
+            t, _, face = meet_box(boxes, n, px, py, pz, 1 / ex, 1 / ey, 1 / ez)
+        else:
+            t, _, face = meet_box(boxes, n, px, py, pz, rx, ry, rz)
+        if face == NO_FACE or t <= after or t > best or t <= 0:
+            continue
+        if flags & ABSOLUTE and t > until + _SLACK:
+            continue
+        if flags & SEE_THROUGH:
+            layer = layers[n, face]
+            if layer < 0:
+                continue
+            if flags & JOINS and joined(looks, i, j, k, face):
+                continue
+            if not (translucent[layer] or flags & PANE):
+                column, row = texel_at(uv, n, face, px + t * ex, py + t * ey, pz + t * ez, side_px)
+                if texels[layer, row * side_px + column, 3] < 128:
+                    continue
+        best, side, found = t, face, n
+    return best, side, found
+
+
+@inlined
+def joined(looks, i, j, k, face):
+    """Tell whether the neighbour before a face looks the same."""
+    a, b, c = i, j, k
+    step = 1 if face % 2 else -1
+    if face < 2:
+        a += step
+    elif face < 4:
+        b += step
+    else:
+        c += step
+    nx, ny, nz = looks.shape
+    if a < 0 or b < 0 or c < 0 or a >= nx or b >= ny or c >= nz:
+        return False
+    return looks[a, b, c] == looks[i, j, k]
+
+
+@inlined
+def leave_cell(i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz):
+    """Return ``(t, i, j, k, face)`` of the next cell after one."""
+    tx = ((i + 1 if dx > 0 else i) - ox) * rx
+    ty = ((j + 1 if dy > 0 else j) - oy) * ry
+    tz = ((k + 1 if dz > 0 else k) - oz) * rz
+    if tx <= ty and tx <= tz:
+        return (tx, i + 1, j, k, 0) if dx > 0 else (tx, i - 1, j, k, 1)
+    if ty <= tz:
+        return (ty, i, j + 1, k, 2) if dy > 0 else (ty, i, j - 1, k, 3)
+    return (tz, i, j, k + 1, 4) if dz > 0 else (tz, i, j, k - 1, 5)
+
+
+@inner
+def first_hit(
+    tables, side_px, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face, after
+):  # fmt: skip
+    """Return ``(t, i, j, k, face, element)`` of the first surface from a cell on.
+
+    The ray is in cell (i, j, k) at ``t``, which it entered by ``face`` (``NO_FACE`` where it
+    begins there). ``element`` is -1 for a full cube; ``face`` is the element's own, ``NO_FACE``
+    for nothing. A cube or box that holds the origin is ignored: there is no near plane.
+    """
+    while True:
+        t, i, j, k, face, kind = walk(
+            tables.space, tables.bounds, ox, oy, oz, dx, dy, dz, rx, ry, rz, t, i, j, k, face
+        )
+        if kind == OUTSIDE:
+            return 0.0, 0, 0, 0, NO_FACE, -1
+        if kind == FULL and face != NO_FACE and t > after:
+            return t, i, j, k, face, -1
+        until, a, b, c, ahead = leave_cell(i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz)
+        if kind == BOXES:
+            near, side, element = meet_cell(
+                tables.looks, tables.look_start, tables.refs, tables.boxes, tables.traits,
+                tables.turns, tables.layers, tables.uv, tables.texels, tables.translucent, side_px,
+                i, j, k, ox, oy, oz, dx, dy, dz, rx, ry, rz, after, until,
+            )  # fmt: skip
+            if side != NO_FACE:
+                return near, i, j, k, side, element
+        t, i, j, k, face = until, a, b, c, ahead
+
+
+@inner
+def is_clear(tables, side_px, t, i, j, k, face, element, ox, oy, oz, dx, dy, dz):
+    """Tell whether one sees through a hit: it is glass, and its texture is not solid there."""
+    if element < 0:
+        return False
+    layer, flags = tables.layers[element, face], tables.traits[element, FLAGS]
+    if not (tables.translucent[layer] or flags & PANE):
+        return False
+    x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
+    if not flags & ABSOLUTE:
+        x, y, z = x - i, y - j, z - k
+    if tables.traits[element, TURN] >= 0:
+        x, y, z = carried(tables.turns, tables.traits[element, TURN], x, y, z, 1.0)
+    column, row = texel_at(tables.uv, element, face, x, y, z, side_px)
+    return tables.texels[layer, row * side_px + column, 3] < SOLID

@@ -1,0 +1,166 @@
+"""``PackLooks``: a user's resource packs and client jars as a source of looks.
+
+A state becomes its blockstates file's parts, each part its model, each model its elements, turned.
+What cannot be read is noted and left to the next source.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.minecraft.block_states import BlockState, complete, parse_state
+from world2minecraft.minecraft.glow import is_luminous
+from world2minecraft.rendering.block_elements import BlockModel, Element
+from world2minecraft.rendering.resource_packs.blockstates import Part, parts_of
+from world2minecraft.rendering.resource_packs.fluids import FLUIDS, fluid_model
+from world2minecraft.rendering.resource_packs.implied import implied_model, other_names
+from world2minecraft.rendering.resource_packs.layering import merged
+from world2minecraft.rendering.resource_packs.model_files import MOST_ELEMENTS, flatten, texture_of
+from world2minecraft.rendering.resource_packs.resources import Resources
+from world2minecraft.rendering.resource_packs.shapes import element_of
+from world2minecraft.rendering.resource_packs.textures import (
+    CLEAR,
+    LARGEST_PX,
+    PackTextures,
+    is_clear,
+)
+from world2minecraft.rendering.resource_packs.tints import Colour, checked_tints, tint_rule
+from world2minecraft.rendering.resource_packs.turning import carry, quarter_turn
+from world2minecraft.rendering.texture import Texture
+
+FULL_LIGHT = 15
+MOST_ELEMENTS_OF_ALL = 200_000  # A thousand states of the game have about 5,000.
+
+
+class PackLooks:
+    """The looks of a stack of resource packs, client jars and mods' jars.
+
+    ``problems`` holds one short sentence for each file that could not be read, the first of them;
+    ``problem_count`` counts all.
+
+    Args:
+        paths: folders, zips and jars; the last wins over those before it, as in the game.
+        tints: colours in place of those of plains; see ``tints.PLAINS`` for the names.
+        most_px: the largest side of a texture; larger ones are reduced to it.
+
+    Raises:
+        InputError: a pack is missing or is none. UsageError: a tint or ``most_px`` is wrong.
+    """
+
+    def __init__(
+        self,
+        paths: Sequence[str | Path],
+        *,
+        tints: Mapping[str, Colour] | None = None,
+        most_px: int = LARGEST_PX,
+    ):
+        if most_px < 1 or most_px & (most_px - 1):
+            raise UsageError(f"most_px must be a power of two such as 64, not {most_px}")
+        self._resources = Resources(paths)
+        self._textures = PackTextures(self._resources, most_px)
+        self._tints = checked_tints(tints, self._textures.map_colour)
+        self._element_count = 0
+        self._models: dict[str, BlockModel | None] = {}
+
+    @property
+    def problems(self) -> list[str]:
+        """What could not be read so far, short sentences, at most some dozens."""
+        return list(self._resources.problems)
+
+    @property
+    def problem_count(self) -> int:
+        """How many things could not be read so far."""
+        return self._resources.problem_count
+
+    @property
+    def summary(self) -> str:
+        """One sentence on what could not be read, for whoever made pictures; "" for nothing."""
+        if not self.problem_count:
+            return ""
+        first, count = self._resources.problems[0], self.problem_count
+        things = "1 thing" if count == 1 else f"{count} things"
+        return f"{things} of the packs could not be read, the first: {first}"
+
+    @property
+    def texture_px(self) -> int:
+        """The side that most of the packs' textures have, 16 to 128: a size for a scene."""
+        return self._textures.usual_px()
+
+    def model(self, state: str) -> BlockModel | None:
+        """Return the model of a state's text; None where no pack has one that can be read."""
+        if state not in self._models:
+            model = self._made(state)
+            self._models[state] = _shining(model) if model and is_luminous(state) else model
+        return self._models[state]
+
+    def texture(self, name: str) -> Texture | None:
+        """Return the texture of a name that ``model`` uses, or None."""
+        return None if name.startswith("own:") else self._textures.get(name)
+
+    def _made(self, text: str) -> BlockModel | None:
+        try:
+            state = complete(parse_state(text))
+        except UsageError:
+            return None
+        if state.name in FLUIDS:
+            return fluid_model(state, self._present, self._tints["water"])
+        space, block = state.name.split(":")
+        names = [f"assets/{space}/blockstates/{n}.json" for n in (block, *other_names(state.name))]
+        for name in names:
+            root = self._resources.object(name)
+            if root is not None:
+                try:
+                    return self._drawn(state, parts_of(root, dict(state.properties)))
+                except ValueError as error:
+                    self._resources.note(f"{state.name}: {error}")
+                    break
+        is_free = not any(self._resources.has(name) for name in names)
+        return implied_model(state, self._present, tint_rule(state, self._tints), is_free)
+
+    def _present(self, name: str) -> Texture | None:
+        """Return the texture of a name, None where there is none, which is no problem."""
+        space, _, path = name.partition(":")
+        has_file = self._resources.has(f"assets/{space}/textures/{path}.png")
+        return self.texture(name) if has_file else None
+
+    def _drawn(self, state: BlockState, parts: tuple[Part, ...]) -> BlockModel | None:
+        """Return the parts' elements as one model; None where the game draws a part in code."""
+        tint_of = tint_rule(state, self._tints)
+        ending = CLEAR if is_clear(state.name) else ""
+        elements: list[Element] = []
+        occlusion = True
+        for part in parts:
+            flat = flatten(part.model, self._resources)
+            turn = quarter_turn(part.x_deg, part.y_deg, part.z_deg)
+            named = partial(_texture_name, textures=flat.textures, ending=ending)
+            for raw in flat.elements:
+                elements.append(carry(element_of(raw, named, tint_of), turn, part.uv_lock))
+            occlusion = occlusion and flat.ambient_occlusion
+            if len(elements) > MOST_ELEMENTS:
+                raise ValueError(f"its models have more than {MOST_ELEMENTS:,} elements together")
+        self._element_count += len(elements)
+        if self._element_count > MOST_ELEMENTS_OF_ALL:
+            raise ValueError(f"comes after {MOST_ELEMENTS_OF_ALL:,} elements of other blocks")
+        self._check_textures(elements)
+        return BlockModel(merged(elements), occlusion) if elements else None
+
+    def _check_textures(self, elements: Sequence[Element]) -> None:
+        """Raise ValueError where a face's texture cannot be read."""
+        for name in {face.texture for one in elements for face in one.faces if face is not None}:
+            if self.texture(name) is None:
+                plain = name.removesuffix(CLEAR)
+                raise ValueError(f"texture {plain} is in none of the packs, or cannot be read")
+
+
+def _shining(model: BlockModel) -> BlockModel:
+    """Return a lamp's model, seen at full brightness; files do not say which blocks are lamps."""
+    elements = tuple(replace(one, emission=one.emission or FULL_LIGHT) for one in model.elements)
+    return replace(model, elements=elements)
+
+
+def _texture_name(face: str, textures: Mapping[str, object], ending: str) -> str:
+    """Return the name of a face's texture, marked where the block is of clear stuff."""
+    name = texture_of(face, textures)
+    return name if not ending or is_clear(name) else name + ending

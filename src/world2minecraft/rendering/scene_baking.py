@@ -1,0 +1,177 @@
+"""Looks become arrays: the elements of a palette, and of boxes that stand free of the blocks.
+
+In: models of a ``LookSource``. Out: the element tables of ``SceneTables``. An element that reaches
+beyond its block, as the cloth of a banner does, is left to ``rendering.freestanding_boxes``, which lists
+it in each cell that it reaches.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+
+from world2minecraft.rendering.atlas import Atlas, atlas_of, to_linear
+from world2minecraft.rendering.block_elements import BlockModel, Element, FaceLook, LookSource
+from world2minecraft.rendering.scene_tables import BOXES, EVEN, FULL, SEE_THROUGH, UNSHADED
+from world2minecraft.rendering.texture import Texture
+
+AIR = 0  # What ``kind_of`` gives for a model without elements.
+_MISSING = Texture(np.full((1, 1, 4), (255, 0, 255, 255), np.uint8))  # Seen at once.
+_INSIDE = 1e-4  # Blocks: a turned element may be off by rounding.
+
+
+@dataclass
+class Baker:
+    """Collects elements and their textures. ``table`` gives the arrays."""
+
+    looks: LookSource
+    side_px: int = 16
+    names: dict[str, int] = field(default_factory=dict)
+    textures: list[Texture] = field(default_factory=list)
+    elements: list[tuple[Element, int, int]] = field(default_factory=list)
+
+    def add(self, element: Element, flags: int = 0, owner: int = -1, even: bool = False) -> int:
+        """Add an element and return its number.
+
+        Args:
+            element: in coordinates of its cell, or of the grid where the flags say ``ABSOLUTE``.
+            flags: ``ABSOLUTE`` and ``JOINS``; the others are found here.
+            owner: whose it is, see ``SceneTables.traits``.
+            even: whether corners do not darken it.
+        """
+        for face in element.faces:
+            if face is not None:
+                self._layer(face)
+        see_through = any(
+            face is None or self.textures[self._layer(face)].has_holes for face in element.faces
+        )
+        flags |= SEE_THROUGH * see_through | UNSHADED * (not element.shade) | EVEN * even
+        self.elements.append((element, flags, owner))
+        return len(self.elements) - 1
+
+    def _layer(self, face: FaceLook) -> int:
+        layer = self.names.get(face.texture)
+        if layer is None:
+            layer = self.names[face.texture] = len(self.textures)
+            self.textures.append(self.looks.texture(face.texture) or _MISSING)
+        return layer
+
+    def table(self) -> "ElementTable":
+        """Return the arrays of all elements so far."""
+        count = len(self.elements)
+        table = ElementTable(
+            boxes=np.zeros((count, 6), np.float32),
+            traits=np.full((count, 3), -1, np.int32),
+            turns=np.empty((0, 3, 4)),
+            normals=np.empty((0, 3, 3)),
+            layers=np.full((count, 6), -1, np.int32),
+            uv=np.zeros((count, 6, 2, 4), np.float32),
+            tints=np.ones((count, 6, 3), np.float32),
+            emission=np.zeros(count, np.float32),
+            atlas=atlas_of(self.textures or [_MISSING], self.side_px),
+        )
+        turns = []
+        for row, (element, flags, owner) in enumerate(self.elements):
+            table.boxes[row] = (*element.low, *element.high)
+            table.traits[row, 1:] = flags, owner
+            table.emission[row] = element.emission / 15
+            if element.turn is not None:
+                table.traits[row, 0] = len(turns)
+                turns.append(np.linalg.inv(element.turn)[:3])
+            for side, face in enumerate(element.faces):
+                if face is not None:
+                    table.layers[row, side] = self._layer(face)
+                    table.uv[row, side] = face.uv
+                    if face.tint is not None:
+                        table.tints[row, side] = _linear_tint(face.tint)
+        rows = np.array(turns).reshape(-1, 3, 4)
+        lengths = np.linalg.norm(rows[:, :, :3], axis=2, keepdims=True)
+        return table._with_turns(rows, rows[:, :, :3] / np.maximum(lengths, 1e-12))
+
+
+@dataclass(frozen=True, eq=False)
+class ElementTable:
+    """E elements with T turns; the names and dtypes of ``SceneTables``."""
+
+    boxes: np.ndarray
+    traits: np.ndarray
+    turns: np.ndarray
+    normals: np.ndarray
+    layers: np.ndarray
+    uv: np.ndarray
+    tints: np.ndarray
+    emission: np.ndarray
+    atlas: Atlas
+
+    def _with_turns(self, turns: np.ndarray, normals: np.ndarray) -> "ElementTable":
+        return ElementTable(
+            self.boxes, self.traits, np.ascontiguousarray(turns), np.ascontiguousarray(normals),
+            self.layers, self.uv, self.tints, self.emission, self.atlas,
+        )  # fmt: skip
+
+
+@lru_cache(maxsize=1024)
+def _linear_tint(tint: tuple[int, int, int]) -> np.ndarray:
+    return to_linear(np.array(tint))
+
+
+def kind_of(model: BlockModel, looks: LookSource) -> int:
+    """Return ``FULL`` for one opaque cube, ``BOXES`` for other elements, ``AIR`` for none."""
+    if len(model.elements) == 0:
+        return AIR
+    (first, *more) = model.elements
+    if more or not is_unit_cube(first):
+        return BOXES
+    for face in first.faces:
+        texture = None if face is None else looks.texture(face.texture)
+        if face is None or (texture is not None and texture.has_holes):
+            return BOXES
+    return FULL
+
+
+def is_unit_cube(element: Element) -> bool:
+    """Whether an element fills its block and is not turned."""
+    return element.turn is None and element.low == (0, 0, 0) and element.high == (1, 1, 1)
+
+
+def joins(state: str, model: BlockModel) -> bool:
+    """Whether two such blocks side by side show no face between them: glass does, leaves do not.
+
+    Water does though it is no full cube: a pool has no walls within.
+    """
+    if state.partition("[")[0] == "minecraft:water":
+        return True
+    return (
+        len(model.elements) == 1
+        and is_unit_cube(model.elements[0])
+        and "leaves" not in state.partition("[")[0]
+    )
+
+
+def reaches_out(element: Element) -> bool:
+    """Whether an element reaches beyond its block."""
+    if element.turn is None:
+        ends = (*element.low, *element.high)
+        return min(ends) < -_INSIDE or max(ends) > 1 + _INSIDE
+    corners = element_corners(element)
+    return bool((corners < -_INSIDE).any() or (corners > 1 + _INSIDE).any())
+
+
+def element_corners(element: Element) -> np.ndarray:
+    """Return the eight corners of an element, float64 [8, 3], in block coordinates."""
+    ends = np.array([element.low, element.high], np.float64)
+    corners = np.stack(np.meshgrid(*ends.T, indexing="ij"), axis=-1).reshape(-1, 3)
+    if element.turn is None:
+        return corners
+    return corners @ element.turn[:3, :3].T + element.turn[:3, 3]
+
+
+def is_pane(state: str) -> bool:
+    """Whether a state is glass, whose surface counts where its texture is clear."""
+    return "glass" in state.partition("[")[0].partition(":")[2]
+
+
+def models_of(palette: Sequence[str], looks: LookSource) -> list[BlockModel]:
+    """Return the model of each state; nothing for a state that no source knows."""
+    return [looks.model(state) or BlockModel() for state in palette]

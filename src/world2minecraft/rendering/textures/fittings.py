@@ -1,0 +1,149 @@
+"""Metal and light: brushed metal, copper, screens, lamps, grates, rails."""
+
+import numpy as np
+
+from world2minecraft.rendering.textures.canvas import (
+    SIDE,
+    Canvas,
+    fractal,
+    noise,
+    pick,
+    relief,
+    smooth,
+)
+from world2minecraft.rendering.textures.layout import bevel, bricks, rim, stones
+from world2minecraft.rendering.textures.recipe import Recipe
+from world2minecraft.rendering.textures.stencil import draw, paints_of
+from world2minecraft.rendering.textures.surface import Surface
+
+CHAIN = """
+......ml........ ......ml........ .....m..l....... .....m..l.......
+.....m..l....... .....d..m....... ......dm........ ......ml........
+......ml........ .....m..l....... .....m..l....... .....m..l.......
+.....d..m....... ......dm........ ......dm........ ......ml........
+"""
+RAIL = """
+..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
+..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
+..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
+..lm........lm.. .Mlm.MMMMMM.lmM. .DdmDDDDDDDDdmD. ..lm........lm..
+"""
+
+
+def metal(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Brushed metal: fine strokes along u and a soft sheen; a frame and rivets where asked for."""
+    strokes = noise(canvas, 2, 16, 1)
+    if canvas.fineness:
+        strokes = 0.6 * strokes + 0.6 * fractal(canvas, 2, 32, 2)
+    sheen = np.cos((canvas.y + canvas.x * 0.0) * (2 * np.pi / SIDE) + 0.6)
+    tone = 0.045 * strokes + 0.05 * sheen
+    height: np.ndarray = 0.02 * strokes
+    if recipe.word("frame") == "1":
+        edge = rim(canvas)
+        lit = canvas.x + canvas.y < SIDE
+        tone = tone + (edge < 1) * np.where(lit, 0.16, -0.2)
+        x, y = np.abs(canvas.x - 8) - 5.5, np.abs(canvas.y - 8) - 5.5
+        rivet = 1 - smooth(np.sqrt(x * x + y * y), 0.35, 0.75)
+        tone = tone - 0.25 * rivet
+        height = height + 0.4 * bevel(canvas, edge, 0.8) + 0.4 * rivet
+    return Surface(tone, height, roughness=0.36 + 0.08 * strokes, metal=1.0)
+
+
+def copper(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Copper sheets with seams; verdigris, the accent, where asked for."""
+    pieces = bricks(canvas, 2, 2, 0.0)
+    body = bevel(canvas, pieces.edge, 0.6) * (1 - pieces.joint)
+    blotch = noise(canvas, 8, 8, 1) + 0.6 * fractal(canvas, 16, 16, 2)
+    wanted = recipe.number("verdigris")
+    green = smooth(blotch + 2.6 * wanted - 1.5, 0.0, 0.5) * (wanted > 0)
+    tone = 0.06 * blotch - 0.2 * pieces.joint + 0.1 * relief(canvas, body) * (1 - pieces.joint)
+    roughness = 0.42 + 0.4 * green
+    return Surface(
+        tone, 0.3 * body, ((recipe.ink(1), 0.85 * green),), roughness=roughness, metal=1 - green
+    )
+
+
+def screen(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A dark screen in a thin frame, the accent, with a sheen; it shows a picture when on."""
+    edge = rim(canvas)
+    frame = (edge < 1).astype(np.float64) if recipe.word("frame") == "1" else 0.0 * edge
+    slant = canvas.x + canvas.y
+    sheen = ((slant > 9) & (slant < 12)) * 0.5 + ((slant > 13) & (slant < 14.5)) * 0.35
+    tone = 0.75 * sheen * (1 - frame) + 0.1 * (1 - canvas.y / 8) * (1 - frame)
+    glow = np.zeros(edge.shape)
+    if recipe.word("on") == "1":
+        hills = 9.5 + 2 * np.sin(canvas.x * 0.7) + np.sin(canvas.x * 1.7 + 1)
+        tone = np.where(canvas.y > hills, -0.3, 0.25 + 0.03 * (8 - canvas.y)) * (1 - frame)
+        glow = 0.8 * (1 - frame)
+    roughness = 0.08 + 0.4 * frame
+    return Surface(tone, 0.3 * frame, ((recipe.ink(1), frame),), roughness=roughness, emission=glow)
+
+
+def lamp(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A lamp: bright panes in a lattice, the accent; dark panes when it is off."""
+    count = int(recipe.number("panes"))
+    step = SIDE / count
+    x, y = canvas.x % step, canvas.y % step
+    edge = np.minimum.reduce([x, y, step - x, step - y])
+    bar = (edge < max(0.5, canvas.joint)).astype(np.float64)
+    middle = np.sqrt((x - step / 2) ** 2 + (y - step / 2) ** 2) / step
+    on = recipe.word("lit") == "1"
+    pane = (0.3 if on else 0.12) * (0.55 - 1.5 * middle)
+    tone = (1 - bar) * (pane + 0.05 * noise(canvas, 8, 8, 1)) + bar * 0.1 * relief(canvas, bar)
+    emission = (1 - bar) * (1.0 - 0.5 * middle) if on else 0.0
+    roughness = 0.3 + 0.3 * bar
+    return Surface(tone, 0.5 * bar, ((recipe.ink(1), bar),), roughness=roughness, emission=emission)
+
+
+def glow(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Glowing stone: bright crystals, the accent at their heart, between darker veins."""
+    pieces = stones(canvas, 5, 1, 0.95)
+    core = smooth(pieces.edge, 0.1, 1.4)
+    shade = pick(canvas, pieces.identity, 3)
+    tone = 0.16 * shade + 0.5 * core - 0.35 + 0.07 * fractal(canvas, 16, 16, 4)
+    heart = smooth(core + 0.7 * shade, 0.75, 1.4)
+    paints = ((recipe.ink(1), 0.85 * heart),)
+    return Surface(tone, 0.5 * core, paints, roughness=0.4, emission=0.45 + 0.55 * heart)
+
+
+def bars(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Upright bars with holes between, tied at the top and the bottom."""
+    step = SIDE / recipe.number("count")
+    place = canvas.x % step - step / 2
+    upright = np.abs(place) < 1
+    tie = (np.abs(canvas.y - 1.5) < 0.5 + 0.5 * (canvas.size_px == 16)) | (
+        np.abs(canvas.y - 14.5) < 0.5 + 0.5 * (canvas.size_px == 16)
+    )
+    solid = upright | tie
+    round_bar = np.where(upright, np.clip(1 - place * place, 0, 1), 0.5)
+    tone = np.where(upright, -0.2 * place, -0.12) + 0.05 * noise(canvas, 16, 16, 1)
+    return Surface(tone, round_bar, alpha=solid, roughness=0.5, metal=1.0)
+
+
+def lattice(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A frame with crossing slats and holes between: a trapdoor, a grate, a fence of wire."""
+    step = SIDE / recipe.number("holes")
+    edge = rim(canvas)
+    frame = edge < 2
+    x, y = canvas.x % step, canvas.y % step
+    slat = (np.minimum(x, step - x) < 1) | (np.minimum(y, step - y) < 1)
+    solid = frame | slat
+    height = np.where(frame, 1.0, 0.5) * solid
+    tone = np.where(frame, 0.04, -0.1) + 0.06 * noise(canvas, 4, 16, 1)
+    tone = tone + 0.12 * relief(canvas, height)
+    metal = 1.0 if recipe.word("of") == "metal" else 0.0
+    return Surface(tone, height, alpha=solid, roughness=0.6 - 0.2 * metal, metal=metal)
+
+
+def chain(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Links of a chain along v with holes between."""
+    _, tone, solid = draw(canvas, CHAIN)
+    return Surface(tone, solid, alpha=solid, roughness=0.45, metal=1.0)
+
+
+def rail(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Two rails along v on sleepers, the accent, with holes between."""
+    drawn, tone, solid = draw(canvas, RAIL)
+    paints = paints_of(drawn, recipe)
+    tone = tone + 0.06 * noise(canvas, 16, 16, 1)
+    return Surface(tone, solid, paints, solid, roughness=0.55, metal=1.0 - paints[0][1])

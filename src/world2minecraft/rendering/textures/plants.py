@@ -1,0 +1,170 @@
+"""Plants: leaves, blades, flowers, saplings, mushrooms, vines; most have holes."""
+
+import numpy as np
+
+from world2minecraft.rendering.textures.canvas import (
+    SIDE,
+    Canvas,
+    fractal,
+    hashed,
+    noise,
+    pick,
+    smooth,
+)
+from world2minecraft.rendering.textures.layout import stones
+from world2minecraft.rendering.textures.recipe import Recipe
+from world2minecraft.rendering.textures.sprites import FLOWERS, MUSHROOM, SAPLINGS
+from world2minecraft.rendering.textures.stamps import scatter
+from world2minecraft.rendering.textures.stencil import draw, paints_of
+from world2minecraft.rendering.textures.surface import Surface
+
+BLADES = {
+    "grass": (9, 13.0, 3.0),
+    "crop": (6, 14.5, 1.0),
+    "short": (8, 7.0, 2.0),
+    "reed": (3, 16.0, 0.3),
+}
+
+
+def leaves(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A mass of leaves of many greens with holes; blossoms in the accent where asked for."""
+    stamps = scatter(canvas, 76, 1.9, 1.05, 1)
+    identity = np.maximum(stamps.identity, 0)
+    here = stamps.identity >= 0
+    level = stamps.identity / 76.0  # Later leaves lie over earlier ones.
+    shade = pick(canvas, identity, 3)
+    tone = 0.12 * shade + 0.34 * (level - 0.6) - 0.07 * stamps.across + 0.06 * stamps.along
+    vein = (np.abs(stamps.across) < 0.16) * canvas.fineness
+    tone = np.where(here, tone - 0.1 * vein, -0.42) + 0.05 * noise(canvas, 16, 16, 4)
+    height = np.where(here, 0.4 + 0.7 * level - 0.25 * stamps.across**2, 0.0)
+    bloom = here & (pick(canvas, identity, 6) > 0.4) & (recipe.word("blossom") == "1")
+    paints = ((recipe.ink(1), bloom.astype(np.float64)),)
+    solid = here | (recipe.word("holes") == "0")
+    return Surface(tone, height, paints, solid, roughness=0.75)
+
+
+def blades(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Blades that stand up, with holes between: grass, a crop, reeds; its ears in the accent."""
+    count, tall, sway = BLADES[recipe.word("kind")]
+    solid = np.zeros(canvas.x.shape, bool)
+    tone, tip = np.zeros(canvas.x.shape), np.zeros(canvas.x.shape)
+    random = hashed(canvas.seed, 1, np.arange(count * 4)).reshape(count, 4)
+    rise = SIDE - canvas.y
+    for index, (start, lean, length, shade) in enumerate(random):
+        foot = (index + 0.5 + 0.5 * start) * SIDE / count
+        foot = foot + (8.0 - foot) * 0.15
+        reach = tall * (0.78 + 0.22 * length)
+        part = np.clip(rise / reach, 0, 1)
+        middle = foot + lean * sway * part * part
+        width = 1.1 if sway < 0.5 else 0.72 - 0.35 * part * canvas.fineness
+        here = (np.abs(canvas.x - middle) < width) & (rise < reach)
+        tone = np.where(here, 0.22 * shade + 0.3 * (part - 0.5) - 0.08 * (canvas.x - middle), tone)
+        tip = np.where(here, part, tip)
+        solid |= here
+    ears = smooth(tip, 0.5, 0.7) * (recipe.number("ears") > 0)
+    if recipe.word("kind") == "reed":
+        tone = tone - 0.25 * (np.floor(canvas.y) % 5 == 2)
+    return Surface(tone, 0.3 * solid, ((recipe.ink(1), ears),), solid, roughness=0.85)
+
+
+def flower(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A flower: a head of the main colour on a stem, the accent, around a heart, the second."""
+    return _sprite(canvas, recipe, FLOWERS[recipe.word("shape")])
+
+
+def sapling(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A little tree or bush: leaves of the main colour on a trunk, the accent."""
+    return _sprite(canvas, recipe, SAPLINGS[recipe.word("shape")])
+
+
+def mushroom(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A mushroom: a cap of the main colour with spots on a stem, the accent."""
+    return _sprite(canvas, recipe, MUSHROOM)
+
+
+def _sprite(canvas: Canvas, recipe: Recipe, art: str) -> Surface:
+    drawn, tone, solid = draw(canvas, art)
+    tone = tone + 0.06 * fractal(canvas, 16, 16, 1)
+    paints = paints_of(drawn, recipe)
+    return Surface(tone, 0.4 * solid, paints, solid, roughness=0.8, bold=True)
+
+
+def vine(canvas: Canvas, recipe: Recipe) -> Surface:
+    """Hanging shoots with leaves, and holes between."""
+    solid = np.zeros(canvas.x.shape, bool)
+    tone = np.zeros(canvas.x.shape)
+    for index in range(4):
+        middle = 2.0 + 4 * index + 1.2 * noise(canvas, 1, 4, 10 + index)
+        stem = np.abs(canvas.x - middle) < 0.5
+        solid, tone = solid | stem, np.where(stem, -0.2, tone)
+    pieces = stones(canvas, 5, 1, 0.9)
+    kept = pick(canvas, pieces.identity, 3) > -0.25
+    leaf = (np.abs(pieces.x) * 1.1 + np.abs(pieces.y) * 0.8 < 1.5) & kept
+    shade = 0.2 * pick(canvas, pieces.identity, 4) - 0.06 * (pieces.x + pieces.y)
+    tone = np.where(leaf, shade, tone) + 0.05 * noise(canvas, 16, 16, 5)
+    return Surface(tone, 0.5 * leaf, alpha=solid | leaf, roughness=0.85)
+
+
+def gourd(canvas: Canvas, recipe: Recipe) -> Surface:
+    """The side of a pumpkin, melon or cactus: ribs along v; thorns in the accent for a cactus."""
+    ribs = recipe.number("ribs")
+    wave = np.cos(canvas.x * (2 * np.pi * ribs / SIDE) + np.pi)
+    tone = 0.16 * wave + 0.08 * noise(canvas, 16, 4, 1) + 0.04 * fractal(canvas, 16, 16, 2)
+    thorn = np.zeros(wave.shape)
+    if recipe.word("thorns") == "1":
+        column, row = np.floor(canvas.x / 4), np.floor((canvas.y + 2 * np.floor(canvas.x / 4)) / 4)
+        x, y = canvas.x - column * 4 - 2.5, (canvas.y + 2 * column) % 4 - 2.5
+        thorn = ((np.maximum(np.abs(x), np.abs(y)) < 0.51) & (row >= 0)).astype(np.float64)
+    return Surface(tone, 0.8 * wave + 0.3 * thorn, ((recipe.ink(1), thorn),), roughness=0.6)
+
+
+def mushroom_cap(canvas: Canvas, recipe: Recipe) -> Surface:
+    """The skin of a big mushroom: round spots of the accent."""
+    pieces = stones(canvas, 3, 1, 0.8)
+    away = np.sqrt(pieces.x * pieces.x + pieces.y * pieces.y)
+    size = 1.5 + 0.5 * pick(canvas, pieces.identity, 3)
+    spot = 1 - smooth(away, size - 0.2, size + 0.2)
+    tone = 0.06 * fractal(canvas, 16, 16, 4) + 0.03 * noise(canvas, 4, 4, 5)
+    return Surface(tone, 0.3 * spot, ((recipe.ink(1), spot * 0.9),), roughness=0.75)
+
+
+def crystal(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A cluster of pointed crystals that stand up, with holes around."""
+    solid = np.zeros(canvas.x.shape, bool)
+    tone = np.zeros(canvas.x.shape)
+    rise = SIDE - canvas.y
+    spikes = (
+        (3.5, -0.25, 7.0),
+        (12.5, 0.3, 8.0),
+        (5.5, -0.12, 11.0),
+        (10.0, 0.12, 13.0),
+        (8.0, 0.0, 10.0),
+    )
+    for index, (foot, lean, tall) in enumerate(spikes):
+        away = canvas.x - foot - lean * rise
+        width = np.minimum(1.7, (tall - rise) * 0.6)
+        here = (np.abs(away) < width) & (rise < tall)
+        shade = np.where(away < 0, 0.25, -0.15) + 0.05 * (index - 2)
+        tone, solid = np.where(here, shade, tone), solid | here
+    return Surface(tone, 0.4 * solid, alpha=solid, roughness=0.15, emission=0.15 * solid)
+
+
+def pad(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A round leaf that floats, seen from above, with a notch and veins."""
+    x, y = canvas.x - SIDE / 2, canvas.y - SIDE / 2
+    away = np.sqrt(x * x + y * y)
+    solid = (away < 6.6 + 0.3 * noise(canvas, 8, 8, 1)) & ~((np.abs(x) < -0.45 * y) & (y < 0))
+    veins = np.minimum.reduce([np.abs(x), np.abs(y), np.abs(x - y) * 0.7, np.abs(x + y) * 0.7])
+    tone = 0.1 * (veins < 0.5) - 0.14 * (away > 5.6) + 0.06 * fractal(canvas, 16, 16, 2)
+    return Surface(tone, 0.2 * solid, alpha=solid, roughness=0.45)
+
+
+def web(canvas: Canvas, recipe: Recipe) -> Surface:
+    """A spider's web: threads from the middle to the sides and rings between, else holes."""
+    x, y = canvas.x - 7.5, canvas.y - 7.5  # The middle of a texel at 16 px.
+    thick = 0.5 if canvas.size_px == 16 else 0.3
+    spokes = np.minimum.reduce([np.abs(x), np.abs(y), np.abs(x - y) * 0.7, np.abs(x + y) * 0.7])
+    ring = np.maximum.reduce([np.abs(x), np.abs(y), 0.72 * (np.abs(x) + np.abs(y))])
+    away = np.abs((ring + 0.2 * noise(canvas, 8, 8, 1) * canvas.fineness) % 3.0 - 1.5)
+    solid = (spokes < thick) | ((away > 1.5 - thick) & (ring > 1.5) & (ring < 7.6))
+    return Surface(0.12 * noise(canvas, 8, 8, 2), 0.1 * solid, alpha=solid, roughness=0.6)

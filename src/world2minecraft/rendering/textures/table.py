@@ -1,0 +1,36 @@
+"""The table of all generators as Markdown, for the docs."""
+
+from world2minecraft.rendering.textures.catalogue import GENERATORS
+from world2minecraft.rendering.textures.generator import Accent, Generator
+
+HEAD = ("generator", "shows", "accents", "options", "holes", "see-through", "joins")
+
+
+def generator_table() -> str:
+    """Return a line for each generator: what it shows, its accents, options and laws."""
+    rows = [HEAD, ("---",) * len(HEAD)]
+    rows += [_row(name, generator) for name, generator in GENERATORS.items()]
+    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
+
+
+def _row(name: str, generator: Generator) -> tuple[str, ...]:
+    return (
+        f"`{name}`",
+        generator.about.rstrip("."),
+        ", ".join(_accent(accent) for accent in generator.accents),
+        "; ".join(f"`{key}`: {option}" for key, option in generator.options.items()),
+        _when(generator.holes),
+        _when(generator.translucent),
+        "yes" if generator.tiles else "no",
+    )
+
+
+def _accent(accent: Accent) -> str:
+    if isinstance(accent.default, float):
+        return f"{accent.name} ({accent.default:+g})"
+    share = f" ({accent.share:g})" if accent.share < 1 else ""
+    return f"{accent.name} `{accent.default}`{share}"
+
+
+def _when(values: tuple[str, ...]) -> str:
+    return "always" if values == ("*",) else ", ".join(f"`{value}`" for value in values)

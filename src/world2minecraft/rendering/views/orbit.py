@@ -1,0 +1,88 @@
+"""A circle of cameras around a build that it fits into, for stills and turning pictures."""
+
+import numpy as np
+
+from world2minecraft.core.coordinates import apply, invert_rigid, look_at
+from world2minecraft.core.types import BlockVolume, Camera
+from world2minecraft.rendering.views.poses import Shot
+
+ELEVATION_DEG = 28.0  # One sees the roof and the walls of a house.
+TURN_DEG = 34.0  # Where the circle begins: off the diagonal, so that two sides differ.
+MARGIN = 1.08
+CENTRINGS = 3  # What is near looks larger, so that the middle of a build is not that of its view.
+FARTHEST_M = 20_000.0
+
+
+def orbit_shots(
+    volume: BlockVolume,
+    camera: Camera,
+    frames: int,
+    *,
+    elevation_deg: float = ELEVATION_DEG,
+    start_deg: float = TURN_DEG,
+    rate_hz: float = 24.0,
+) -> list[Shot]:
+    """Return shots from a circle around the middle of a volume's blocks, which all fit in each.
+
+    Args:
+        volume: the blocks.
+        camera: through which.
+        frames: how many, spread evenly over the circle; the first looks to the north-west.
+        elevation_deg: how high over the level one looks down from.
+        start_deg: where the circle begins, counter-clockwise from the diagonal's axis.
+        rate_hz: frames a second, for their times.
+    """
+    points_m = corner_points_m(volume)
+    middle_m = (points_m.min(axis=0) + points_m.max(axis=0)) / 2
+    ways = [_way(start_deg + 360.0 * n / frames, elevation_deg) for n in range(frames)]
+    for _ in range(CENTRINGS):
+        distance_m = max(_fitting_distance_m(points_m - middle_m, way, camera) for way in ways)
+        low_m = np.mean([_lowness_m(points_m - middle_m, way, distance_m) for way in ways])
+        middle_m[2] -= low_m / max(np.cos(np.radians(elevation_deg)), 0.2)
+    distance_m = max(_fitting_distance_m(points_m - middle_m, way, camera) for way in ways)
+    return [
+        Shot(camera, look_at(middle_m + way * distance_m, middle_m), n / rate_hz)
+        for n, way in enumerate(ways)
+    ]
+
+
+def corner_points_m(volume: BlockVolume) -> np.ndarray:
+    """Return the corners, float64 [8, 3] in room metres, of the box around all blocks."""
+    filled = volume.states != 0
+    if not filled.any():
+        filled = np.ones_like(filled)
+    spans = []
+    for axis in range(3):
+        used = np.flatnonzero(filled.any(axis=tuple({0, 1, 2} - {axis})))
+        spans.append((used[0] + volume.corner[axis], used[-1] + 1 + volume.corner[axis]))
+    corners = np.stack(np.meshgrid(*spans, indexing="ij"), axis=-1).reshape(-1, 3)
+    return apply(volume.block_to_room, corners.astype(np.float64))
+
+
+def _way(turn_deg: float, elevation_deg: float) -> np.ndarray:
+    """Return the unit vector from the middle to the camera; a growing turn goes with the clock."""
+    turn, up = np.radians(-turn_deg), np.radians(elevation_deg)
+    return np.array([np.cos(turn) * np.cos(up), np.sin(turn) * np.cos(up), np.sin(up)])
+
+
+def _lowness_m(points_m: np.ndarray, way: np.ndarray, distance_m: float) -> float:
+    """Return how far under the picture's middle, at the build's distance, its view's middle is."""
+    seen = apply(invert_rigid(look_at(way * distance_m, np.zeros(3))), points_m)
+    down = seen[:, 1] / np.maximum(seen[:, 2], 1e-6)
+    return float((down.min() + down.max()) / 2 * distance_m)
+
+
+def _fitting_distance_m(points_m: np.ndarray, way: np.ndarray, camera: Camera) -> float:
+    """Return the least distance from which all points lie within the picture."""
+    axes = look_at(way, np.zeros(3))
+    seen = apply(invert_rigid(axes), points_m)  # From a metre away, looking to the middle.
+    seen[:, 2] -= 1.0  # How far each point lies behind the middle.
+    half = np.array(
+        [
+            min(camera.cx_px, camera.width_px - camera.cx_px) / camera.fx_px,
+            min(camera.cy_px, camera.height_px - camera.cy_px) / camera.fy_px,
+        ]
+    )
+    needed = np.abs(seen[:, :2]) * MARGIN / np.maximum(half, 1e-6) - seen[:, 2:]
+    nearest = -seen[:, 2].min() * 1.001 + 1e-3  # All points lie before the camera.
+    return float(min(max(needed.max(), nearest), FARTHEST_M))

@@ -1,0 +1,148 @@
+"""Sky and block light, against a slow reading of the game's rules."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.rendering.light_worlds import PALETTE, SLOW_SHAPES, random_world
+
+from world2minecraft.minecraft.rules.flood import DIMS, SHUT, SOLID
+from world2minecraft.rendering.light import light_field
+from world2minecraft.rendering.light.flood import units, whole_reach
+from world2minecraft.rendering.light.passage import light_rows, word_of
+
+TOP = 15
+
+
+def covered(state: str, side: int) -> frozenset:
+    """The quarters of a face that hold light back; a solid state holds it back on entering."""
+    return SLOW_SHAPES.get(state, {}).get(side, frozenset())
+
+
+ALL = frozenset((p, q) for p in (0, 1) for q in (0, 1))
+STEPS = [(-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1)]
+GIVES = ("minecraft:glowstone", "minecraft:lantern")
+SOLIDS = ("minecraft:stone", "minecraft:glowstone")
+DIM = ("minecraft:water", "minecraft:oak_leaves[persistent=true]")
+
+
+def slow_light(states: np.ndarray, kind: str) -> np.ndarray:
+    """Raise any cell by any neighbour until nothing changes."""
+    shape = states.shape
+    light = np.zeros(shape, int)
+    names = np.array(PALETTE, object)[states]
+
+    def at(cell):
+        inside = all(0 <= c < n for c, n in zip(cell, shape, strict=True))
+        if inside:
+            return names[cell], light[cell]
+        return "outside", TOP if kind == "sky" and cell[1] >= 0 else 0
+
+    changed = True
+    while changed:
+        changed = False
+        for cell in np.ndindex(shape):
+            best = 15 if kind == "block" and names[cell] in GIVES else 0
+            if names[cell] not in SOLIDS:
+                for side, step in enumerate(STEPS):
+                    other, level = at(tuple(np.add(cell, step).tolist()))
+                    if covered(names[cell], side) | covered(other, side ^ 1) == ALL:
+                        continue
+                    straight = kind == "sky" and side == 3 and level == TOP
+                    best = max(best, level if straight and names[cell] not in DIM else level - 1)
+            if best > light[cell]:
+                light[cell], changed = best, True
+    return light
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_light_spreads_by_the_game_s_rules(seed):
+    states = random_world(seed)
+    field = light_field(states, PALETTE)
+    assert np.array_equal(field.sky_light, slow_light(states, "sky"))
+    assert np.array_equal(field.block_light, slow_light(states, "block"))
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 10_000), st.integers(1, 8))
+def test_a_reach_takes_light_further_and_keeps_what_it_was_near_its_source(seed, reach):
+    states = random_world(seed)
+    near, far = light_field(states, PALETTE), light_field(states, PALETTE, reach)
+    assert (far.sky_light / reach >= near.sky_light).all()
+    assert (far.block_light / reach >= near.block_light).all()
+
+
+def test_a_reach_spreads_a_lamp_so_many_blocks_a_level():
+    states = np.zeros((40, 1, 1), np.uint16)
+    states[0] = PALETTE.index("minecraft:lantern")
+    for reach in (1.0, 1.5, 2.0, 4.0):
+        field = light_field(states, PALETTE, reach)
+        assert field.reach == pytest.approx(reach, abs=0.034)
+        light = field.block_light[:, 0, 0] / field.reach
+        assert light[0] == pytest.approx(15)
+        assert light[10] == pytest.approx(15 - 10 / field.reach)
+
+
+def test_open_air_is_lit_in_full_and_a_closed_box_is_dark():
+    states = np.zeros((5, 5, 5), np.uint16)
+    assert (light_field(states, PALETTE).sky_light == 15).all()
+    states[:] = PALETTE.index("minecraft:stone")
+    states[1:4, 1:4, 1:4] = 0
+    field = light_field(states, PALETTE)
+    assert field.sky_light.max() == 0
+    assert field.block_light.max() == 0
+
+
+def test_water_dims_the_sky_by_one_a_block_and_glass_not_at_all():
+    states = np.full((3, 6, 3), PALETTE.index("minecraft:stone"), np.uint16)
+    states[1, :, 1] = PALETTE.index("minecraft:water")
+    assert light_field(states, PALETTE).sky_light[1, :, 1].tolist() == [9, 10, 11, 12, 13, 14]
+    states[1, :, 1] = PALETTE.index("minecraft:glass")
+    assert light_field(states, PALETTE).sky_light[1, :, 1].tolist() == [15] * 6
+
+
+def test_a_roof_of_slabs_or_stairs_keeps_a_room_dark():
+    for roof in (
+        "minecraft:oak_slab[type=bottom]",
+        "minecraft:oak_stairs[facing=east,half=bottom]",
+    ):
+        states = np.full((4, 4, 4), PALETTE.index("minecraft:stone"), np.uint16)
+        states[1:3, 1:3, 1:3] = 0
+        states[:, 3] = PALETTE.index(roof)
+        assert light_field(states, PALETTE).sky_light[1:3, 1:3, 1:3].max() == 0
+
+
+def test_what_states_are_to_light():
+    assert word_of("minecraft:air") == 0
+    assert word_of("minecraft:stone") == SHUT | SOLID
+    assert word_of("minecraft:tinted_glass") == SHUT | SOLID
+    assert word_of("minecraft:glass") == 0
+    assert word_of("minecraft:ice") == DIMS
+    assert word_of("minecraft:oak_fence[waterlogged=true]") == DIMS
+    slab = word_of("minecraft:oak_slab[type=bottom]")
+    assert [slab >> 4 * side & 15 for side in range(6)] == [3, 3, 15, 0, 5, 5]
+    words, gives = light_rows(("minecraft:air", "minecraft:lantern"))
+    assert words[0] == SHUT
+    assert gives.tolist() == [0, 0, 15]
+
+
+def test_a_reach_out_of_range_is_refused():
+    with pytest.raises(ValueError, match=r"^reach may be 1 to 16 blocks a light level, not 0.5$"):
+        whole_reach(0.5)
+    assert units(15, whole_reach(16)) == 240
+
+
+@pytest.mark.parametrize("shape", [(0, 3, 3), (1, 1, 1), (3, 1, 2)])
+def test_small_volumes_have_light(shape):
+    field = light_field(np.zeros(shape, np.uint16), PALETTE)
+    assert field.sky_light.shape == shape
+    assert (field.sky_light == 15).all()
+
+
+def test_hidden_lamps_may_be_left_out():
+    palette = ("minecraft:air", "minecraft:light[level=12]", "minecraft:lantern")
+    states = np.array([[[1, 0, 0, 0, 2]]], np.uint16)
+    shining = light_field(states, palette).block_light[0, 0]
+    natural = light_field(states, palette, hidden_lamps=False).block_light[0, 0]
+    assert shining.tolist() == [12, 12, 13, 14, 15]
+    assert natural.tolist() == [11, 12, 13, 14, 15]

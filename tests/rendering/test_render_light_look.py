@@ -1,0 +1,219 @@
+"""What a look comes to: the light of a place, the tone, the hours."""
+
+import numpy as np
+import pytest
+
+from world2minecraft.core.jit import njit
+from world2minecraft.rendering.light import (
+    LookLight,
+    background_light,
+    direction_shade,
+    finish,
+    glow_light,
+    lit_colour,
+)
+from world2minecraft.rendering.light.hours import sky_at, sun_direction
+from world2minecraft.rendering.light.tone_mapping import (
+    develop,
+    filmic_tone,
+    linear_to_srgb,
+    screen_tone,
+    srgb_to_linear,
+    tone_map,
+)
+
+
+@njit
+def light_of(sky, block, occluders, shade, sun, params):
+    return lit_colour(sky, block, occluders, shade, sun, params)
+
+
+@njit
+def shade_of(nx, ny, nz, cosine, params):
+    return direction_shade(nx, ny, nz, cosine, params)
+
+
+@njit
+def on_screen(r, g, b, tone):
+    return finish(r, g, b, tone)
+
+
+@njit
+def glow_of(emission, params):
+    return glow_light(emission, params)
+
+
+@njit
+def sky_of(dx, dy, dz, background):
+    return background_light(dx, dy, dz, background)
+
+
+NORMALS = np.array([(-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1)], float)
+
+
+@pytest.mark.parametrize("normal", NORMALS)
+def test_a_neutral_picture_shows_a_block_s_colour_times_a_calm_shade(normal):
+    look = LookLight(preset="neutral")
+    params, tone = look.parameters(), look.tone
+    for value in (8, 60, 128, 200):
+        for sky in (0, 15):
+            shade = shade_of(*normal, 1.0, params)
+            light = light_of(sky, 15 - sky, 0, shade, 0.0, params)
+            got = on_screen(*(tone.decode[value] * channel for channel in light), tone)
+            assert got == pytest.approx((min(255, value * 1.1 * shade),) * 3, abs=1.6)
+
+
+def test_the_game_s_light_acts_on_screen_values():
+    params, tone = LookLight(preset="game", hour=12, exposure=1).parameters(), screen_tone()
+    light = light_of(15, 0, 0, 0.6, 0.0, params)
+    got = on_screen(*(tone.decode[200] * channel for channel in light), tone)
+    ambient = np.array([params.ambient_r, params.ambient_g, params.ambient_b])
+    full = np.array([params.sky_r, params.sky_g, params.sky_b]) + ambient
+    assert got == pytest.approx(200 * 0.6 * full, abs=1.6)
+
+
+@pytest.mark.parametrize("brightness", [0.0, 0.5, 1.0])
+def test_the_game_s_brightness_lifts_the_dark_as_in_the_game(brightness):
+    params = LookLight(preset="game", brightness=brightness, hour=12).parameters()
+    for level in range(1, 16):
+        moody = (level / 15) / (4 - 3 * level / 15)
+        expected = moody + brightness * (1 - (1 - moody) ** 4 - moody)
+        green = light_of(level, 0, 0, 1.0, 0.0, params)[1] ** (1 / 2.2) - params.ambient_g
+        assert green / params.sky_g == pytest.approx(expected, abs=0.09)
+
+
+def test_the_game_s_lamps_add_nothing_to_full_daylight():
+    params = LookLight(preset="game", hour=12).parameters()
+    assert max(light_of(15, 15, 0, 1.0, 0.0, params)) == pytest.approx(1, abs=0.01)
+
+
+def test_too_much_light_is_white_and_not_black():
+    params = LookLight(preset="game", exposure=20).parameters()
+    assert min(light_of(15, 15, 0, 1.0, 0.0, params)) > 1
+
+
+def test_a_place_is_brighter_with_more_light_and_darker_in_a_corner():
+    for preset in ("shader", "game"):
+        params = LookLight(preset=preset).parameters()
+        levels = [light_of(level, 0, 0, 1.0, 0.0, params) for level in range(16)]
+        lamps = [light_of(0, level, 0, 1.0, 0.0, params) for level in range(16)]
+        corners = [light_of(15, 0, count, 1.0, 0.0, params)[1] for count in range(4)]
+        assert (np.diff(levels, axis=0) > 0).all()
+        assert (np.diff(lamps, axis=0) > 0).all()
+        assert (np.diff(corners) < 0).all()
+        assert min(levels[0]) > 0
+        red, _, blue = lamps[15]
+        assert red > blue
+
+
+def test_full_daylight_is_near_one_and_night_is_dark_and_blue():
+    day = light_of(15, 0, 0, 1.0, 0.0, LookLight(hour=12).parameters())
+    night = light_of(15, 0, 0, 1.0, 0.0, LookLight(hour=0).parameters())
+    assert day == pytest.approx((1, 1, 1), abs=0.12)
+    assert max(night) < 0.3
+    assert night[2] > night[0]
+
+
+def test_the_sun_adds_what_its_shadow_lacks():
+    lit = LookLight(hour=12).parameters()
+    shadowed = LookLight(hour=12, sun_shadow=True).parameters()
+    assert lit.sun_r == 0
+    in_sun = light_of(15, 0, 0, 1.0, shadowed.sun_y, shadowed)
+    in_shadow = light_of(15, 0, 0, 1.0, 0.0, shadowed)
+    assert in_shadow[1] < light_of(15, 0, 0, 1.0, 0.0, lit)[1] < in_sun[1]
+
+
+def test_a_lamp_s_face_is_brighter_than_what_it_lights():
+    params = LookLight(hour=0).parameters()
+    assert glow_of(15, params) > max(light_of(0, 14, 0, 1.0, 0.0, params))
+    assert glow_of(0, params) == 0
+
+
+def test_exposure_scales_light():
+    once, twice = LookLight().parameters(1.0), LookLight().parameters(2.0)
+    assert np.allclose(
+        light_of(9, 4, 1, 0.7, 0, twice), 2 * np.array(light_of(9, 4, 1, 0.7, 0, once))
+    )
+    assert LookLight(exposure=2.0).parameters(5.0) == twice
+
+
+def test_shades_are_those_of_the_game_for_upright_faces_and_mix_between():
+    params = LookLight(preset="game").parameters()
+    got = [shade_of(*normal, 1.0, params) for normal in NORMALS]
+    assert got == pytest.approx([0.6, 0.6, 0.5, 1.0, 0.8, 0.8])
+    assert shade_of(np.sqrt(0.5), 0.0, np.sqrt(0.5), 1.0, params) == pytest.approx(0.7)
+
+
+def test_screen_values_come_through_the_tables_unchanged():
+    tone = screen_tone()
+    for value in range(10, 256):
+        light = float(tone.decode[value])
+        assert on_screen(light, light, light, tone)[0] == pytest.approx(value, abs=1)
+
+
+def test_film_keeps_texels_near_what_they_are_in_full_light():
+    tone = filmic_tone()
+    shown = [on_screen(*[float(tone.decode[value])] * 3, tone)[0] for value in range(256)]
+    assert (np.diff(shown) >= 0).all()
+    assert np.abs(np.array(shown) - np.arange(256)).max() <= 30
+
+
+def test_srgb_and_back():
+    values = np.linspace(0, 1, 256)
+    assert np.allclose(linear_to_srgb(srgb_to_linear(values)), values)
+
+
+def test_the_tone_map_keeps_order_and_never_reaches_white():
+    greys = np.repeat(np.linspace(0, 30, 500)[:, None], 3, axis=1)
+    mapped = tone_map(greys)
+    assert (np.diff(mapped[:, 0]) > 0).all()
+    assert mapped.max() < 1
+    orange = np.array([3.0, 1.5, 0.5])
+    red, green, blue = tone_map(orange)
+    assert red > green > blue
+
+
+@pytest.mark.parametrize("tone", [filmic_tone(), screen_tone()])
+def test_the_kernel_s_tone_is_numpy_s(tone):
+    rng = np.random.default_rng(0)
+    colours = rng.random((200, 3)) * 3
+    expected = develop(colours, tone)
+    for colour, shown in zip(colours, expected, strict=True):
+        assert on_screen(*colour, tone) == pytest.approx(tuple(shown), abs=1)
+
+
+def test_the_day_goes_round():
+    assert sun_direction(6.01)[0] > 0.9
+    assert sun_direction(17.99)[0] < -0.9
+    for hour in np.linspace(0, 24, 49):
+        sky = sky_at(float(hour))
+        assert np.linalg.norm(sky.sun_direction) == pytest.approx(1)
+        assert sky.sun_direction[1] > 0
+    assert np.allclose(sky_at(0).light, sky_at(24).light)
+    assert sky_at(17.6).horizon[0] > 2 * sky_at(17.6).horizon[2]
+
+
+def test_the_sky_is_lightest_at_the_horizon_and_shows_the_sun():
+    look = LookLight(hour=9)
+    background = look.background()
+    up, level, down = (sky_of(*d, background) for d in ((0, 1, 0), (-1, 0, 0), (0, -1, 0)))
+    assert sum(level) > sum(up)
+    assert sum(level) > sum(down)
+    assert min(sky_of(*look.sky.sun_direction, background)) > 1
+    grey = sky_of(0.0, 1.0, 0.0, LookLight(preset="neutral").background())
+    assert grey == pytest.approx((0.85,) * 3, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "reason"),
+    [
+        ({"preset": "nice"}, "preset may be shader, game, neutral, not 'nice'"),
+        ({"hour": 25}, "hour may be 0 to 24, not 25"),
+        ({"exposure": 0}, "exposure may be 0.01 to 100, not 0"),
+        ({"brightness": 2}, "brightness may be 0 to 1, not 2"),
+    ],
+)
+def test_a_look_out_of_range_is_refused(wrong, reason):
+    with pytest.raises(ValueError) as error:
+        LookLight(**wrong)
+    assert str(error.value) == reason
