@@ -13,9 +13,9 @@ import numpy as np
 from benchmarks.render_scenes import room
 from benchmarks.rows import Row
 from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.edit.backups import steps_of, take_back
-from world2minecraft.edit.cleanup import mended
-from world2minecraft.edit.into_world import build_into, take_blocks_out
+from world2minecraft.editing.backups import steps_of, take_back
+from world2minecraft.editing.cleanup.passes import mended
+from world2minecraft.editing.world_build import build_into, take_blocks_out
 from world2minecraft.minecraft.worlds.world_writer import write_world
 
 SIZE = (256, 64, 256)

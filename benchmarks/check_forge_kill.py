@@ -25,8 +25,8 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.types import GridCells, Operation
-from world2minecraft.edit.scene import SceneDraft
-from world2minecraft.edit.scene.objects_of import facts
+from world2minecraft.editing.scene import SceneDraft
+from world2minecraft.editing.scene.objects_of import facts
 from world2minecraft.forge import document as document_module
 from world2minecraft.forge.demo import demo_room
 from world2minecraft.forge.editor import Editor

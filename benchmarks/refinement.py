@@ -27,8 +27,8 @@ import numpy as np
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Layout, LayoutObject, OccupancyGrid, SceneObject
-from world2minecraft.edit.scene import SceneDraft, Tools, parse_command, runs_of_cells
-from world2minecraft.edit.scene.planes import find_planes
+from world2minecraft.editing.scene import SceneDraft, Tools, parse_command, runs_of_cells
+from world2minecraft.editing.scene.planes import find_planes
 from world2minecraft.evaluate.frames import truth_of_run, used_frames
 from world2minecraft.evaluate.layout import in_room
 from world2minecraft.evaluate.score import see_truth

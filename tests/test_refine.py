@@ -12,7 +12,7 @@ from benchmarks.refinement import (
 )
 
 from world2minecraft.core.types import OBSERVED, LayoutObject, OccupancyGrid
-from world2minecraft.edit.scene import SceneDraft, objects_of, parse_command
+from world2minecraft.editing.scene import SceneDraft, objects_of, parse_command
 from world2minecraft.find import find_objects
 from world2minecraft.forge.tools import tools_of
 from world2minecraft.furniture import cells_of, template

@@ -13,8 +13,8 @@ from world2minecraft.build import WORLD_NAME, build_volume, write_build
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
-from world2minecraft.edit.cleanup import mended
-from world2minecraft.edit.journal import write_edits
+from world2minecraft.editing.cleanup.passes import mended
+from world2minecraft.editing.journal import write_edits
 from world2minecraft.find import find_objects
 from world2minecraft.formats.centers import write_centers
 from world2minecraft.formats.evidence import read_evidence

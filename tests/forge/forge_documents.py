@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.types import OBSERVED, OccupancyGrid
-from world2minecraft.edit.scene.objects_of import facts
+from world2minecraft.editing.scene.objects_of import facts
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.sources import with_objects
 from world2minecraft.formats.objects import write_objects, write_placements
@@ -43,7 +43,7 @@ def room_grid() -> OccupancyGrid:
 def write_run(folder: Path) -> Path:
     """The files of a run, as reconstruct leaves them."""
     grid, objects = with_objects(room_grid())
-    from world2minecraft.edit.scene import instances_of, placements_of
+    from world2minecraft.editing.scene import instances_of, placements_of
 
     folder.mkdir(parents=True)
     write_room(folder / "room.npz", grid, np.diag([1.0, 1, 1, 1]))

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from world2minecraft.edit.scene.difference import difference
+from world2minecraft.editing.scene.difference import difference
 from world2minecraft.metrics.occupancy import count_occupancy
 
 VECTORS = Path(__file__).parent / "vectors" / "compare.json"

@@ -3,8 +3,8 @@
 import re
 from pathlib import Path
 
-from world2minecraft.edit.scene import COMMANDS
-from world2minecraft.edit.scene.voxels import CellCommand
+from world2minecraft.editing.scene import COMMANDS
+from world2minecraft.editing.scene.voxels import CellCommand
 from world2minecraft.forge.cell_queries import CELL_QUERIES
 from world2minecraft.forge.object_queries import Doubtful
 

@@ -17,7 +17,7 @@ from hypothesis.extra import numpy as some
 from world2minecraft.build import build_volume
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.edit.cleanup import mended
+from world2minecraft.editing.cleanup.passes import mended
 from world2minecraft.forge import blocks, build_routes
 from world2minecraft.forge.arrays import packed_arrays
 from world2minecraft.forge.blocks import Build, BuildOptions, HeldScene

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.core.errors import InputError, UsageError
-from world2minecraft.edit.scene import SceneDraft
-from world2minecraft.edit.scene.difference import difference, labels_in_cells
-from world2minecraft.edit.scene.runs import cells_of_runs
+from world2minecraft.editing.scene import SceneDraft
+from world2minecraft.editing.scene.difference import difference, labels_in_cells
+from world2minecraft.editing.scene.runs import cells_of_runs
 from world2minecraft.forge.editor import Editor
 from world2minecraft.formats.occupancy import labels_grid
 from world2minecraft.metrics.occupancy import count_occupancy

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from forge_serving import client, served, small_editor
 
-from world2minecraft.edit.scene import SceneDraft
+from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.forge.comparing import labels_of_truth
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.volumes import HEADER

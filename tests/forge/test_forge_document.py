@@ -291,7 +291,7 @@ class Full:
     def __init__(self, monkeypatch, left=0):
         self.left = left
         self.write = os.fsync
-        monkeypatch.setattr("world2minecraft.edit.records.os.fsync", self.fsync)
+        monkeypatch.setattr("world2minecraft.editing.record_log.os.fsync", self.fsync)
 
     def fsync(self, handle):
         if self.left <= 0:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
-from world2minecraft.edit.scene import runs_of_cells
-from world2minecraft.edit.scene.voxels import SetCells
+from world2minecraft.editing.scene import runs_of_cells
+from world2minecraft.editing.scene.voxels import SetCells
 from world2minecraft.forge.editor import Editor
 
 

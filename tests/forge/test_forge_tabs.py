@@ -15,7 +15,7 @@ from forge_serving import HANG_S, client, heard, paint, raw, say, served, small_
 from websockets.client import ClientProtocol
 from websockets.uri import parse_uri
 
-from world2minecraft.edit.scene import COMMANDS, Command
+from world2minecraft.editing.scene import COMMANDS, Command
 from world2minecraft.forge import hub, session
 from world2minecraft.forge.hub import MAX_QUEUED, MAX_TABS, Hub
 from world2minecraft.forge.serve import ForgeServer

@@ -6,7 +6,7 @@ import pytest
 from pydantic import BaseModel, Field
 
 from world2minecraft.core.errors import World2MinecraftError
-from world2minecraft.edit.scene import COMMANDS
+from world2minecraft.editing.scene import COMMANDS
 from world2minecraft.forge import typescript
 from world2minecraft.forge.queries import QUERIES
 

@@ -183,7 +183,7 @@ def check_how(into: Path | None, rcon: str | None, air: str, new_chunks: bool) -
     Raises:
         UsageError: one is wrong, or says nothing of what is asked for.
     """
-    from world2minecraft.edit.into_world import check_air
+    from world2minecraft.editing.world_build import check_air
 
     check_air(air)
     if new_chunks and into is None:

@@ -10,7 +10,7 @@ from world2minecraft.core.errors import ConflictError, InputError, OutputError, 
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockEdit
-    from world2minecraft.edit.history import History
+    from world2minecraft.editing.history import History
 
 EXAMPLES = """\
 w2m clean OUT                  mend what is left to mend
@@ -64,7 +64,7 @@ def run(
     """
     if sum((list_, undo is not None, undo_all, redo is not None)) > 1:
         raise UsageError("--list, --undo, --undo-all and --redo go one at a time")
-    from world2minecraft.edit.cleanup import RULES, mended
+    from world2minecraft.editing.cleanup.passes import RULES, mended
 
     build = build_folder(source)
     history = opened(build)
@@ -119,8 +119,8 @@ def opened(build: Path) -> "History":
     Raises:
         ConflictError: the edits are those of another build. InputError: a file cannot be read.
     """
-    from world2minecraft.edit.history import History
-    from world2minecraft.edit.journal import EDITS_FILE, Journal
+    from world2minecraft.editing.history import History
+    from world2minecraft.editing.journal import EDITS_FILE, Journal
     from world2minecraft.report.scene import read_built
 
     volume = read_built(build)

@@ -29,7 +29,7 @@ def on_server(
         address: ``HOST`` or ``HOST:PORT`` of its remote console.
         at: where the blocks' smallest x and z, and their ground, come to stand; 0 64 0 for None.
         turns: quarter turns before that.
-        air: which air is built, as ``edit.into_world`` has it.
+        air: which air is built, as ``editing.world_build`` has it.
         is_room: whether the volume is a room of ours, whose ground is at the usual height.
         mc_version: the server's game.
 
@@ -41,8 +41,8 @@ def on_server(
     password = password_of_environment()
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
-    from world2minecraft.edit.into_world import built_mask
-    from world2minecraft.edit.placing import placed
+    from world2minecraft.editing.relocation import placed
+    from world2minecraft.editing.world_build import built_mask
     from world2minecraft.minecraft.losses import Losses
     from world2minecraft.minecraft.server.building import LiveBuilder
     from world2minecraft.minecraft.server.plan import plan_build
@@ -75,7 +75,7 @@ def check_server(address: str, air: str) -> None:
     Raises:
         UsageError: the address or the environment lacks something, or there is no such ``air``.
     """
-    from world2minecraft.edit.into_world import check_air
+    from world2minecraft.editing.world_build import check_air
 
     parse_address(address)
     password_of_environment()

@@ -42,7 +42,7 @@ def run(
     """
     if blocks and force:
         raise UsageError("--blocks and --force are two ways to undo; choose one")
-    from world2minecraft.edit.backups import steps_of
+    from world2minecraft.editing.backups import steps_of
     from world2minecraft.minecraft.worlds.level_dat import no_world
 
     if list_:
@@ -57,7 +57,7 @@ def run(
         print(f"{counted(len(steps), 'step')} to undo, the last one first.")
         return
     if blocks:
-        from world2minecraft.edit.into_world import take_blocks_out
+        from world2minecraft.editing.world_build import take_blocks_out
 
         done = take_blocks_out(world)
         kept = f"; {counted(done.kept, 'block')} changed since stay" if done.kept else ""
@@ -72,7 +72,7 @@ def undo_files(world: Path, force: bool) -> str:
     Raises:
         UsageError: there is no step. ConflictError: a file was changed since, without ``force``.
     """
-    from world2minecraft.edit.backups import changed_since, recover, steps_of, take_back
+    from world2minecraft.editing.backups import changed_since, recover, steps_of, take_back
     from world2minecraft.minecraft.worlds.session_lock import session_lock
 
     with session_lock(world):

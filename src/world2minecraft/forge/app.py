@@ -11,7 +11,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 
-from world2minecraft.edit.scene import COMMANDS
+from world2minecraft.editing.scene import COMMANDS
 from world2minecraft.forge import compare_routes, export_routes, photo_routes, start
 from world2minecraft.forge.build_routes import build_routes
 from world2minecraft.forge.failures import ANSWERS

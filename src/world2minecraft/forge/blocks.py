@@ -15,8 +15,8 @@ from world2minecraft.build import BuildParameters, build_volume, find_spawn
 from world2minecraft.build.parameters import STYLES
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import BlockVolume, OccupancyGrid, SceneObject
-from world2minecraft.edit.cleanup import mended
-from world2minecraft.edit.scene import instances_of, placements_of
+from world2minecraft.editing.cleanup.passes import mended
+from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.forge.arrays import packed_arrays
 from world2minecraft.forge.editor import Editor
 from world2minecraft.minecraft.physics import BlockWorld, standing_place

@@ -8,12 +8,12 @@ from pydantic import Field
 
 from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN
 from world2minecraft.core.errors import UsageError
-from world2minecraft.edit.scene.difference import difference
-from world2minecraft.edit.scene.draft import SceneDraft
-from world2minecraft.edit.scene.floaters import MAX_CELLS, find_floaters
-from world2minecraft.edit.scene.holes import HOLE_M2, hole_cells, plane_gaps
-from world2minecraft.edit.scene.planes import find_planes
-from world2minecraft.edit.scene.runs import runs_of_cells
+from world2minecraft.editing.scene.difference import difference
+from world2minecraft.editing.scene.draft import SceneDraft
+from world2minecraft.editing.scene.floaters import MAX_CELLS, find_floaters
+from world2minecraft.editing.scene.holes import HOLE_M2, hole_cells, plane_gaps
+from world2minecraft.editing.scene.planes import find_planes
+from world2minecraft.editing.scene.runs import runs_of_cells
 from world2minecraft.forge.comparing import labels_of_file, labels_of_truth, truth_folder
 from world2minecraft.forge.query import QueriedScene, Query
 from world2minecraft.metrics.occupancy import count_occupancy

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.types import GridCells, Operation
-from world2minecraft.edit.scene import SceneDraft
+from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.volumes import as_bytes
 from world2minecraft.forge.wire import counts_json, object_json

@@ -22,8 +22,8 @@ from pathlib import Path
 from world2minecraft.core.errors import ConflictError, OutputError
 from world2minecraft.core.locks import Lock
 from world2minecraft.core.types import Operation
-from world2minecraft.edit.scene import SceneHistory
-from world2minecraft.edit.scene.journal import DO, UNDO
+from world2minecraft.editing.scene import SceneHistory
+from world2minecraft.editing.scene.journal import DO, UNDO
 from world2minecraft.forge import saving
 from world2minecraft.forge.effort import EffortLog
 from world2minecraft.forge.identity import (

@@ -20,7 +20,7 @@ import numpy as np
 
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Operation
-from world2minecraft.edit.scene import Command, SceneDraft, parse_command
+from world2minecraft.editing.scene import Command, SceneDraft, parse_command
 from world2minecraft.forge.document import Document
 from world2minecraft.forge.identity import folder_of
 from world2minecraft.forge.queries import parse_query

@@ -21,7 +21,7 @@ from starlette.routing import BaseRoute, Route
 
 from world2minecraft.build.parameters import STYLES
 from world2minecraft.core.errors import UsageError
-from world2minecraft.edit.into_world import check_air
+from world2minecraft.editing.world_build import check_air
 from world2minecraft.forge import exports
 from world2minecraft.forge.apart import run_apart
 from world2minecraft.forge.jobs import Report, Work

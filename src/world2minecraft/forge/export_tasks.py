@@ -15,8 +15,8 @@ from world2minecraft.build import WORLD_NAME, write_build
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
 from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import BlockVolume
-from world2minecraft.edit.into_world import build_into, built_mask
-from world2minecraft.edit.placing import placed
+from world2minecraft.editing.relocation import placed
+from world2minecraft.editing.world_build import build_into, built_mask
 from world2minecraft.forge.tasks import parameters_of
 from world2minecraft.formats.forms import form_named, templates_of_run, write_form
 from world2minecraft.minecraft.commands.player_scale import size_pack

@@ -18,7 +18,7 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.files import write_text
-from world2minecraft.edit.scene import instances_of, placements_of
+from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.forge.editor import Editor
 from world2minecraft.formats.forms import form_names
 from world2minecraft.formats.objects import write_objects, write_placements

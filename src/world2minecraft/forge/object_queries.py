@@ -7,11 +7,11 @@ import numpy as np
 from pydantic import AfterValidator, Field
 
 from world2minecraft.core.classes import CLASS_NAMES
-from world2minecraft.edit.scene.boxes import object_named
-from world2minecraft.edit.scene.doubts import Doubt, find_doubts, ordered
-from world2minecraft.edit.scene.furnishing import ObjectClass
-from world2minecraft.edit.scene.objects import Id
-from world2minecraft.edit.scene.objects_of import instance_of, placements_of
+from world2minecraft.editing.scene.diagnostics import Doubt, find_doubts, ordered
+from world2minecraft.editing.scene.furniture_commands import ObjectClass
+from world2minecraft.editing.scene.object_boxes import object_named
+from world2minecraft.editing.scene.objects import Id
+from world2minecraft.editing.scene.objects_of import instance_of, placements_of
 from world2minecraft.find import FindParameters
 from world2minecraft.find.clusters import centroids, cluster_candidates
 from world2minecraft.find.density import candidate_cells, density_map, object_cells

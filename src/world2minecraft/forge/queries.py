@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
-from world2minecraft.edit.scene.commands import first_fault
+from world2minecraft.editing.scene.command_registry import first_fault
 from world2minecraft.forge.cell_queries import CELL_QUERIES
 from world2minecraft.forge.object_queries import OBJECT_QUERIES
 from world2minecraft.forge.query import QueriedScene, Query

@@ -6,7 +6,7 @@ from typing import Any, Protocol
 from pydantic import BaseModel, ConfigDict
 
 from world2minecraft.core.progress import Progress
-from world2minecraft.edit.scene import SceneDraft
+from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.forge.sources import Opened
 
 

@@ -15,8 +15,8 @@ from pathlib import Path
 
 from world2minecraft.core.errors import ConflictError, DamagedFileError, InputError, OutputError
 from world2minecraft.core.types import Operation
-from world2minecraft.edit.scene import Line, SceneDraft
-from world2minecraft.edit.scene.journal import UNDO, SceneJournal, Step
+from world2minecraft.editing.scene import Line, SceneDraft
+from world2minecraft.editing.scene.journal import UNDO, SceneJournal, Step
 from world2minecraft.forge.snapshots import (
     State,
     read_state,

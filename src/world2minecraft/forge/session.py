@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Operation
-from world2minecraft.edit.scene import Command, parse_command
+from world2minecraft.editing.scene import Command, parse_command
 from world2minecraft.forge.beside import TITLES, beside, copy_of
 from world2minecraft.forge.changes import change_of, preview_of
 from world2minecraft.forge.editor import Editor

@@ -17,7 +17,7 @@ import numpy as np
 
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, SceneObject
-from world2minecraft.edit.scene import objects_of
+from world2minecraft.editing.scene import objects_of
 from world2minecraft.find import find_objects
 from world2minecraft.forge.centred import instances_at
 from world2minecraft.formats.objects import read_objects, read_placements

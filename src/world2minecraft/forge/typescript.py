@@ -15,7 +15,7 @@ from pydantic import BaseModel
 
 from world2minecraft.core.errors import World2MinecraftError
 from world2minecraft.core.files import write_text
-from world2minecraft.edit.scene import COMMANDS
+from world2minecraft.editing.scene import COMMANDS
 from world2minecraft.forge.queries import QUERIES
 
 TARGET = Path(__file__).parent / "web" / "src" / "commands.ts"

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Operation
-from world2minecraft.edit.scene import MemoryLog, SceneDraft, SceneHistory
+from world2minecraft.editing.scene import MemoryLog, SceneDraft, SceneHistory
 from world2minecraft.forge.saving import write_scene_files
 from world2minecraft.forge.snapshots import State
 from world2minecraft.forge.sources import Opened

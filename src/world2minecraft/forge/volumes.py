@@ -12,7 +12,7 @@ import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT
 from world2minecraft.core.errors import UnknownNameError
-from world2minecraft.edit.scene import SceneDraft
+from world2minecraft.editing.scene import SceneDraft
 
 MAGIC, VERSION = b"W2MV", 1
 HEADER = struct.Struct("<4sHBB3If3fI")

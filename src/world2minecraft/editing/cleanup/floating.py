@@ -1,0 +1,240 @@
+"""Clean-up of what hangs in the air: joined, put down, hung up, or taken away.
+
+Blocks hold together where their shapes meet. What holds to the floor, or to a piece of structure
+of some size, is carried; everything else floats.
+"""
+
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import AIR
+from world2minecraft.editing.cleanup.contact import touches, touching_parts
+from world2minecraft.editing.cleanup.gaps import close_gap, whole_of
+from world2minecraft.editing.draft import Draft
+from world2minecraft.editing.sight import (
+    blocks_in,
+    crumb_blocks,
+    free_cells,
+    move,
+    seen_blocks,
+    structure_of,
+    take_away,
+)
+
+CARRIER_M2 = 0.5  # A piece of structure of this area carries, though it holds to nothing itself.
+JOIN_M = 0.5  # A part is joined to its own object over no wider gap,
+STEP_M = 0.5  # and moved aside by no more.
+CORD_M = 1.25  # A cord is no longer than this.
+ROUNDS = 8  # What stood on something that is moved floats then, and is mended next;
+GENTLE_ROUNDS = 4  # what is not mended by now never will be.
+CORD = "minecraft:chain[axis=y,waterlogged=false]"
+STANDING = (SemanticClass.CHAIR, SemanticClass.BED, SemanticClass.SOFA, SemanticClass.TABLE)
+DOWN, UP = np.array([0, -1, 0]), np.array([0, 1, 0])
+ASIDE = tuple(np.array(step) for step in ((1, 0, 0), (-1, 0, 0), (0, 0, 1), (0, 0, -1)))
+
+
+def mend_floating(draft: Draft) -> None:
+    """Mend all that floats in a draft, the largest part first; each mend is an edit."""
+    for tried in range(ROUNDS):
+        parts, carried = _parts(draft)
+        sizes = np.bincount(parts.ravel(), minlength=len(carried))
+        floating = [number for number in range(1, len(carried)) if not carried[number]]
+        if not floating:
+            return
+        for number in sorted(floating, key=lambda part: -sizes[part]):
+            cells = np.argwhere(parts == number)
+            if tried < GENTLE_ROUNDS:
+                _mend(draft, cells, carried[parts])
+            else:
+                take_away(draft, cells, "drop", "it hangs in the air whatever is done")
+            parts, carried = _again(draft, parts, carried, number)
+
+
+def floating_cells(draft: Draft) -> np.ndarray:
+    """Return bool [X, Y, Z]: the blocks that nothing carries."""
+    parts, carried = _parts(draft)
+    return np.asarray((parts > 0) & ~carried[parts])
+
+
+def _parts(draft: Draft) -> tuple[np.ndarray, np.ndarray]:
+    """The parts that hold together, int32 [X, Y, Z], and which of them are carried, bool [N]."""
+    seen = seen_blocks(draft)
+    parts = touching_parts(draft.states, draft.palette, seen)
+    count = int(parts.max(initial=0)) + 1
+    carried = np.zeros(count, bool)
+    floor = draft.semantic == SemanticClass.FLOOR
+    if floor.any():
+        carried[np.unique(parts[floor])] = True
+        area = np.bincount(parts[structure_of(draft)], minlength=count)
+        carried |= area >= CARRIER_M2 * draft.start.blocks_per_metre**2
+    elif count > 1:  # Blocks of others, without labels: what stands on the lowest layer.
+        filled = np.flatnonzero(seen.any(axis=(0, 2)))
+        carried[np.unique(parts[:, filled[0]])] = True
+        carried[np.bincount(parts[seen]).argmax()] = True
+    carried[0] = False
+    return parts, carried
+
+
+def _again(
+    draft: Draft, parts: np.ndarray, carried: np.ndarray, number: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """The parts after the one of ``number`` was mended: where it went, carried things stand."""
+    parts[parts == number] = 0
+    for cell in (draft.edits[-1].cells - draft.corner).tolist():
+        at = tuple(cell)
+        if draft.states[at] and parts[at] == 0:
+            parts[at] = number
+    carried[number] = True
+    return parts, carried
+
+
+def _mend(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> None:
+    """Mend one part, int [N, 3]; ``carriers`` are the blocks that are carried."""
+    classes = draft.semantic[tuple(cells.T)]
+    told = f"{_count(len(cells))} of it"
+    if np.isin(classes, (1, 2, 3, 4)).all():
+        take_away(draft, cells, "drop", f"a piece of structure, {told}, holds to nothing")
+    elif _is_crumb(draft, cells, carriers):
+        take_away(draft, cells, "drop", f"a crumb, {told}, hangs in the air")
+    elif not (
+        _join(draft, cells, carriers)
+        or close_gap(draft, cells, carriers)
+        or _put(draft, cells, carriers)
+        or (not np.isin(classes, STANDING).any() and _hang(draft, cells, carriers))
+        or _lower(draft, cells, carriers)
+    ):
+        take_away(draft, cells, "drop", f"{told} hang in the air over nothing")
+
+
+def _is_crumb(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
+    """Whether a part is small, and of no object or of one that stands elsewhere."""
+    if len(cells) > crumb_blocks(draft):
+        return False
+    numbers = np.unique(draft.instance[tuple(cells.T)])
+    return bool((numbers == 0).all() or np.isin(numbers, draft.instance[carriers]).all())
+
+
+def _join(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
+    """Fill the shortest straight gap to the carried rest of the same object."""
+    numbers = np.setdiff1d(draft.instance[tuple(cells.T)], [0])
+    rest = carriers & np.isin(draft.instance, numbers)
+    if not rest.any():
+        return False
+    free = free_cells(draft)
+    for gap in range(1, blocks_in(draft, JOIN_M) + 1):
+        for step in (DOWN, *ASIDE, UP):
+            for start in cells:
+                way = start + np.arange(1, gap + 2)[:, None] * step
+                if not _inside(draft, way[-1]) or not rest[tuple(way[-1])]:
+                    continue
+                at = tuple(start)
+                state = whole_of(draft.palette[draft.states[at]])
+                ends = draft.palette[draft.states[at]], draft.palette[draft.states[tuple(way[-1])]]
+                if free[tuple(way[:-1].T)].all() and _bridges(state, ends, step):
+                    number = int(draft.instance[at])
+                    draft.fill(
+                        "join",
+                        way[:-1],
+                        state,
+                        as_class=int(draft.semantic[at]),
+                        as_instance=number,
+                        reason="a part hangs beside the rest of its object",
+                        class_id=int(draft.semantic[at]),
+                        instance=number,
+                    )
+                    return True
+    return False
+
+
+def _bridges(state: str, ends: tuple[str, str], step: np.ndarray) -> bool:
+    """Whether a row of a state along a step holds to itself and to what is at its ends."""
+    x, y, z = step.tolist()
+    pairs = ((ends[0], state), (state, state), (state, ends[1]))
+    return all(touches(one, other, (x, y, z)) for one, other in pairs)
+
+
+def _put(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
+    """Move a part down or aside, by no more than half a metre, to something carried."""
+    ways = []
+    for order, step in enumerate((DOWN, *ASIDE)):
+        for length in range(1, blocks_in(draft, STEP_M) + 1):
+            if not _fits(draft, cells, step * length):
+                break
+            if _touches(draft, cells, step * length, carriers):
+                ways.append((length, order, step * length))
+                break
+    if not ways:
+        return False
+    length, _, step = min(ways, key=lambda way: way[:2])
+    move(draft, cells, step, f"it hung in the air, {_count(length)} off")
+    return True
+
+
+def _count(length: int) -> str:
+    return f"{length} block{'s' * (length > 1)}"
+
+
+def _hang(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
+    """Hang a part on a chain from something carried above it."""
+    top = cells[cells[:, 1] == cells[:, 1].max()]
+    middle = top[np.abs(top - top.mean(axis=0)).sum(axis=1).argmin()]
+    free = free_cells(draft)
+    for length in range(1, blocks_in(draft, CORD_M) + 1):
+        cell = middle + UP * (length + 1)
+        if not _inside(draft, cell) or not free[tuple(cell - UP)]:
+            return False
+        if carriers[tuple(cell)]:
+            cord = middle + np.arange(1, length + 1)[:, None] * UP
+            number = int(draft.instance[tuple(middle)])
+            class_id = int(draft.semantic[tuple(middle)])
+            draft.fill(
+                "hang",
+                cord,
+                CORD,
+                as_class=class_id,
+                as_instance=number,
+                reason="it hung in the air without its cord",
+                class_id=class_id,
+                instance=number,
+            )
+            return True
+    return False
+
+
+def _lower(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
+    """Lower a part, as far as it goes, to whatever lies under it."""
+    length = 0
+    while _fits(draft, cells, DOWN * (length + 1)):
+        length += 1
+        if _touches(draft, cells, DOWN * length, carriers):
+            move(draft, cells, DOWN * length, f"it hung in the air, {_count(length)} too high")
+            return True
+    return False
+
+
+def _fits(draft: Draft, cells: np.ndarray, step: np.ndarray) -> bool:
+    """Whether a part can stand a step away: within the volume, where air or itself is now."""
+    there = cells + step
+    if not ((there >= 0) & (there < draft.states.shape)).all():
+        return False
+    taken = ~free_cells(draft)
+    taken[tuple(cells.T)] = False
+    return not taken[tuple(there.T)].any()
+
+
+def _touches(draft: Draft, cells: np.ndarray, step: np.ndarray, carriers: np.ndarray) -> bool:
+    """Whether a part that is moved a step would hold to something carried."""
+    there = cells + step
+    low = np.maximum(there.min(axis=0) - 1, 0)
+    high = there.max(axis=0) + 2
+    box = tuple(slice(start, end) for start, end in zip(low, high, strict=True))
+    states = np.where(carriers[box], draft.states[box], draft.id_of(AIR))
+    mask = carriers[box].copy()
+    at = tuple((there - low).T)
+    states[at], mask[at] = draft.states[tuple(cells.T)], True
+    parts = touching_parts(states, draft.palette, mask)
+    return bool(np.isin(parts[at], parts[carriers[box]]).any())
+
+
+def _inside(draft: Draft, cell: np.ndarray) -> bool:
+    return bool(((cell >= 0) & (cell < draft.states.shape)).all())

@@ -1,0 +1,117 @@
+"""Clean-up of gaps of less than a block between a thing and what it lies on.
+
+A thing begins with the cell over a table's top, and the top may end below that: a lower slab, or a
+trapdoor that lies on the table's legs. Or the thing's own lowest blocks fill only the upper part of
+their cells.
+"""
+
+import numpy as np
+
+from world2minecraft.core.types import Blocks
+from world2minecraft.editing.draft import Draft
+from world2minecraft.editing.sight import move
+from world2minecraft.minecraft.block_states import known_blocks
+from world2minecraft.minecraft.visual import visual_boxes_of
+
+DOWN = np.array([0, -1, 0])
+PLATE = 0.26  # What is no higher than this, in blocks, is a plate: a trapdoor, a carpet.
+SUNK_SHARE = 0.25  # A thing takes at most this share of the blocks of what it sinks into.
+
+
+def close_gap(draft: Draft, cells: np.ndarray, carriers: np.ndarray) -> bool:
+    """Close the gap under a part, where it is less than a block; each way is an edit.
+
+    Args:
+        draft: the blocks.
+        cells: int [N, 3], the part that hangs.
+        carriers: bool [X, Y, Z], the blocks that are carried.
+
+    Returns:
+        Whether something was done.
+    """
+    bottom = cells[cells[:, 1] == cells[:, 1].min()]
+    under = bottom + DOWN
+    held = np.asarray((under >= 0).all(axis=1))
+    held[held] = carriers[tuple(under[held].T)]
+    if not held.any():
+        return False
+    bottom, under = bottom[held], under[held]
+    names = [draft.palette[number] for number in draft.states[tuple(bottom.T)]]
+    if all(_lowest(name) > 0 for name in names):
+        return _reach_down(draft, cells, bottom, names)
+    return _sink(draft, cells) or _raise(draft, under)
+
+
+def whole_of(state: str) -> str:
+    """Return the full block of a slab or a trapdoor, of the same material; others as they are.
+
+    Example:
+        >>> whole_of("minecraft:oak_trapdoor[facing=east,half=top,open=false]")
+        'minecraft:oak_planks'
+    """
+    name, _, rest = state.partition("[")
+    if "type=bottom" in rest or "type=top" in rest:
+        return state.replace("type=bottom", "type=double").replace("type=top", "type=double")
+    stem = name.removesuffix("_trapdoor")
+    for full in (f"{stem}_planks", f"{stem}_block"):
+        if stem != name and full in known_blocks():
+            return full
+    return state
+
+
+def _lowest(state: str) -> float:
+    boxes = visual_boxes_of(state)
+    return float(boxes[:, 1].min()) if len(boxes) else 0.0
+
+
+def _reach_down(draft: Draft, cells: np.ndarray, bottom: np.ndarray, names: list[str]) -> bool:
+    """Put a flat thing's upper halves down; make the lowest blocks of a higher one whole."""
+    if np.ptp(cells[:, 1]) == 0:
+        new = [
+            n.replace("type=top", "type=bottom").replace("half=top", "half=bottom") for n in names
+        ]
+    else:
+        new = [whole_of(name) for name in names]
+    if new == names:
+        return False
+    return _restate(draft, bottom, new, "it hung less than a block over what it lies on")
+
+
+def _sink(draft: Draft, cells: np.ndarray) -> bool:
+    """Let a part take the place of the plates that it lies on, one block lower."""
+    there = cells + DOWN
+    own = {tuple(cell) for cell in cells.tolist()}
+    new = np.array([cell for cell in there.tolist() if tuple(cell) not in own])
+    states = [draft.palette[number] for number in draft.states[tuple(new.T)]]
+    if not all(_is_plate(state) for state in states):
+        return False
+    for number in np.unique(draft.instance[tuple(new.T)]).tolist():
+        taken = (draft.instance[tuple(new.T)] == number).sum()
+        if number and taken > SUNK_SHARE * (draft.instance == number).sum():
+            return False
+    move(draft, cells, DOWN, "it hung less than a block over the plate that it stands on")
+    return True
+
+
+def _is_plate(state: str) -> bool:
+    boxes = visual_boxes_of(state)
+    return not len(boxes) or float(boxes[:, 4].max()) <= PLATE
+
+
+def _raise(draft: Draft, under: np.ndarray) -> bool:
+    """Make the lower slabs under a part whole."""
+    names = [draft.palette[number] for number in draft.states[tuple(under.T)]]
+    low = ["type=bottom" in name for name in names]
+    if not any(low):
+        return False
+    chosen = [whole_of(name) for name, is_low in zip(names, low, strict=True) if is_low]
+    return _restate(draft, under[low], chosen, "what lies on it hangs half a block over it")
+
+
+def _restate(draft: Draft, cells: np.ndarray, states: list[str], reason: str) -> bool:
+    numbers = np.array([draft.id_of(state) for state in states], np.uint16)
+    old = draft.held(cells)
+    after = Blocks(numbers, old.semantic, old.instance, old.block_entities)
+    class_id, instance = int(old.semantic[0]), int(old.instance[0])
+    draft.change("settle", cells, after, reason=reason, class_id=class_id, instance=instance)
+    return True

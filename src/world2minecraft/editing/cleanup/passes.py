@@ -1,0 +1,94 @@
+"""The automatic clean-up: what a person would mend in a built room, each mend an edit.
+
+===========  ===================================================================================
+trim         pieces of furniture that a wall or other furniture cuts off
+see_through  the wall comes back where an object in its plane lets one see out
+holes        small holes in walls, floors and ceilings are closed
+floating     what hangs in the air is joined, put down, hung up or taken away
+steady       what would fall, pop off or change is set as the game would have it, or taken away
+===========  ===================================================================================
+
+A room of one block a voxel is an exact copy of its cells and is left as it is.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.types import BlockEdit, Blocks, BlockVolume
+from world2minecraft.editing.cleanup.floating import mend_floating
+from world2minecraft.editing.cleanup.holes import close_holes
+from world2minecraft.editing.cleanup.intrusions import close_see_through, trim_cut_off
+from world2minecraft.editing.draft import Draft
+from world2minecraft.editing.sight import take_away
+from world2minecraft.minecraft.rules.connections import connected
+from world2minecraft.minecraft.rules.stability import unstable
+
+EXACT_BLOCKS_PER_METRE = 8.0  # Above it, cells are copied as they are.
+ROUNDS = 4  # A mend may uncover what another rule is for.
+STEADY_ROUNDS = 8  # What stood on something that is taken away goes next.
+
+
+def steady(draft: Draft) -> None:
+    """Set connections as the game would, and take away what would not stay; each is an edit."""
+    for _ in range(STEADY_ROUNDS):
+        _connect(draft)
+        found = unstable(draft.volume())
+        if not found:
+            return
+        for position, state, reason in found:
+            cell = np.array([position]) - draft.corner
+            if draft.palette[draft.states[tuple(cell[0])]] == state:
+                take_away(draft, cell, "drop", f"{state.partition('[')[0]} {reason}")
+
+
+def _connect(draft: Draft) -> None:
+    states, palette = connected(draft.states, draft.palette)
+    numbers = np.array([draft.id_of(state) for state in palette], np.uint16)
+    new = numbers[states]
+    cells = np.argwhere(new != draft.states)
+    if len(cells):
+        old = draft.held(cells)
+        after = Blocks(new[tuple(cells.T)], old.semantic, old.instance, old.block_entities)
+        draft.change("connect", cells, after, reason="they join their neighbours otherwise")
+
+
+RULES: dict[str, Callable[[Draft], None]] = {
+    "trim": trim_cut_off,
+    "see_through": close_see_through,
+    "holes": close_holes,
+    "floating": mend_floating,
+    "steady": steady,
+}
+
+
+def mended(
+    volume: BlockVolume, rules: Sequence[str] = tuple(RULES)
+) -> tuple[BlockVolume, tuple[BlockEdit, ...]]:
+    """Return a volume as a person would leave it, and the edits that made it so.
+
+    Args:
+        volume: a built room; without labels only ``floating`` and ``steady`` find anything.
+        rules: which rules, in their order.
+
+    Returns:
+        The volume itself and no edits where nothing is to mend.
+
+    Raises:
+        UnknownNameError: there is no such rule.
+    """
+    for name in rules:
+        if name not in RULES:
+            raise UnknownNameError("clean-up rule", name, RULES)
+    if volume.blocks_per_metre > EXACT_BLOCKS_PER_METRE:
+        return volume, ()
+    draft = Draft(volume)
+    for _ in range(ROUNDS):
+        before = len(draft.edits)
+        for name, rule in RULES.items():
+            if name in rules:
+                rule(draft)
+        if len(draft.edits) == before:
+            break
+    return (draft.volume(), tuple(draft.edits)) if draft.edits else (volume, ())

@@ -1,0 +1,52 @@
+"""All commands by name, and how one is read from JSON."""
+
+from typing import Any
+
+from pydantic import ValidationError
+
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.editing.scene.command import Command
+from world2minecraft.editing.scene.mending import FillHoles, RemoveFloaters, Smooth
+from world2minecraft.editing.scene.object_commands import OBJECT_COMMANDS
+from world2minecraft.editing.scene.voxels import DeleteComponent, FillBox, Paste, SetCells
+from world2minecraft.editing.scene.whole_class import DeleteClass, RelabelClass
+
+COMMANDS: dict[str, type[Command]] = {
+    kind.model_fields["op"].default: kind
+    for kind in (
+        SetCells,
+        FillBox,
+        DeleteComponent,
+        Paste,
+        RelabelClass,
+        DeleteClass,
+        RemoveFloaters,
+        FillHoles,
+        Smooth,
+        *OBJECT_COMMANDS,
+    )
+}
+
+
+def parse_command(value: Any) -> Command:
+    """Return the command that a JSON object says.
+
+    Raises:
+        UsageError: it is none; the message names the field, what was expected and what was given.
+    """
+    if not isinstance(value, dict) or not isinstance(value.get("op"), str):
+        raise UsageError('a command is an object with "op", such as {"op": "set_cells", ...}')
+    if value["op"] not in COMMANDS:
+        raise UnknownNameError("command", value["op"], COMMANDS)
+    try:
+        return COMMANDS[value["op"]].model_validate(value)
+    except ValidationError as error:
+        raise UsageError(first_fault(value["op"], error)) from error
+
+
+def first_fault(name: str, error: ValidationError) -> str:
+    """Return the line that tells what is wrong with the fields of a command or a query."""
+    first = error.errors(include_url=False, include_context=False)[0]
+    where = ".".join(str(part) for part in first["loc"]) or name
+    given = str(first.get("input"))[:80]
+    return f"{name}: {where}: {first['msg']}, not {given}"

@@ -1,0 +1,127 @@
+"""Commands on the furniture that stands for objects: added, chosen, matched anew."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Operation, Placement, SceneObject
+from world2minecraft.editing.scene.carrying import is_free
+from world2minecraft.editing.scene.command import Command, Tools
+from world2minecraft.editing.scene.draft import SceneDraft
+from world2minecraft.editing.scene.object_boxes import (
+    OWN_CELLS,
+    boxed,
+    free_number,
+    object_named,
+    objects_named,
+)
+from world2minecraft.editing.scene.objects import Id, Ids, Point, QuarterTurns
+from world2minecraft.editing.scene.objects_of import instance_of, object_of
+from world2minecraft.editing.scene.patch import Patch
+from world2minecraft.editing.scene.standing import standing_box
+from world2minecraft.furniture import Template, cells_of, template, templates_of
+
+ObjectClass = Annotated[int, Field(ge=5, le=11)]
+TemplateName = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class AddObject(Command):
+    """Put a piece of furniture of its usual size at a place, on what is under it there.
+
+    What hangs on walls has its middle at ``at_m``, what hangs from a ceiling goes up to what is
+    over it. Without ``template`` it is the plainest of its class, without ``quarter_turns`` it
+    looks away from the nearest wall, or to the table beside it. It takes free cells alone.
+    """
+
+    op: Literal["add_object"] = "add_object"
+    class_id: ObjectClass
+    at_m: Point
+    template: TemplateName | None = None
+    quarter_turns: QuarterTurns | None = None
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the new object and the cells that it fills."""
+        chosen = self._template()
+        corner, counts, turns = standing_box(draft, chosen, self.at_m, self.quarter_turns)
+        size_m = np.round(np.array(counts) * draft.voxel_m, 9)
+        solid = cells_of(chosen, size_m, None, turns, corner.tolist(), draft.voxel_m)
+        cells = solid[is_free(draft, solid)]
+        if not len(cells):
+            sides = " x ".join(f"{side:.2f}" for side in size_m)
+            raise UsageError(f"no cell is free there for a {chosen.title} of {sides} m")
+        number = free_number(draft)
+        sides = np.array(counts)[[1, 0, 2]] if turns % 2 else np.array(counts)
+        middle = draft.origin_m + (corner + sides / 2) * draft.voxel_m
+        iou = round(len(cells) / len(solid), 4)
+        box = (np.round(middle, 9), size_m, turns, iou, chosen.complete())
+        placed = Placement(number, self.class_id, chosen.name, *box)
+        one = SceneObject(number, self.class_id, placed.center_m, size_m, 90.0 * turns, 1.0)
+        patch = Patch(draft)
+        patch.fill(cells, self.class_id, number)
+        told = {"counts_as": "add", "class_id": self.class_id}
+        return patch.planned("add_object", objects=[boxed(one, placed)], **told)
+
+    def _template(self) -> Template:
+        if self.template is None:
+            return templates_of(self.class_id)[0]
+        return template_for(self.template, self.class_id)
+
+
+class SetTemplate(Command):
+    """Choose the furniture that stands for an object, fitted to its cells.
+
+    Without ``quarter_turns`` it looks the way that fits best. The object takes the furniture's
+    box and turn; its cells stay. ``cells`` builds the object from its own cells.
+    """
+
+    op: Literal["set_template"] = "set_template"
+    id: Id
+    template: TemplateName
+    quarter_turns: QuarterTurns | None = None
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the object with its furniture."""
+        one = object_named(draft, self.id)
+        if self.template != OWN_CELLS:
+            template_for(self.template, one.class_id)
+        turns = None if self.quarter_turns is None else self.quarter_turns % 4
+        found = instance_of(one, draft.cells_of(one.id))
+        placed = tools.fit(draft.grid(), found, self.template, turns)
+        same = [p.template for p in one.placements] == [placed.template]
+        counted = "orient" if same else "other"
+        told = {"counts_as": counted, "class_id": one.class_id}
+        return Patch(draft).planned("set_template", objects=[boxed(one, placed)], **told)
+
+
+class Rematch(Command):
+    """Match the furniture of objects anew, as the reconstruction does, from their cells."""
+
+    op: Literal["rematch"] = "rematch"
+    ids: Ids
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the objects with their furniture."""
+        grid, objects = draft.grid(), []
+        for one in objects_named(draft, self.ids):
+            cells = draft.cells_of(one.id)
+            if not len(cells):
+                raise UsageError(f"object {one.id} has no cells to match; choose its template")
+            found = tools.measure(grid, one.id, one.class_id, cells)
+            objects.append(object_of(found, tools.match(grid, found)))
+        return Patch(draft).planned("rematch", objects=objects)
+
+
+def template_for(name: str, class_id: int) -> Template:
+    """Return the template of a name, which must be one for a class.
+
+    Raises:
+        UnknownNameError: there is none. UsageError: it is for another class.
+    """
+    found = template(name)
+    if found.class_id != class_id:
+        own, other = CLASS_NAMES[found.class_id], CLASS_NAMES[class_id]
+        raise UsageError(f"{name} is for class {own}, not {other}; relabel the object first")
+    return found

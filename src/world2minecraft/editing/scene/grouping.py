@@ -1,0 +1,254 @@
+"""Commands on which cells make an object: split, merged, given another class, found anew."""
+
+from dataclasses import replace
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import OccupancyGrid, Operation, SceneObject
+from world2minecraft.editing.scene.command import Command, Tools
+from world2minecraft.editing.scene.draft import SceneDraft
+from world2minecraft.editing.scene.furniture_commands import ObjectClass
+from world2minecraft.editing.scene.object_boxes import (
+    free_number,
+    object_named,
+    objects_named,
+    said,
+)
+from world2minecraft.editing.scene.objects import Id, Ids, Metre
+from world2minecraft.editing.scene.objects_of import instance_of, object_of
+from world2minecraft.editing.scene.patch import Patch
+
+ROUNDS = 50  # Of two to eight clusters of an object's cells; most need ten.
+
+
+class CutPlane(BaseModel):
+    """A plane square to an axis of the room, such as x = 1.4 m."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    axis: Literal["x", "y", "z"]
+    at_m: Metre
+
+
+class RelabelObjects(Command):
+    """Give objects another class, their cells too, and furniture of that class."""
+
+    op: Literal["relabel_objects"] = "relabel_objects"
+    ids: Ids
+    class_id: ObjectClass
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the cells and the objects of the other class."""
+        ones = [o for o in objects_named(draft, self.ids) if o.class_id != self.class_id]
+        if not ones:
+            raise UsageError("no object changes: all are of this class already")
+        patch, grid, objects = Patch(draft), draft.grid(), []
+        for one in ones:
+            cells = draft.cells_of(one.id)
+            patch.relabel(cells, self.class_id)
+            named = replace(one, class_id=self.class_id, confidence=1.0, placements=())
+            placed = tools.match(grid, instance_of(named, cells))
+            objects.append(replace(named, placements=placed))
+        told = {"counts_as": "relabel", "class_id": self.class_id}
+        return patch.planned("relabel_objects", objects=objects, **told)
+
+
+class SplitObject(Command):
+    """Split an object into a number of parts by where its cells lie, or in two by a plane.
+
+    The largest part keeps the id; the others are new objects of the same class. Each is measured
+    and matched anew.
+    """
+
+    op: Literal["split_object"] = "split_object"
+    id: Id
+    parts: Annotated[int, Field(ge=2, le=8)] | None = None
+    plane: CutPlane | None = None
+
+    @model_validator(mode="after")
+    def _one_way(self) -> "SplitObject":
+        if (self.parts is None) == (self.plane is None):
+            raise ValueError("give parts or plane, one of them")
+        return self
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the cells by part and the objects."""
+        one = object_named(draft, self.id)
+        cells = draft.cells_of(one.id)
+        sides = self._sides(draft, cells)
+        groups = _largest_first(cells, sides)
+        if len(groups) < 2:
+            raise UsageError(f"{said(one)} lies on one side of that; split it where its cells are")
+        numbers = [one.id]
+        while len(numbers) < len(groups):
+            numbers.append(free_number(draft, numbers))
+        patch, grid = Patch(draft), draft.grid()
+        for number, group in zip(numbers[1:], groups[1:], strict=True):
+            patch.give(group, number)
+        pairs = zip(numbers, groups, strict=True)
+        objects = [found_object(grid, tools, n, one.class_id, group) for n, group in pairs]
+        return patch.planned("split_object", objects=objects, class_id=one.class_id)
+
+    def _sides(self, draft: SceneDraft, cells: np.ndarray) -> np.ndarray:
+        """Return the part, int64 [N], of each cell."""
+        if self.plane is None:
+            return clusters_of(cells, self.parts or 2)
+        axis = "xyz".index(self.plane.axis)
+        middles_m = draft.origin_m[axis] + (cells[:, axis] + 0.5) * draft.voxel_m
+        return (middles_m >= self.plane.at_m).astype(np.int64)
+
+
+class SplitObjects(Command):
+    """Split each of several objects into a number of parts by where its cells lie.
+
+    As ``split_object`` does with each. Objects of fewer cells than parts stay as they are.
+    """
+
+    op: Literal["split_objects"] = "split_objects"
+    ids: Ids
+    parts: Annotated[int, Field(ge=2, le=8)] = 2
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the cells by part and the objects."""
+        patch, grid, objects, taken = Patch(draft), draft.grid(), [], []
+        for one in objects_named(draft, self.ids):
+            cells = draft.cells_of(one.id)
+            if len(cells) < self.parts:
+                continue
+            for number, group in _numbered(draft, one.id, cells, self.parts, taken):
+                if number != one.id:
+                    patch.give(group, number)
+                objects.append(found_object(grid, tools, number, one.class_id, group))
+        if not objects:
+            raise UsageError(f"none of these objects has {self.parts} cells to be split into parts")
+        classes = {one.class_id for one in objects}
+        told = {"class_id": classes.pop()} if len(classes) == 1 else {}
+        return patch.planned("split_objects", objects=objects, **told)
+
+
+class MergeObjects(Command):
+    """Make objects one, which has the id and the class of the first that is named."""
+
+    op: Literal["merge_objects"] = "merge_objects"
+    ids: Annotated[tuple[Id, ...], Field(min_length=2, max_length=65535)]
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the cells and the object that is left."""
+        first, *others = objects_named(draft, self.ids)
+        if not others:
+            raise UsageError("name two different objects to merge")
+        patch, groups = Patch(draft), [draft.cells_of(first.id)]
+        for one in others:
+            cells = draft.cells_of(one.id)
+            groups.append(cells)
+            patch.give(cells, first.id, first.class_id if one.class_id != first.class_id else None)
+        cells = np.concatenate(groups)
+        if not len(cells):
+            raise UsageError("none of these objects has cells; delete all but one")
+        cells = cells[np.lexsort(cells.T[::-1])]
+        merged = found_object(draft.grid(), tools, first.id, first.class_id, cells)
+        gone = [one.id for one in others]
+        return patch.planned("merge_objects", objects=[merged], gone=gone, class_id=first.class_id)
+
+
+class Recluster(Command):
+    """Find the objects of a class, or all, anew by other figures of the paper's clustering.
+
+    An object that shares most of its cells with an old one keeps that one's id.
+    """
+
+    op: Literal["recluster"] = "recluster"
+    class_id: ObjectClass | None = None
+    density_kernel: Annotated[int, Field(ge=1, le=31)]
+    density_threshold: Annotated[float, Field(ge=0, le=1)]
+    cluster_radius: Annotated[float, Field(gt=0, le=100)]
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the cells by object, and the objects."""
+        grid = draft.grid()
+        instance, found = tools.find(grid, self.model_dump(exclude={"op", "class_id"}))
+        old = [o for o in draft.objects.values() if self.class_id in (None, o.class_id)]
+        free = np.isin(draft.instance, [0, *(one.id for one in old)])
+        patch = Patch(draft)
+        patch.give(np.argwhere(free & (draft.instance > 0)), 0)
+        chosen = [one for one in found if self.class_id in (None, one.class_id)]
+        groups = [np.argwhere((instance == one.id) & free).astype(np.int32) for one in chosen]
+        numbers = _numbers(draft, {one.id for one in old}, groups)
+        objects: list[SceneObject] = []
+        for number, one, cells in zip(numbers, chosen, groups, strict=True):
+            if len(cells):
+                patch.give(cells, number)
+                named = replace(one, id=number, cells=cells)
+                objects.append(object_of(named, tools.match(grid, named)))
+        gone = {one.id for one in old} - {one.id for one in objects}
+        told = {"gone": gone, "class_id": self.class_id}
+        return patch.planned("recluster", objects=objects, **told)
+
+
+def found_object(
+    grid: OccupancyGrid, tools: Tools, number: int, class_id: int, cells: np.ndarray
+) -> SceneObject:
+    """Return the object that cells int32 [N, 3] are, measured and matched."""
+    found = tools.measure(grid, number, class_id, cells)
+    return object_of(found, tools.match(grid, found))
+
+
+def clusters_of(cells: np.ndarray, count: int) -> np.ndarray:
+    """Return the cluster, int64 [N], of each of cells int [N, 3]: k-means, the same each time.
+
+    The first centres lie evenly along the direction in which the cells spread most.
+    """
+    points = cells.astype(np.float64)
+    if len(points) < 2:
+        return np.zeros(len(points), np.int64)
+    spread = points - points.mean(axis=0)
+    _, _, axes = np.linalg.svd(spread, full_matrices=False)
+    along = axes[0] * np.where(axes[0][np.argmax(np.abs(axes[0]))] < 0, -1.0, 1.0)
+    order = np.argsort(np.round(spread @ along, 9), kind="stable")
+    centers = points[order[((np.arange(count) + 0.5) / count * len(points)).astype(int)]]
+    found = np.full(len(points), -1)
+    for _ in range(ROUNDS):
+        apart = ((points[:, None] - centers[None]) ** 2).sum(axis=2)
+        nearest = np.argmin(np.round(apart, 9), axis=1)
+        if np.array_equal(nearest, found):
+            break
+        found = nearest
+        for n in range(count):
+            if (found == n).any():
+                centers[n] = points[found == n].mean(axis=0)
+    return found
+
+
+def _largest_first(cells: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
+    """Return the groups of cells int [N, 3] by their part, int64 [N]."""
+    return sorted((cells[sides == n] for n in np.unique(sides)), key=len, reverse=True)
+
+
+def _numbered(
+    draft: SceneDraft, first: int, cells: np.ndarray, parts: int, taken: list[int]
+) -> list[tuple[int, np.ndarray]]:
+    """Return the parts of an object, the largest first, with ids: its own and free ones.
+
+    ``taken`` are ids that other new objects have; those that are given here are added.
+    """
+    found = [(first, group) for group in _largest_first(cells, clusters_of(cells, parts))]
+    for at in range(1, len(found)):
+        taken.append(free_number(draft, taken))
+        found[at] = (taken[-1], found[at][1])
+    return found
+
+
+def _numbers(draft: SceneDraft, old: set[int], groups: list[np.ndarray]) -> list[int]:
+    """Return an id for each group of cells: that of the old object it shares most with, or new."""
+    numbers: list[int] = []
+    taken: set[int] = set()
+    for cells in groups:
+        ids, counts = np.unique(draft.instance[tuple(cells.T)], return_counts=True)
+        ranked = ids[np.argsort(-counts, kind="stable")].tolist()
+        number = next((n for n in ranked if n in old and n not in taken), 0)
+        taken.add(number or free_number(draft, taken))
+        numbers.append(number or max(taken))
+    return numbers

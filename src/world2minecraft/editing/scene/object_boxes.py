@@ -1,0 +1,139 @@
+"""Objects by their boxes: which there are, where they go, how they are turned and measured."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Placement, SceneObject
+from world2minecraft.editing.scene.draft import SceneDraft
+
+OWN_CELLS = "cells"  # The template of what is built from its object's own cells.
+MAX_OBJECTS = 65535
+DECIMALS = 9  # Metres and degrees are rounded, so that four quarter turns are none.
+SHOWN = 12  # How many ids an error lists.
+
+
+def object_named(draft: SceneDraft, number: int) -> SceneObject:
+    """Return the object of an id.
+
+    Raises:
+        UsageError: the scene has none; the message lists those it has.
+    """
+    if number in draft.objects:
+        return draft.objects[number]
+    known = sorted(draft.objects)
+    if not known:
+        raise UsageError(f"there is no object {number}: the scene has no objects")
+    listed = ", ".join(map(str, known[:SHOWN])) + (", ..." if len(known) > SHOWN else "")
+    raise UsageError(f"there is no object {number}; the scene has {listed}")
+
+
+def objects_named(draft: SceneDraft, ids: Iterable[int]) -> list[SceneObject]:
+    """Return the objects of some ids, each once, in their order. Raises as ``object_named``."""
+    return [object_named(draft, number) for number in dict.fromkeys(ids)]
+
+
+def said(one: SceneObject) -> str:
+    """Return what an error calls an object, such as ``object 3 (chair)``."""
+    return f"object {one.id} ({CLASS_NAMES[one.class_id]})"
+
+
+def free_number(draft: SceneDraft, taken: Iterable[int] = ()) -> int:
+    """Return an id that neither an object nor a cell has, the next after the highest if it can be.
+
+    Args:
+        draft: the scene.
+        taken: ids that are given away already.
+
+    Raises:
+        UsageError: all ids are taken.
+    """
+    highest = max([0, int(draft.instance.max(initial=0)), *draft.objects, *taken])
+    if highest < MAX_OBJECTS:
+        return highest + 1
+    used = {*draft.objects, *taken, *np.unique(draft.instance).tolist()}
+    for number in range(1, MAX_OBJECTS + 1):
+        if number not in used:
+            return number
+    raise UsageError(f"a scene holds {MAX_OBJECTS:,} objects at most; delete some first")
+
+
+def shifted(one: SceneObject, shift_m: np.ndarray) -> SceneObject:
+    """Return an object, with its placements, moved by metres, float64 [3]."""
+    moved = tuple(
+        replace(placed, center_m=_rounded(placed.center_m + shift_m)) for placed in one.placements
+    )
+    return replace(one, center_m=_rounded(one.center_m + shift_m), placements=moved)
+
+
+def turned(one: SceneObject, quarter_turns: int) -> SceneObject:
+    """Return an object turned about its centre, counter-clockwise from above."""
+    turn = rotation_about_z(90.0 * quarter_turns)[:3, :3]
+    placements = tuple(
+        replace(
+            placed,
+            center_m=_rounded(one.center_m + turn @ (placed.center_m - one.center_m)),
+            quarter_turns=(placed.quarter_turns + quarter_turns) % 4,
+        )
+        for placed in one.placements
+    )
+    yaw_deg = round(float(one.yaw_deg) + 90.0 * quarter_turns, DECIMALS) % 360.0
+    return replace(one, yaw_deg=yaw_deg, placements=placements)
+
+
+def turned_cells(
+    cells: np.ndarray, center_m: np.ndarray, quarter_turns: int, draft: SceneDraft
+) -> np.ndarray:
+    """Return cells int [N, 3] turned about the point that is nearest to a centre and keeps them.
+
+    The point depends on the centre alone, so that four quarter turns bring every cell back.
+    """
+    x, y = ((center_m - draft.origin_m) / draft.voxel_m - 0.5)[:2]
+    both, apart = (int(np.floor(value + 0.5 + 1e-6)) for value in (x + y, y - x))
+    result = cells.copy()
+    for _ in range(quarter_turns % 4):
+        result = np.column_stack([both - result[:, 1], apart + result[:, 0], result[:, 2]])
+    return result
+
+
+def is_of_cells(one: SceneObject) -> bool:
+    """Whether an object is built from its own cells, wholly or in part."""
+    return not one.placements or any(p.template == OWN_CELLS for p in one.placements)
+
+
+def boxed(one: SceneObject, placement: Placement) -> SceneObject:
+    """Return an object that one piece of furniture stands for: its box and turn are its own."""
+    return replace(
+        one,
+        center_m=placement.center_m,
+        size_m=placement.size_m,
+        yaw_deg=90.0 * placement.quarter_turns,
+        confidence=1.0,
+        placements=(placement,),
+    )
+
+
+def plan_extent_m(one: SceneObject) -> np.ndarray:
+    """Return the sides along x, y and z, float64 [3], of the upright box around an object."""
+    turn = np.abs(rotation_about_z(one.yaw_deg)[:3, :3])
+    return turn @ one.size_m
+
+
+def copied(one: SceneObject, number: int) -> SceneObject:
+    """Return an object with its placements under another id."""
+    placements = tuple(replace(placed, object_id=number) for placed in one.placements)
+    return replace(one, id=number, placements=placements)
+
+
+def common_class(objects: list[SceneObject]) -> int | None:
+    """Return the class that objects share, or None."""
+    classes = {one.class_id for one in objects}
+    return classes.pop() if len(classes) == 1 else None
+
+
+def _rounded(values: np.ndarray) -> np.ndarray:
+    return np.round(values, DECIMALS) + 0.0  # Without -0.0, which prints as another value.

@@ -1,0 +1,84 @@
+"""Changes of cells put together: each cell once, with what it becomes at last."""
+
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.types import OBSERVED, GridCells, Operation
+from world2minecraft.editing.scene.draft import ARRAYS, SceneDraft
+
+
+class Patch:
+    """What cells of a draft become; a later change of a cell takes the place of an earlier one.
+
+    Nothing is done to the draft. ``planned`` leaves out cells that stay as they are.
+    """
+
+    def __init__(self, draft: SceneDraft):
+        self._draft = draft
+        self._cells: list[np.ndarray] = []
+        self._held: list[GridCells] = []
+
+    def put(self, cells: np.ndarray, held: GridCells) -> None:
+        """Let cells, int [N, 3], hold this."""
+        self._cells.append(cells.reshape(-1, 3))
+        self._held.append(held)
+
+    def empty(self, cells: np.ndarray) -> None:
+        """Let cells be seen to be empty."""
+        self.fill(cells, 0, 0)
+
+    def fill(self, cells: np.ndarray, class_id: int, instance: int) -> None:
+        """Let cells be of a class and of an object, surely and observed; colours stay."""
+        count = len(cells)
+        held = GridCells(
+            np.full(count, class_id, np.uint8),
+            np.ones(count, np.float16),
+            self._draft.colour[tuple(cells.T)],
+            np.full(count, OBSERVED, np.uint8),
+            np.full(count, instance, np.uint16),
+        )
+        self.put(cells, held)
+
+    def give(self, cells: np.ndarray, instance: int, class_id: int | None = None) -> None:
+        """Let cells belong to another object, with 0 to none; and be of its class, if one is given.
+
+        What they are stays else.
+        """
+        owners = np.full(len(cells), instance, np.uint16)
+        if class_id is None:
+            self._change(cells, instance=owners)
+        else:
+            sure = np.ones(len(cells), np.float16)
+            labels = np.full(len(cells), class_id, np.uint8)
+            self._change(cells, instance=owners, labels=labels, confidence=sure)
+
+    def relabel(self, cells: np.ndarray, class_id: int) -> None:
+        """Let occupied cells be of another class, surely; whose they are stays."""
+        labels, sure = np.full(len(cells), class_id, np.uint8), np.ones(len(cells), np.float16)
+        self._change(cells, labels=labels, confidence=sure)
+
+    def _change(self, cells: np.ndarray, **values: np.ndarray) -> None:
+        held = self._draft.held(cells)
+        self.put(cells, GridCells(**{name: getattr(held, name) for name in ARRAYS} | values))
+
+    def planned(self, kind: str, **told: Any) -> Operation:
+        """Return the operation; ``told`` is what ``SceneDraft.planned`` takes."""
+        cells = np.concatenate([np.zeros((0, 3), np.int64), *self._cells]).astype(np.int64)
+        flat = np.atleast_1d(np.ravel_multi_index(tuple(cells.T), self._draft.shape))
+        # The last of equal numbers is the first of the reversed ones.
+        _, at = np.unique(flat[::-1], return_index=True)
+        at = len(flat) - 1 - at
+        cells = cells[at]
+        values = {}
+        for name in ARRAYS:
+            empty = getattr(self._draft, name)[:0, 0, 0]
+            parts = [getattr(held, name) for held in self._held]
+            values[name] = np.concatenate([empty, *parts])[at]
+        before = self._draft.held(cells)
+        changed = np.zeros(len(cells), bool)
+        for name in ARRAYS:
+            differs = values[name] != getattr(before, name)
+            changed |= differs if differs.ndim == 1 else differs.any(axis=1)
+        after = GridCells(**{name: values[name][changed] for name in ARRAYS})
+        return self._draft.planned(kind, cells[changed], after, **told)

@@ -1,0 +1,90 @@
+"""The command that puts an object where it belongs: on what is under it, or at a wall."""
+
+from typing import Literal
+
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Operation, SceneObject
+from world2minecraft.editing.scene.carrying import planned_shift
+from world2minecraft.editing.scene.command import Command, Tools
+from world2minecraft.editing.scene.draft import SceneDraft
+from world2minecraft.editing.scene.object_boxes import object_named, plan_extent_m, said
+from world2minecraft.editing.scene.objects import Id
+from world2minecraft.editing.scene.standing import floor_layer
+
+WALLS = (SemanticClass.WALL, SemanticClass.WINDOW)
+WALL_SHARE = 0.5  # Of a side's face before which a wall must stand: a corner post is no wall.
+
+
+class SnapObject(Command):
+    """Move an object down, or up, onto what is under it, or sideways to the nearest wall.
+
+    It goes by whole cells, as far as its box touches. A wall counts where it stands before half
+    of the object's side or more.
+    """
+
+    op: Literal["snap_object"] = "snap_object"
+    id: Id
+    to: Literal["floor", "wall"]
+
+    def plan(self, draft: SceneDraft, tools: Tools) -> Operation:
+        """Return the object and its cells where they go."""
+        one = object_named(draft, self.id)
+        low, high = box_in_cells(draft, one)
+        way = _to_floor if self.to == "floor" else _to_wall
+        shift = way(draft, one, low, high)
+        if not shift.any():
+            where = "on the floor" if self.to == "floor" else "at the wall"
+            raise UsageError(f"{said(one)} is {where} already")
+        return planned_shift(draft, one, shift, "snap_object")
+
+
+def box_in_cells(draft: SceneDraft, one: SceneObject) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first cell and the one past the last, int64 [3] each, of an object.
+
+    They are those of its cells, or where it has none of the upright box around it.
+    """
+    cells = draft.cells_of(one.id).astype(np.int64)
+    if len(cells):
+        return cells.min(axis=0), cells.max(axis=0) + 1
+    sides = plan_extent_m(one)
+    ends = (one.center_m + np.stack([-sides, sides]) / 2 - draft.origin_m) / draft.voxel_m
+    low, high = np.floor(ends + 0.5).astype(np.int64)
+    low = np.clip(low, 0, np.array(draft.shape) - 1)
+    return low, np.clip(high, low + 1, draft.shape)
+
+
+def _to_floor(draft: SceneDraft, one: SceneObject, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Return the shift onto the highest thing that is under an object."""
+    under = np.s_[low[0] : high[0], low[1] : high[1], : low[2]]
+    solid = (draft.labels[under] % 255 > 0) & (draft.instance[under] != one.id)
+    layers = np.flatnonzero(solid.any(axis=(0, 1)))
+    top = int(layers[-1]) + 1 if len(layers) else floor_layer(draft)
+    return np.array([0, 0, top - low[2]])
+
+
+def _to_wall(draft: SceneDraft, one: SceneObject, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Return the shift to the wall that is nearest along x or y.
+
+    Raises:
+        UsageError: no wall stands before any of its sides.
+    """
+    window = [slice(a, b) for a, b in zip(low, high, strict=True)]
+    ways = []
+    for axis in (0, 1):
+        window[axis] = slice(None)
+        walls = np.isin(draft.labels[tuple(window)], WALLS)
+        window[axis] = slice(low[axis], high[axis])
+        share = walls.any(axis=2).mean(axis=1 - axis) >= WALL_SHARE
+        middle = (low[axis] + high[axis]) // 2
+        after, before = np.flatnonzero(share[middle:]), np.flatnonzero(share[:middle])
+        if len(after):
+            ways.append((axis, int(middle + after[0] - high[axis])))
+        if len(before):
+            ways.append((axis, int(before[-1]) + 1 - int(low[axis])))
+    if not ways:
+        raise UsageError(f"no wall stands beside {said(one)}; move it instead")
+    axis, step = min(ways, key=lambda way: abs(way[1]))
+    return step * np.eye(3, dtype=np.int64)[axis]
