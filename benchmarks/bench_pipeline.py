@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmarks.check_tsdf import integrate
 from benchmarks.rows import Row
-from world2minecraft.build import build_volume, write_build
+from world2minecraft.construction import build_volume, write_build
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.fuse import EvidenceMap
 from world2minecraft.minecraft.schematics.sponge import write_schem

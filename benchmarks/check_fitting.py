@@ -19,10 +19,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from world2minecraft.core.coordinates import block_axes_to_grid, grid_to_block_axes
-from world2minecraft.core.files import write_json
-from world2minecraft.core.types import AIR, BlockVolume
-from world2minecraft.fit import (
+from world2minecraft.construction.fitting import (
     CALM,
     Rules,
     ShapeSet,
@@ -35,8 +32,11 @@ from world2minecraft.fit import (
     shape_set,
     thin_cells,
 )
-from world2minecraft.fit.joins import parts_of_shapes
-from world2minecraft.fit.masks import PROBES, SUB, solid_of
+from world2minecraft.construction.fitting.joins import parts_of_shapes
+from world2minecraft.construction.fitting.masks import PROBES, SUB, solid_of
+from world2minecraft.core.coordinates import block_axes_to_grid, grid_to_block_axes
+from world2minecraft.core.files import write_json
+from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.stability import unstable
 from world2minecraft.rooms import Room, generate_room

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from world2minecraft.build import build_volume
+from world2minecraft.construction import build_volume
 from world2minecraft.core.coordinates import apply, block_to_room, look_at
 from world2minecraft.core.types import BlockVolume, Camera, OccupancyGrid
 from world2minecraft.find import FindParameters, find_objects
@@ -204,7 +204,7 @@ def camera_of(width: int, height: int) -> Camera:
 @lru_cache(maxsize=4)
 def room(scale: float, seed: int = 1, kind: str = "living", style: str = "blocks") -> BlockVolume:
     """Return a generated room, built at ``scale`` blocks a metre by the stages themselves."""
-    from world2minecraft.build.parameters import BuildParameters
+    from world2minecraft.construction.parameters import BuildParameters
 
     made = generate_room(seed, kind=kind)
     step = slice(VOXEL_STEP // 2, None, VOXEL_STEP)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from world2minecraft.build import build_volume
+from world2minecraft.construction import build_volume
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import read_json, write_bytes, write_json
 from world2minecraft.core.progress import Progress, silent

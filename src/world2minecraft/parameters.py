@@ -8,7 +8,7 @@ import math
 from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
-from world2minecraft.build import BuildParameters
+from world2minecraft.construction import BuildParameters
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.find import FindParameters
 from world2minecraft.formats.forms import form_named

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.build import WORLD_NAME, build_volume, write_build
+from world2minecraft.construction import WORLD_NAME, build_volume, write_build
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from world2minecraft import cli
-from world2minecraft.build import write_build
+from world2minecraft.construction import write_build
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.editing.journal import write_edits

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as some
 
-from world2minecraft.build import build_volume
+from world2minecraft.construction import build_volume
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.editing.cleanup.passes import mended

@@ -16,7 +16,7 @@ SCRIPT = """
 import sys
 from numba.core.dispatcher import Dispatcher
 from generated_rooms import furnished_room
-from world2minecraft.build import BuildParameters, build_volume
+from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.rendering.preview import plan_view, preview
 from world2minecraft.report.ahead import _look_at_it, draw_a_box
 from world2minecraft.report.pictures import make_pairs

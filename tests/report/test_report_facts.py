@@ -113,7 +113,7 @@ def test_points_beside_the_volume_are_in_no_block():
 
 
 def test_a_build_whose_parts_do_not_belong_together_is_refused(tmp_path):
-    from world2minecraft.build import write_build
+    from world2minecraft.construction import write_build
 
     volume = floor_and_table().volume
     write_build(tmp_path / "a", volume)

@@ -45,7 +45,7 @@ def with_build_options(
     from world2minecraft.parameters import with_settings
 
     if palette is not None:
-        from world2minecraft.build.palettes import load_palette
+        from world2minecraft.construction.palettes import load_palette
 
         load_palette(palette)  # What is wrong with it is said before minutes of work.
     chosen = {"style": style, "palette": _whole(palette)}

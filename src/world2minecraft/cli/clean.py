@@ -166,7 +166,7 @@ def taken_back(history: "History", undo: int | None, undo_all: bool, redo: int |
 
 def write_again(build: Path, history: "History") -> None:
     """Write a build with other blocks in it, under the name that its world has."""
-    from world2minecraft.build import WORLD_NAME, write_build
+    from world2minecraft.construction import WORLD_NAME, write_build
     from world2minecraft.core.files import read_json
     from world2minecraft.formats.scene import read_scene
     from world2minecraft.minecraft.worlds.world_reader import read_level

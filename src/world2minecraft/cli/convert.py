@@ -162,8 +162,8 @@ def with_labels(volume: "BlockVolume", palette: str) -> "BlockVolume":
     """
     if not palette:
         return volume
-    from world2minecraft.build.meanings import labelled
-    from world2minecraft.build.palettes import load_palette
+    from world2minecraft.construction.block_meanings import labelled
+    from world2minecraft.construction.palettes import load_palette
 
     meanings = load_palette(palette).meanings
     if meanings is None:

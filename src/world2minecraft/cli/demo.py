@@ -51,9 +51,9 @@ def run(
         palette: which blocks may be used.
         formats: further forms of the build.
     """
-    from world2minecraft.build import BuildParameters
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
+    from world2minecraft.construction import BuildParameters
     from world2minecraft.making import make_run
     from world2minecraft.parameters import Parameters
     from world2minecraft.rooms import generate_room, scan_room

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.build.palettes import Palette
+    from world2minecraft.construction.palettes import Palette
 
 EXAMPLES = """\
 w2m palettes                      the palettes there are
@@ -28,7 +28,7 @@ def run(
     Raises:
         UnknownNameError: there is no such palette. InputError: the file is no palette.
     """
-    from world2minecraft.build.palettes import PALETTE_FILES, load_palette
+    from world2minecraft.construction.palettes import PALETTE_FILES, load_palette
 
     if name:
         for line in lines_of(load_palette(name)):

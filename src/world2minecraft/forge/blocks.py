@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.build import BuildParameters, build_volume, find_spawn
-from world2minecraft.build.parameters import STYLES
+from world2minecraft.construction import BuildParameters, build_volume, find_spawn
+from world2minecraft.construction.parameters import STYLES
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import BlockVolume, OccupancyGrid, SceneObject
 from world2minecraft.editing.cleanup.passes import mended

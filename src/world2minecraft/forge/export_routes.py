@@ -19,7 +19,7 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
-from world2minecraft.build.parameters import STYLES
+from world2minecraft.construction.parameters import STYLES
 from world2minecraft.core.errors import UsageError
 from world2minecraft.editing.world_build import check_air
 from world2minecraft.forge import exports

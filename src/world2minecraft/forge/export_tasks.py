@@ -11,7 +11,7 @@ from typing import Any
 
 from PIL import Image
 
-from world2minecraft.build import WORLD_NAME, write_build
+from world2minecraft.construction import WORLD_NAME, write_build
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
 from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import BlockVolume

@@ -27,7 +27,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
-from world2minecraft.build.parameters import STYLES
+from world2minecraft.construction.parameters import STYLES
 from world2minecraft.core.errors import ConflictError, InputError, UsageError
 from world2minecraft.forge.apart import run_apart
 from world2minecraft.forge.captures import PICTURE, CaptureFolder

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from world2minecraft.build import BuildParameters
+from world2minecraft.construction import BuildParameters
 from world2minecraft.core.files import write_bytes, write_json
 from world2minecraft.core.progress import Progress
 from world2minecraft.making import make_from_plan, make_run

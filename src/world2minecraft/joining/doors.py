@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from world2minecraft.build.doorways import find_gaps
+from world2minecraft.construction.doorways import find_gaps
 from world2minecraft.core.types import Layout, Opening
 from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.joining.moving import Run

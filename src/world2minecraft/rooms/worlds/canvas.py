@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.build.canvas import Canvas
-from world2minecraft.build.connect import settle
-from world2minecraft.build.lattice import Lattice
+from world2minecraft.construction.canvas import Canvas
+from world2minecraft.construction.connect import settle
+from world2minecraft.construction.lattice import Lattice
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK, grid_to_block_axes
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.rooms.worlds.house import BlockHouse

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.build.lights import put_lights
-from world2minecraft.build.spawn import Spawn
+from world2minecraft.construction.lights import put_lights
+from world2minecraft.construction.spawn import Spawn
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.rooms.house import check_house

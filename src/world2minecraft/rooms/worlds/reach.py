@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from world2minecraft.build.spawn import Spawn, find_spawn
+from world2minecraft.construction.spawn import Spawn, find_spawn
 from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.physics.graph import WalkGraph, walk_graph

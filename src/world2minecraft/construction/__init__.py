@@ -1,0 +1,29 @@
+"""Stage 7: structure, placements and furniture become blocks in the room's real colours."""
+
+from typing import TYPE_CHECKING, Any
+
+from world2minecraft.construction.parameters import BuildParameters
+
+if TYPE_CHECKING:
+    from world2minecraft.construction.outputs import WORLD_NAME, write_build
+    from world2minecraft.construction.spawn import Spawn, find_spawn
+    from world2minecraft.construction.volume import build_volume
+
+__all__ = ["WORLD_NAME", "BuildParameters", "Spawn", "build_volume", "find_spawn", "write_build"]
+
+_HOMES = {
+    "WORLD_NAME": "outputs",
+    "Spawn": "spawn",
+    "build_volume": "volume",
+    "find_spawn": "spawn",
+    "write_build": "outputs",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import the builder when it is asked for: its parameters alone cost no time."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module  # noqa: PLC0415
+
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

@@ -1,0 +1,278 @@
+"""Objects from their own cells: filled where they are closed, fitted, and equal where equal."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.construction.fitted import TIE, Design, standing, turned_middle
+from world2minecraft.construction.fitting import (
+    Fit,
+    Rules,
+    Target,
+    covered,
+    even_of,
+    fit_solid,
+    shape_set,
+    solve,
+    thin_cells,
+)
+from world2minecraft.construction.fitting.masks import SUB
+from world2minecraft.construction.lattice import Lattice
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import turn_grid
+from world2minecraft.core.types import UNSEEN, OccupancyGrid
+
+# What is closed: nobody sees into it, so what lies unseen under its skin belongs to it.
+CLOSED = (SemanticClass.FURN, SemanticClass.SOFA, SemanticClass.BED)
+NOISY = 4.0  # The factor on prices for cells of a scan: stairs where noise is, look like rubble.
+SIZE_CELLS = 2  # Copies differ by at most so many cells along each axis,
+COPY_IOU = 0.5  # and meet in so much of what either fills.
+SLIM = 0.5  # What is a cell thick is thinner: a cell is on where an eighth of it is filled.
+SHEET = 0.75  # Blocks: curtains, radiators, pictures, screens.
+FRINGE = 0.25  # A layer with less than this share of the fullest one's cells is noise.
+LEAST, MOST = 0.8, 1.25  # By so much a side may be stretched to end with a block.
+FLUSH = 0.35  # Blocks by which a table may be made higher, so that its top ends a block.
+MAJORITY = 0.5  # A cell belongs to copies where so many of them have it.
+
+
+class Solid(NamedTuple):
+    """What an object is fitted to, in its own frame: cells turned back by its quarter turns."""
+
+    mask: np.ndarray  # bool [X, Y, Z]
+    turns: int
+
+
+class CellsDesign(NamedTuple):
+    """A design, the block of each cell, int [N, 3], and how well it shows them."""
+
+    design: Design
+    blocks: np.ndarray
+    fit: Fit
+
+
+def inner_cells(cells: np.ndarray, grid: OccupancyGrid, class_id: int) -> np.ndarray:
+    """Return the unseen cells, int [N, 3], within a closed object: under its skin and beside it.
+
+    Args:
+        cells: int [M, 3], the object's own.
+        grid: where they lie.
+        class_id: the object's.
+    """
+    if class_id not in CLOSED:
+        return np.zeros((0, 3), int)
+    low, high = cells.min(0), cells.max(0) + 1
+    box = tuple(map(slice, low, high))
+    mask = np.zeros(high - low, bool)
+    mask[tuple((cells - low).T)] = True
+    above = np.flip(np.logical_or.accumulate(np.flip(mask, 2), axis=2), 2)
+    before = [np.logical_or.accumulate(mask, axis=axis) for axis in (0, 1)]
+    behind = [np.flip(np.logical_or.accumulate(np.flip(mask, a), axis=a), a) for a in (0, 1)]
+    beside = before[0] | behind[0] | before[1] | behind[1]
+    unseen = (grid.source[box] == UNSEEN) & (grid.instance[box] == 0)
+    return np.argwhere(above & beside & unseen & ~mask) + low
+
+
+def solid_of(cells: np.ndarray, inner: np.ndarray, turns: int) -> Solid:
+    """Return cells, int [N, 3], and what they enclose, [M, 3], as a solid of its own frame."""
+    low = cells.min(0)
+    mask = np.zeros(cells.max(0) + 1 - low, bool)
+    mask[tuple((cells - low).T)] = True
+    mask[tuple((inner - low).T)] = True
+    return Solid(np.ascontiguousarray(turn_grid(mask, -turns)), turns % 4)
+
+
+def shared_solids(solids: Mapping[int, Solid], classes: Mapping[int, int]) -> dict[int, Solid]:
+    """Return the solids by number, those of copies replaced by what most of the copies have.
+
+    Two objects of one class are copies where their sizes differ by a cell or two and most of
+    what they fill is the same: four chairs come out as four equal chairs.
+    """
+    groups: list[list[int]] = []
+    for number in solids:
+        for group in groups:
+            if classes[group[0]] == classes[number] and _is_copy(
+                solids[group[0]].mask, solids[number].mask
+            ):
+                group.append(number)
+                break
+        else:
+            groups.append([number])
+    result = dict(solids)
+    for group in (one for one in groups if len(one) > 1):
+        mask = _majority([solids[number].mask for number in group])
+        result |= {number: Solid(mask, solids[number].turns) for number in group}
+    return result
+
+
+def _is_copy(one: np.ndarray, other: np.ndarray) -> bool:
+    if max(abs(a - b) for a, b in zip(one.shape, other.shape, strict=True)) > SIZE_CELLS:
+        return False
+    first, second = _centred([one, other])
+    shared, whole = np.count_nonzero(first & second), np.count_nonzero(first | second)
+    return bool(shared >= COPY_IOU * whole)
+
+
+def _centred(masks: Sequence[np.ndarray]) -> np.ndarray:
+    """Return masks in one frame, bool [N, X, Y, Z]: middles above each other, bottoms level."""
+    shape = np.max([mask.shape for mask in masks], axis=0)
+    result = np.zeros((len(masks), *shape), bool)
+    for index, mask in enumerate(masks):
+        low = (shape - mask.shape) // 2 * [1, 1, 0]
+        box = tuple(slice(a, a + n) for a, n in zip(low, mask.shape, strict=True))
+        result[(index, *box)] = mask
+    return result
+
+
+def _majority(masks: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the cells that most of some masks have, bool, cut to their box."""
+    mean = _centred(masks).mean(0) >= MAJORITY
+    at = np.argwhere(mean)
+    return mean[tuple(map(slice, at.min(0), at.max(0) + 1))]
+
+
+def design_of_cells(
+    cells: np.ndarray,
+    solid: Solid,
+    grid: OccupancyGrid,
+    lattice: Lattice,
+    kinds: frozenset[str],
+    shift: bool,
+    flush: bool = False,
+    hangs: bool = False,
+) -> CellsDesign:
+    """Return an object's cells as shapes in place.
+
+    Args:
+        cells: int [N, 3], indices into the grid, at least one; they say where it stands.
+        solid: what is fitted, as of ``solid_of`` or ``shared_solids``.
+        grid: where the cells lie.
+        lattice: where the blocks stand.
+        kinds: the kinds of shape that may be used.
+        shift: whether the object may move by up to half a block sideways, and a quarter up or
+            down, to fall on the lattice crisply.
+        flush: whether its top must end with a block where it nearly does: things lie on tables.
+        hangs: whether it hangs on a wall where it does not begin at a floor.
+    """
+    low, high = cells.min(0), cells.max(0) + 1
+    ends = np.array([[lattice.edges_of(grid, a)[at[a]] for a in range(3)] for at in (low, high)])
+    side = grid.voxel_m * lattice.blocks_per_metre
+    base, bottom = standing(float(ends[0, 2]), lattice)
+    stands = not hangs or base == lattice.ground_under(float(base))
+    body = _body_of(solid.mask, side, bottom, shift, flush)
+    target = _target(solid.mask, body, grid.voxel_m, bottom)
+    shapes, turns = shape_set(kinds), solid.turns
+    centre = ends[:, :2].mean(0) + _turned_way(body.middle, turns) * side
+    rules = Rules(calm=NOISY, flush=body.flush, legs=True, phase=body.phase, stands=stands)
+    if shift:
+        fit = fit_solid(target, shapes, replace(rules, even=_even(target, body)))
+    else:
+        at = np.round(centre * SUB).astype(int) % SUB
+        fit = solve(target, (int(at[0]), int(at[1])), shapes, rules)
+    middle = turned_middle(fit, turns)
+    xy = np.floor(centre - middle + 0.5 - TIE).astype(int)
+    numbers = shapes.turns[turns][np.rot90(fit.numbers, turns)]
+    design = Design(np.array([*xy, base]), numbers, (numbers > 0).astype(np.int16), shapes)
+    moved = np.array([*(xy + middle - centre), base + bottom / SUB - ends[0, 2]])
+    blocks = np.floor(ends[0] + (cells - low + 0.5) * side + moved).astype(int)
+    last = design.low + numbers.shape - 1
+    return CellsDesign(design, np.where(shift, np.clip(blocks, design.low, last), blocks), fit)
+
+
+def kinds_of_sheet(kinds: frozenset[str], solid: Solid, side: float) -> frozenset[str]:
+    """Return the kinds that suit an object: an upright sheet takes no stairs, which fray it.
+
+    Where no panel exists in its colour it is of full blocks. ``side`` is a cell's, in blocks.
+    """
+    thick = min(np.ptp(_bulk(solid.mask, axis)) for axis in (0, 1)) * side
+    if thick > SHEET:
+        return kinds
+    return kinds - {"stairs"} if "trapdoor" in kinds else kinds - {"stairs", "slab"}
+
+
+class Body(NamedTuple):
+    """The bulk of an object in its own frame, and how it is stretched to end with blocks."""
+
+    sides: np.ndarray  # float64 [3], the sides of a cell in blocks, stretched
+    middle: np.ndarray  # float64 [2], the middle of the bulk off that of the box, in cells
+    phase: tuple[int | None, int | None]  # where that middle must lie; None where it is free
+    flush: bool
+
+
+def _body_of(mask: np.ndarray, side: float, bottom: int, shift: bool, flush: bool) -> Body:
+    """Return the bulk of cells: what is left of them without a fringe of noise.
+
+    A side that nearly ends a block is stretched until it does: a rim of slabs and stairs around a
+    bed shows nothing of the bed.
+    """
+    sides, middle = np.full(3, side), np.zeros(2)
+    phase: list[int | None] = [None, None]
+    if not shift:
+        return Body(sides, middle, (None, None), False)
+    for axis in (0, 1):
+        first, last = _bulk(mask, axis)
+        middle[axis] = (first + last - mask.shape[axis]) / 2
+        blocks, factor = _whole(side * (last - first))
+        if blocks:
+            sides[axis], phase[axis] = side * factor, int(blocks * SUB / 2) % SUB
+    first, last = _bulk(mask, 2)
+    tall = side * last + bottom / SUB
+    ends = flush and _ends_flush(tall)
+    goal = np.ceil(tall - TIE) if ends else max(np.floor(2 * tall + 0.5) / 2, 0.5)
+    factor = (goal - bottom / SUB) / (side * last)
+    if LEAST <= factor <= MOST:
+        sides[2] = side * factor
+    return Body(sides, middle, (phase[0], phase[1]), ends)
+
+
+def _bulk(mask: np.ndarray, axis: int) -> tuple[int, int]:
+    """Return the first layer along an axis that is no fringe, and the one past the last."""
+    areas = mask.sum(tuple({0, 1, 2} - {axis}))
+    layers = np.flatnonzero(areas >= FRINGE * areas.max())
+    return int(layers[0]), int(layers[-1]) + 1
+
+
+def _whole(size: float) -> tuple[float, float]:
+    """Return the blocks that a size is stretched to and the factor; 0 where none is near."""
+    for blocks in (np.floor(size + 0.5), np.floor(2 * size + 0.5) / 2):
+        if blocks and LEAST <= blocks / size <= MOST:
+            return float(blocks), float(blocks / size)
+    return 0.0, 1.0
+
+
+def _turned_way(way: np.ndarray, turns: int) -> np.ndarray:
+    """Return a way in plan, float64 [2], after quarter turns counter-clockwise."""
+    x, y = way.tolist()
+    for _ in range(turns % 4):
+        x, y = -y, x
+    return np.array([x, y])
+
+
+def _even(target: Target, body: Body) -> tuple[bool, bool]:
+    """Return along which axes a fit may be its own mirror image: the phase must allow it."""
+    along = [fixed is None or fixed % (SUB // 2) == 0 for fixed in body.phase]
+    even = even_of(target)
+    return even[0] and along[0], even[1] and along[1]
+
+
+def _ends_flush(tall: float) -> bool:
+    """Whether a height in blocks ends so little below a block's top that it is raised to it."""
+    rest = tall % 1
+    return rest > 1 - FLUSH or rest < TIE
+
+
+def _target(mask: np.ndarray, body: Body, voxel_m: float, bottom: int) -> Target:
+    """Return cells as a target about the middle of their bulk."""
+    shape = np.array(mask.shape)
+    low = -(shape[:2] / 2 + body.middle) * body.sides[:2]
+    high = low + shape[:2] * body.sides[:2]
+    half = np.ceil(np.maximum(-low, high) * SUB - TIE).astype(int)
+    tall = max(1, int(np.ceil(shape[2] * body.sides[2] * SUB - TIE)))
+    starts = (*(half / SUB + low), 0.0)
+    edges = [starts[a] + np.arange(shape[a] + 1) * body.sides[a] for a in range(3)]
+    counts = [-(-int(n) // SUB) for n in (2 * half[0], 2 * half[1], tall)]
+    inside = (slice(0, 2 * half[0]), slice(0, 2 * half[1]), slice(0, tall))
+    thin = thin_cells(mask, voxel_m)
+    wanted, slight = (covered(values, edges, counts)[inside] for values in (mask, thin))
+    return Target(wanted - SLIM * slight, (1 - SLIM) * slight, bottom)

@@ -1,0 +1,68 @@
+"""The cells that colour things: with their tops closed, stretched over designs, and seen."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.construction.tops import top_cells
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
+from world2minecraft.geometry.padded_morphology import beside
+
+
+class Hues(NamedTuple):
+    """The cells that colour a thing, and the block that each of them colours."""
+
+    cells: np.ndarray  # int [N, 3]
+    blocks: np.ndarray  # int [N, 3], of the lattice
+
+
+class Coats:
+    """The colours of a room's cells, as things take them."""
+
+    def __init__(
+        self, grid: OccupancyGrid, colours: np.ndarray, coloured: np.ndarray, close_tops: bool
+    ):
+        self.grid, self.colours, self.coloured, self.close_tops = (
+            grid,
+            colours,
+            coloured,
+            close_tops,
+        )
+        free = (grid.labels == 0) & (grid.source != UNSEEN)
+        self.exposed = beside(free)  # What lies inside an object says nothing of how it looks.
+
+    def with_tops(self, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return an object's cells with its top closed, and the cells that colour them.
+
+        A chair has none: what is unseen beside its back lies under the table before it.
+        """
+        if not (self.close_tops and len(cells)):
+            return cells, cells
+        if np.bincount(self.grid.labels[tuple(cells.T)]).argmax() == SemanticClass.CHAIR:
+            return cells, cells
+        added, alike = top_cells(self.grid, cells)
+        return np.concatenate([cells, added]), np.concatenate([cells, alike])
+
+    def stretched(
+        self, cells: np.ndarray, placement: Placement, low: np.ndarray, shape: Sequence[int]
+    ) -> "Hues":
+        """Return what colours a design when the placement's box is stretched over it.
+
+        The snapped design stands up to half a block off the object; its front must take the
+        colours of the object's front all the same.
+        """
+        cells, hues = self.with_tops(cells)
+        size = placement.size_m[[1, 0, 2]] if placement.quarter_turns % 2 else placement.size_m
+        centres = self.grid.origin_m + (cells + 0.5) * self.grid.voxel_m
+        share = (centres - placement.center_m) / size + 0.5
+        near = (np.abs(share - 0.5) <= 0.5 + self.grid.voxel_m / size).all(1)
+        blocks = np.floor(share[near] * np.array(shape)).astype(int)
+        return Hues(hues[near], np.clip(blocks, 0, np.array(shape) - 1) + low)
+
+    def colours_of(self, hues: "Hues") -> tuple[np.ndarray, np.ndarray]:
+        """Return the colours, float32 [N, 3], of cells and which of them are one, bool [N]."""
+        at = tuple(hues.cells.T)
+        usable = self.coloured[at] & self.exposed[at]
+        return self.colours[at], usable if usable.any() else self.coloured[at]

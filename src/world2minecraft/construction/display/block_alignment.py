@@ -1,0 +1,191 @@
+"""Moving an object of fine geometry by less than a block, so that it fits the blocks of its room.
+
+Walls and floors stand on the lattice, up to half a block off their true planes. What stood before
+a wall must neither sink into it nor leave a gap, and what lay on a table goes where the table goes.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.construction.canvas import UNSEEN_BLOCKS, Canvas
+from world2minecraft.construction.display.frame import Frame
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
+
+STANDS_M = 0.12  # A bottom this near to the floor stands on it: one and a half cells of 8 cm.
+FLOOR_STANDS_M = 0.3  # The same of furniture that always stands on a floor.
+LIES_M = 0.2  # How far a thing's bottom may be from the top of what carries it.
+AT_WALL_M = 0.17  # A side this near to a wall's cells stood at the wall: two cells of 8 cm.
+AT_WALL_SHARE = 0.3  # Of a side that has a wall behind it.
+MOST_BLOCKS = 1.25  # A wall's blocks stand off its plane by less; more would be another wall.
+SUNK_COST = 8.0  # Blocks of way that a thing goes rather than lie wholly in a wall.
+WALLS = (int(SemanticClass.WALL), int(SemanticClass.WINDOW))
+_EDGE = 1e-6
+
+
+class Settled(NamedTuple):
+    """An object in its place: where it was in the room, and where it went."""
+
+    before: Frame
+    after: Frame
+
+
+class Settler:
+    """Finds the place of each object of a room whose shell stands."""
+
+    def __init__(self, canvas: Canvas, grid: OccupancyGrid):
+        self.lattice = canvas.lattice
+        self.solid = (canvas.states > 0) & ~canvas.mask_of(*UNSEEN_BLOCKS)
+        self.grid = grid
+        self.walls = np.isin(grid.labels, WALLS)
+        self.placed: list[Settled] = []
+
+    def settle(self, frame: Frame, mount: str, carried: bool) -> Frame:
+        """Return a frame moved to its place, and remember it for what lies on it.
+
+        Args:
+            frame: where the object was seen.
+            mount: ``floor``, ``wall``, ``ceiling`` or ``any``, as templates say.
+            carried: whether it may lie on another object.
+        """
+        moved = frame.moved(np.array([0.0, 0.0, self._rise(frame, mount)]))
+        host = self._host_of(frame) if carried else None
+        if host is not None:
+            shift = host.after.base_m - host.before.base_m
+            top = host.after.base_m[2] + host.after.size_m[2]
+            moved = frame.moved(np.array([shift[0], shift[1], top - frame.base_m[2]]))
+        else:
+            moved = moved.moved(self._to_walls(moved))
+        moved = moved.moved(self._out_of_walls(moved))
+        self.placed.append(Settled(frame, moved))
+        return moved
+
+    def _rise(self, frame: Frame, mount: str) -> float:
+        """Return how far up in metres a thing goes, to stand on its floor or reach its ceiling."""
+        scale = self.lattice.blocks_per_metre
+        bottom = float(self.lattice.coordinates_of(frame.base_m)[2])
+        if mount == "ceiling":
+            return self._to_ceiling(frame)
+        ground = self.lattice.ground_under(bottom)
+        over = (bottom - ground) / scale
+        near = FLOOR_STANDS_M if mount == "floor" else STANDS_M
+        return -over if over <= near else 0.0
+
+    def _to_ceiling(self, frame: Frame) -> float:
+        """Return the way in metres from the top of a hanging thing to the blocks over it."""
+        top_m = np.array([*frame.base_m[:2], frame.base_m[2] + frame.size_m[2]])
+        x, y, top = self.lattice.coordinates_of(top_m)
+        column = np.clip([int(x), int(y)], 0, np.array(self.lattice.shape[:2]) - 1)
+        layers = np.flatnonzero(self.solid[column[0], column[1]])
+        layers = layers[np.abs(layers - top) <= MOST_BLOCKS]
+        if not len(layers):
+            return 0.0
+        return float(layers.min() - top) / self.lattice.blocks_per_metre
+
+    def _host_of(self, frame: Frame) -> Settled | None:
+        """Return the highest object under the middle of a frame on which it lies."""
+        best = None
+        for one in self.placed:
+            low, high = one.before.bounds_m
+            inside = (low[:2] <= frame.base_m[:2]).all() and (frame.base_m[:2] <= high[:2]).all()
+            near = abs(high[2] - frame.base_m[2]) <= LIES_M
+            if inside and near and (best is None or high[2] > best.before.bounds_m[1, 2]):
+                best = one
+        return best
+
+    def _to_walls(self, frame: Frame) -> np.ndarray:
+        """Return the shift in metres, float64 [3], that closes gaps to the walls it stood at."""
+        shift = np.zeros(3)
+        if frame.yaw_deg % 90:
+            return shift
+        for axis in (0, 1):
+            at = [self._is_at_wall(frame, axis, side) for side in (-1, 1)]
+            if at[0] != at[1]:
+                shift[axis] = self._gap(frame, axis, 1 if at[1] else -1)
+        return shift / self.lattice.blocks_per_metre
+
+    def _is_at_wall(self, frame: Frame, axis: int, side: int) -> bool:
+        """Whether cells of a wall lie right behind most of a side."""
+        low, high = (frame.bounds_m - self.grid.origin_m) / self.grid.voxel_m
+        reach = AT_WALL_M / self.grid.voxel_m
+        low, high = low.copy(), high.copy()
+        if side > 0:
+            low[axis], high[axis] = high[axis] - 1, high[axis] + reach
+        else:
+            low[axis], high[axis] = low[axis] - reach, low[axis] + 1
+        first = np.clip(np.floor(low + 0.5), 0, self.grid.shape).astype(int)
+        last = np.clip(np.floor(high + 0.5), first, self.grid.shape).astype(int)
+        window = self.walls[tuple(slice(a, b) for a, b in zip(first, last, strict=True))]
+        covered = window.any(axis=axis)
+        return bool(covered.size) and float(covered.mean()) >= AT_WALL_SHARE
+
+    def _gap(self, frame: Frame, axis: int, side: int) -> float:
+        """Return the way in blocks, signed, from a side to the blocks before it; 0 for none."""
+        low, high = self._bounds(frame)
+        face = high[axis] if side > 0 else low[axis]
+        for step in (0, 1):
+            layer = (
+                int(np.ceil(face - _EDGE)) + step
+                if side > 0
+                else int(np.floor(face + _EDGE)) - 1 - step
+            )
+            gap = layer - face if side > 0 else layer + 1 - face
+            if not 0 <= layer < self.solid.shape[axis] or abs(gap) > MOST_BLOCKS:
+                return 0.0
+            window = [slice(*_whole(low[n], high[n], self.solid.shape[n])) for n in range(3)]
+            window[axis] = slice(layer, layer + 1)
+            if self.solid[tuple(window)].mean() >= AT_WALL_SHARE:
+                return gap
+        return 0.0
+
+    def _out_of_walls(self, frame: Frame) -> np.ndarray:
+        """Return the least way sideways out of blocks, float64 [3] in metres."""
+        low, high = self._bounds(frame)
+        # Floor and ceiling are not met sideways.
+        low[2], high[2] = low[2] + _EDGE, max(high[2] - _EDGE, low[2] + 2 * _EDGE)
+        if self._sunk(low, high, np.zeros(2)) <= _EDGE:
+            return np.zeros(3)
+        ways = [_ways(low[axis], high[axis]) for axis in (0, 1)]
+        costs = {
+            (x, y): round(SUNK_COST * self._sunk(low, high, np.array([x, y])) + abs(x) + abs(y), 6)
+            for x in ways[0]
+            for y in ways[1]
+        }
+        x, y = min(costs, key=lambda way: (costs[way], abs(way[0]) + abs(way[1]), way))
+        return np.array([x, y, 0.0]) / self.lattice.blocks_per_metre
+
+    def _bounds(self, frame: Frame) -> tuple[np.ndarray, np.ndarray]:
+        low, high = self.lattice.coordinates_of(frame.bounds_m)
+        return low.copy(), high.copy()
+
+    def _sunk(self, low: np.ndarray, high: np.ndarray, shift: np.ndarray) -> float:
+        """Return the share of a box, moved by a shift, that lies in blocks."""
+        sums, volume = None, 1.0
+        spans, weights = [], []
+        for axis in range(3):
+            a, b = low[axis], high[axis]
+            if axis < 2:
+                a, b = a + shift[axis] + _EDGE, b + shift[axis] - _EDGE
+            first, last = int(np.floor(a)), max(int(np.ceil(b)), int(np.floor(a)) + 1)
+            cells = np.arange(first, last)
+            weights.append(np.clip(np.minimum(b, cells + 1) - np.maximum(a, cells), 0, None))
+            spans.append(np.clip(cells, 0, self.solid.shape[axis] - 1))
+            volume *= max(b - a, _EDGE)
+        sums = self.solid[np.ix_(*spans)].astype(np.float64)
+        for weight in weights:
+            sums = np.tensordot(weight, sums, axes=(0, 0))
+        return float(sums) / volume
+
+
+def _ways(low: float, high: float) -> list[float]:
+    """Return ways along an axis that bring a side to an edge of blocks, and none."""
+    up, down = np.ceil(low - _EDGE) - low, np.floor(high + _EDGE) - high
+    ways = [0.0, float(up), float(up) + 1, float(down), float(down) - 1]
+    return sorted({round(way, 9) for way in ways if abs(way) <= MOST_BLOCKS})
+
+
+def _whole(low: float, high: float, count: int) -> tuple[int, int]:
+    """Return the blocks [first, last) that a span meets, one at least."""
+    first = int(np.clip(np.floor(low + _EDGE), 0, count - 1))
+    return first, int(np.clip(np.ceil(high - _EDGE), first + 1, count))

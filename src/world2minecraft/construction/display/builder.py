@@ -1,0 +1,285 @@
+"""The objects of one room as display entities: templates by their parts, all else by its cells."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.construction.canvas import UNSEEN_BLOCKS, Canvas
+from world2minecraft.construction.display.block_alignment import Settler
+from world2minecraft.construction.display.colliders import put_colliders
+from world2minecraft.construction.display.frame import Frame, Piece, entities_of
+from world2minecraft.construction.display.heaps import (
+    frame_of_cells,
+    pieces_of_cells,
+    without_specks,
+)
+from world2minecraft.construction.display.part_materials import (
+    nearest_state,
+    role_colours,
+    states_of_parts,
+)
+from world2minecraft.construction.display.pieces import pieces_of
+from world2minecraft.construction.display.worktops import (
+    COUNTER,
+    as_counter,
+    deepened,
+    plate_pieces,
+)
+from world2minecraft.construction.palettes import Palette
+from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.construction.places import LAST, in_order
+from world2minecraft.construction.seats import chair_paints
+from world2minecraft.construction.tops import top_cells
+from world2minecraft.construction.worktops import Worktop, find_worktop, joined
+from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
+from world2minecraft.core.coordinates import apply, cell_centers_m, invert
+from world2minecraft.core.types import UNSEEN, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.furniture import Part, Template, template
+from world2minecraft.furniture.solids import OWN_CELLS, own_cells
+from world2minecraft.geometry.padded_morphology import beside
+from world2minecraft.minecraft.displays import VIEW_BLOCKS
+from world2minecraft.minecraft.glow import is_luminous
+
+# Pieces over which an object is made coarser: the issue's bounds, and the richest of the library.
+MOST_PIECES = {int(SemanticClass.FURN): 15, int(SemanticClass.OBJS): 24}
+MOST_PIECES_ELSE, MOST_PIECES_ROUND = 8, 24
+ASKEW_DEG = 5.0  # A smaller turn off the walls is noise of 8 cm cells.
+LEFT_CELLS = 4  # Cells of an object that no template shows: fewer are noise.
+FREE_SHARE = 0.5  # Cells: how finely a template is asked whether it stands in free space.
+FULL_LIGHT = 15
+APART_BLOCKS, APART_STEPS = 0.0006, 12  # What a screen tells apart across a room; 2 mm at most.
+
+
+def most_pieces(found: Template) -> int:
+    """Return over how many pieces a template is made coarser."""
+    if "round" in f"{found.name} {found.family}":
+        return MOST_PIECES_ROUND
+    return MOST_PIECES.get(found.class_id, MOST_PIECES_ELSE)
+
+
+class DisplayBuilder:
+    """Sets the objects of one room, whose shell stands on a canvas, as entities and colliders."""
+
+    def __init__(
+        self,
+        canvas: Canvas,
+        grid: OccupancyGrid,
+        colours: np.ndarray,
+        coloured: np.ndarray,
+        palette: Palette,
+        parameters: BuildParameters,
+        instances: Sequence[ObjectInstance],
+    ):
+        free = (grid.labels == 0) & (grid.source != UNSEEN)
+        self.free = free
+        self.canvas, self.grid, self.palette, self.parameters = canvas, grid, palette, parameters
+        self.colours, self.coloured = colours, coloured
+        self.exposed = coloured & beside(free)
+        self.paints = chair_paints(grid, colours, self.exposed, parameters.lightness_weight)
+        self.instances = {one.id: one for one in instances}
+        self.settler = Settler(canvas, grid)
+        self.shown = np.zeros(grid.shape, bool)
+        self.plated = np.zeros(grid.shape[:2], bool)  # Columns under a counter's own plate.
+        self.tops = self._worktops() if parameters.close_tops else {}
+        self.set_count = 0
+        reach = float(np.linalg.norm(canvas.lattice.shape))
+        self.view_range = max(1.0, float(np.ceil(2 * reach / VIEW_BLOCKS) / 2))
+
+    def put_all(self, placements: Sequence[Placement]) -> None:
+        """Set every placement, then the cells of objects that none of them shows."""
+        counts = Counter(one.object_id for one in placements)
+        placements = [deepened(as_counter(one, self.tops), self.grid) for one in placements]
+        for placement in sorted(placements, key=in_order):
+            cells = own_cells(
+                replace(placement, size_m=placement.size_m + 2 * self.grid.voxel_m), self.grid
+            )
+            if placement.template == OWN_CELLS:
+                self.put_cells(cells, placement.class_id, placement.object_id)
+                continue
+            found, frame = template(placement.template), self._frame_of(placement, counts)
+            parts = found.parts(frame.size_m, placement.parameters)
+            if len(cells) and self._contradicted(parts, frame, placement) > self._limit(placement):
+                self.put_cells(cells, placement.class_id, placement.object_id)
+            else:
+                self.put_template(found, parts, frame, cells, placement)
+        self._put_rest()
+        for number, top in self.tops.items():
+            choices = self.palette.blocks[SemanticClass.FURN]
+            state = nearest_state(top.colour, choices, self.parameters)[0]
+            plate = plate_pieces(top, self.plated, self.grid, state)
+            if plate is not None:
+                self._put(*plate, int(SemanticClass.FURN), number, "any")
+
+    def _worktops(self) -> dict[int, Worktop]:
+        """Return the glossy worktops of the room by their objects."""
+        found = {}
+        furn = self.grid.labels == SemanticClass.FURN
+        for number in np.unique(self.grid.instance[furn & (self.grid.instance > 0)]).tolist():
+            cells = np.argwhere(furn & (self.grid.instance == number))
+            lattice = self.canvas.lattice
+            top = find_worktop(self.grid, cells, self.colours, self.coloured, lattice)
+            if top is not None:
+                found[number] = top
+        return joined(found)
+
+    def put_template(
+        self,
+        found: Template,
+        parts: Sequence[Part],
+        frame: Frame,
+        cells: np.ndarray,
+        placement: Placement,
+    ) -> None:
+        """Set a template by its parts, each role of its material in the object's colours."""
+        self.shown[tuple(cells.T)] = True
+        colours = self._role_colours(found, parts, frame, cells, placement.object_id)
+        if found.name == COUNTER and placement.object_id in self.tops:
+            colours["top"] = self.tops[placement.object_id].colour
+            low, high = (frame.bounds_m[:, :2] - self.grid.origin_m[:2]) / self.grid.voxel_m
+            first, last = np.maximum(np.floor(low + 0.5), 0).astype(int), np.floor(high + 0.5)
+            self.plated[first[0] : int(last[0]), first[1] : int(last[1])] = True
+        states = states_of_parts(found, parts, colours, self.palette, self.parameters)
+        scale = self.canvas.lattice.blocks_per_metre
+        pieces = pieces_of(parts, states, most_pieces(found), scale)
+        self._put(pieces, frame, placement.class_id, placement.object_id, found.mount)
+
+    def put_cells(self, cells: np.ndarray, class_id: int, number: int) -> None:
+        """Set an object from its own cells, int [N, 3], its unseen top closed."""
+        cells = cells[~self.shown[tuple(cells.T)]]
+        if not len(cells):
+            return
+        self.shown[tuple(cells.T)] = True
+        cells = without_specks(cells, LEFT_CELLS)
+        tinted = cells
+        if self.parameters.close_tops and class_id != SemanticClass.CHAIR:
+            added, alike = top_cells(self.grid, cells)
+            cells, tinted = np.concatenate([cells, added]), np.concatenate([cells, alike])
+        at = tuple(tinted.T)
+        usable = self.exposed[at] if self.exposed[at].any() else self.coloured[at]
+        pieces = pieces_of_cells(
+            cells, self.colours[at], usable, self.grid, class_id, self.palette, self.parameters
+        )
+        self._put(pieces, frame_of_cells(cells, self.grid), class_id, number, "any")
+
+    def _put(
+        self, pieces: list[Piece], frame: Frame, class_id: int, number: int, mount: str
+    ) -> None:
+        lattice = self.canvas.lattice
+        moved = self.settler.settle(frame, mount, class_id in LAST and mount != "floor")
+        # Faces of two objects that lie in one plane would flicker.
+        step = APART_BLOCKS * (self.set_count % APART_STEPS) / lattice.blocks_per_metre
+        moved, self.set_count = moved.moved(np.full(3, step)), self.set_count + 1
+        put_colliders(self.canvas, pieces, moved, class_id, number)
+        dark = self._is_within_blocks(moved)
+        self.canvas.entities += entities_of(
+            pieces,
+            moved,
+            lattice.corner_m,
+            lattice.blocks_per_metre,
+            class_id,
+            number,
+            view_range=self.view_range,
+            lights=[FULL_LIGHT if dark or is_luminous(one.state) else None for one in pieces],
+        )
+
+    def _is_within_blocks(self, frame: Frame) -> bool:
+        """Whether an object's entities stand in a block that keeps light out."""
+        middle = frame.base_m + np.array([0.0, 0.0, frame.size_m[2] / 2])
+        at = np.floor(self.canvas.lattice.coordinates_of(middle)).astype(int)
+        at = tuple(np.clip(at, 0, np.array(self.canvas.lattice.shape) - 1).tolist())
+        return bool(self.canvas.states[at]) and not self.canvas.mask_of(*UNSEEN_BLOCKS)[at]
+
+    def _put_rest(self) -> None:
+        """Set the cells of objects that lie in no placement and not beside one of their own."""
+        rest = np.isin(self.grid.labels, OBJECT_CLASSES) & ~self.shown
+        keys = (self.grid.labels.astype(np.int32) << 16) + self.grid.instance
+        for key in np.unique(keys[rest]).tolist():
+            own = self.shown & (self.grid.instance == key & 0xFFFF) & (self.grid.instance > 0)
+            cells = np.argwhere(rest & (keys == key) & ~beside(own))
+            if len(cells) >= LEFT_CELLS:
+                self.put_cells(cells, key >> 16, key & 0xFFFF)
+
+    def _frame_of(self, placement: Placement, counts: Counter[int]) -> Frame:
+        """Return where a placement stands: as it was matched, or as its askew object was seen."""
+        base = placement.center_m - [0.0, 0.0, placement.size_m[2] / 2]
+        yaw = 90.0 * placement.quarter_turns
+        frame = Frame(base, placement.size_m, yaw)
+        one = self.instances.get(placement.object_id)
+        if one is None or counts[placement.object_id] != 1:
+            return frame
+        off = (one.yaw_deg - yaw + 45.0) % 90.0 - 45.0
+        if abs(off) < ASKEW_DEG:
+            return frame
+        swapped = round((one.yaw_deg - off - yaw) / 90.0) % 2
+        size = one.size_m[[1, 0, 2]] if swapped else one.size_m
+        spans = template(placement.template).size_m
+        size = np.array([span.clip(float(side)) for span, side in zip(spans, size, strict=True)])
+        size[2] = placement.size_m[2]
+        return Frame(np.array([*one.center_m[:2], base[2]]), size, yaw + off)
+
+    def _limit(self, placement: Placement) -> float:
+        chair = placement.class_id == SemanticClass.CHAIR
+        return self.parameters.chair_contradicted if chair else self.parameters.most_contradicted
+
+    def _contradicted(self, parts: Sequence[Part], frame: Frame, placement: Placement) -> float:
+        """Return the share of a template's volume that was seen free, well off its own cells."""
+        own = self.grid.instance == placement.object_id
+        free = self.free & ~beside(beside(own))
+        step = FREE_SHARE * self.grid.voxel_m
+        inside = total = 0.0
+        for part in parts:
+            low, high = part.box_m[:3], part.box_m[3:]
+            counts = np.clip(np.ceil((high - low) / step), 1, 64).astype(int)
+            axes = [
+                low[n] + (np.arange(counts[n]) + 0.5) * (high[n] - low[n]) / counts[n]
+                for n in range(3)
+            ]
+            points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+            room = apply(frame.object_to_room, points)
+            cells = np.floor((room - self.grid.origin_m) / self.grid.voxel_m).astype(int)
+            known = ((cells >= 0) & (cells < self.grid.shape)).all(axis=1)
+            volume = float(np.prod(high - low))
+            inside += volume * float(free[tuple(cells[known].T)].sum()) / len(points)
+            total += volume
+        return inside / max(total, 1e-12)
+
+    def _role_colours(
+        self,
+        found: Template,
+        parts: Sequence[Part],
+        frame: Frame,
+        cells: np.ndarray,
+        number: int,
+    ) -> dict[str, np.ndarray]:
+        if number in self.paints:
+            return {"": self.paints[number]}
+        at = tuple(cells.T)
+        usable = self.exposed[at] if self.exposed[at].any() else self.coloured[at]
+        centres = cell_centers_m(cells[usable], self.grid.origin_m, self.grid.voxel_m)
+        kinds = {role: material.kind for role, material in found.materials.items()}
+        centres = centres + self._outward(cells[usable]) * self.grid.voxel_m / 2
+        stretched = _stretched(centres, frame)
+        colours = self.colours[at][usable]
+        return role_colours(parts, frame, stretched, colours, self.grid.voxel_m, kinds)
+
+    def _outward(self, cells: np.ndarray) -> np.ndarray:
+        """Return the side, float64 [N, 3] of -1 to 1, on which each cell borders on free space."""
+        result = np.zeros((len(cells), 3))
+        limit = np.array(self.grid.shape) - 1
+        for axis in range(3):
+            for side in (-1, 1):
+                near = cells.copy()
+                near[:, axis] = np.clip(near[:, axis] + side, 0, limit[axis])
+                result[:, axis] += side * self.free[tuple(near.T)]
+        return result
+
+
+def _stretched(centres_m: np.ndarray, frame: Frame) -> np.ndarray:
+    """Return the middles of cells, float64 [N, 3], drawn into the box of what shows them."""
+    local = apply(invert(frame.object_to_room), centres_m)
+    half = frame.size_m / 2
+    local[:, :2] = np.clip(local[:, :2], -half[:2], half[:2])
+    local[:, 2] = np.clip(local[:, 2], 0, frame.size_m[2])
+    return apply(frame.object_to_room, local)

@@ -1,0 +1,169 @@
+"""Which block each part of a piece of furniture is of: its role's material in the real colour."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from world2minecraft.construction.display.frame import Frame
+from world2minecraft.construction.paint import FADED, costs_of
+from world2minecraft.construction.palettes import Palette
+from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.core.coordinates import apply, invert
+from world2minecraft.furniture import Part, Template
+from world2minecraft.furniture.materials import FIXED, Material, swatches
+from world2minecraft.minecraft.block_states import complete, parse_state
+from world2minecraft.minecraft.collision_shapes import is_full_cube
+from world2minecraft.minecraft.glow import is_luminous
+
+# Squared distance by which a block of the role's own kind may lie farther off than the nearest
+# block of all that its class may be of: so wood stays wood, and a red door turns red concrete.
+OWN_KIND = 0.12
+GLOWING = "minecraft:ochre_froglight[axis=y]"  # A warm white cube in the place of a small lantern.
+LEAST_CELLS = 3  # Fewer say nothing of a role's colour.
+SAME_ROLE = 0.07  # Oklab distance of two roles of one kind that are of one paint.
+BESIDE = 1.5  # Cells: how far from a part a cell may lie that colours it. Scans are that noisy.
+
+
+def states_of_parts(
+    found: Template,
+    parts: Sequence[Part],
+    colours: Mapping[str, np.ndarray],
+    palette: Palette,
+    parameters: BuildParameters,
+) -> list[str]:
+    """Return the block of each part.
+
+    Args:
+        found: whose parts they are; its materials say what each role is made of.
+        parts: its boxes.
+        colours: Oklab, float32 [3], by role, where it is known; that of the whole object by "".
+        palette: the blocks that a class may be of.
+        parameters: how colours are weighed.
+    """
+    roles = tuple(dict.fromkeys(part.role for part in parts))
+    sizes = {role: sum(_size(one) for one in parts if one.role == role) for role in roles}
+    main = max(roles, key=lambda role: (round(sizes[role], 9), role))
+    source = (found.class_id, palette, parameters)
+    whole = colours.get(main, colours.get(""))
+    chosen = {main: _state_of_role(found.materials.get(main), whole, True, *source)}
+    for role in roles:
+        material = found.materials.get(role)
+        if role not in colours and _is_alike(material, found.materials.get(main)):
+            chosen[role] = chosen[main]
+        elif role != main:
+            colour = colours.get(role, whole)
+            chosen[role] = _state_of_role(material, colour, role in colours, *source)
+    return [chosen[part.role] for part in parts]
+
+
+def _is_alike(one: Material | None, main: Material | None) -> bool:
+    """Whether a role that nobody saw is of what most of its object is."""
+    if one is None or main is None:
+        return one is main
+    return one.takes_colour and main.takes_colour and one.kind == main.kind
+
+
+def _size(part: Part) -> float:
+    return float(np.prod(part.box_m[3:] - part.box_m[:3]))
+
+
+def role_colours(
+    parts: Sequence[Part],
+    frame: Frame,
+    centres_m: np.ndarray,
+    colours: np.ndarray,
+    voxel_m: float,
+    kinds: Mapping[str, str],
+) -> dict[str, np.ndarray]:
+    """Return the colour of each role by the cells that lie in or by its parts, Oklab float32 [3].
+
+    Roles of one kind of material whose colours are about the same get one; "" holds that of all.
+
+    Args:
+        parts: the object's boxes in its frame.
+        frame: where it stands.
+        centres_m: float64 [N, 3], the middles of its cells in the room.
+        colours: float32 [N, 3], theirs.
+        voxel_m: the side of a cell.
+        kinds: the kind of material of each role.
+    """
+    if not len(colours):
+        return {}
+    result = {"": np.median(colours, axis=0)}
+    local = apply(invert(frame.object_to_room), centres_m)
+    boxes = np.array([part.box_m for part in parts]).reshape(-1, 2, 3)
+    apart = np.maximum(boxes[None, :, 0] - local[:, None], local[:, None] - boxes[None, :, 1])
+    away = np.linalg.norm(np.maximum(apart, 0), axis=2)
+    # Inside several parts the one whose surface is nearest says more: scans see surfaces.
+    away += np.where(away == 0, 1e-3 * np.abs(apart.max(axis=2)), 0)
+    nearest = away.argmin(axis=1)
+    near = away.min(axis=1) <= BESIDE * voxel_m
+    roles = np.array([part.role for part in parts])[nearest]
+    counts = {role: int(((roles == role) & near).sum()) for role in dict.fromkeys(roles.tolist())}
+    for role in sorted(counts, key=lambda name: (-counts[name], name)):
+        if counts[role] < LEAST_CELLS:
+            continue
+        colour = np.median(colours[(roles == role) & near], axis=0)
+        alike = (
+            result[name]
+            for name in result
+            if name
+            and kinds.get(name) == kinds.get(role)
+            and np.linalg.norm(result[name] - colour) <= SAME_ROLE
+        )
+        result[role] = next(alike, colour)
+    return result
+
+
+def nearest_state(
+    colour: np.ndarray, choices: Sequence[str], parameters: BuildParameters
+) -> tuple[str, float]:
+    """Return the block nearest to an Oklab colour, and how far it is."""
+    none = np.zeros(len(choices))
+    costs = costs_of(colour[None], choices, parameters.lightness_weight, none, FADED)[0]
+    best = int(costs.argmin())
+    return choices[best], float(np.sqrt(costs[best]))
+
+
+def _state_of_role(
+    material: Material | None,
+    colour: np.ndarray | None,
+    seen: bool,
+    class_id: int,
+    palette: Palette,
+    parameters: BuildParameters,
+) -> str:
+    plain = palette.blocks[class_id]
+    if material is None:
+        return (
+            palette.defaults[class_id]
+            if colour is None
+            else nearest_state(colour, plain, parameters)[0]
+        )
+    own = _whole(material, palette.defaults[class_id])
+    if material.kind == FIXED or not material.takes_colour or colour is None:
+        return own
+    kind = [_full(swatch.sample) for swatch in swatches(material.kind, frozenset({"full"}))]
+    allowed = [state for state in kind if palette.allows(state)]
+    best, away = nearest_state(colour, plain, parameters)
+    if not allowed:
+        return best
+    same, apart = nearest_state(colour, allowed, parameters)
+    if apart <= away + OWN_KIND:
+        return same
+    return best if seen else own  # The wooden legs of a blue chair are not blue.
+
+
+def _whole(material: Material, default: str) -> str:
+    """Return the full block of a material: only a cube can be stretched over a part."""
+    name = material.block("full")
+    if name is None:
+        return default
+    state = _full(name)
+    if is_full_cube(state):
+        return state
+    return GLOWING if is_luminous(state) else default
+
+
+def _full(name: str) -> str:
+    return str(complete(parse_state(name)))

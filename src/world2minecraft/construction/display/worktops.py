@@ -1,0 +1,117 @@
+"""Worktops and wall units whose bodies gave no depth, as fine geometry.
+
+A glossy plate mirrors the light away, so a kitchen row is matched by its fronts alone, as a shelf
+or as a thin panel. Where a worktop was found the row is a counter with that plate; and a panel
+that hangs before a wall, with nothing seen between, is the front of a unit on that wall.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.construction.display.block_alignment import WALLS
+from world2minecraft.construction.display.frame import Frame, Piece
+from world2minecraft.construction.worktops import Worktop
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
+from world2minecraft.geometry.boxes import partition
+
+COUNTER = "counter"
+REACHES_M = 0.2  # A row whose top is this near to a worktop's carries it.
+ROW_M = (0.55, 1.25)  # Heights of rows that carry a worktop.
+PLATE_M = 0.04
+PANEL_M = 0.17  # A thing this thin is a panel: two cells of 8 cm.
+WIDE_M = 0.3  # Narrower things are no front.
+UNIT_M = 0.5  # The depth of a wall unit, at most.
+UNSEEN_SHARE = 0.6  # Of the space between a front and its wall: it was hardly looked into.
+WALL_SHARE = 0.1  # Of the wall behind a unit, that was seen under or over it.
+AROUND_CELLS = 4  # How far under and over the unit its wall is looked for.
+
+
+def as_counter(placement: Placement, tops: Mapping[int, Worktop]) -> Placement:
+    """Return a row under a worktop as a counter that reaches up to it, any other as it is."""
+    top = tops.get(placement.object_id)
+    if top is None or placement.class_id != SemanticClass.FURN:
+        return placement
+    low = placement.center_m[2] - placement.size_m[2] / 2
+    high = low + placement.size_m[2]
+    if abs(high - top.top_m) > REACHES_M or not ROW_M[0] <= high - low <= ROW_M[1]:
+        return placement
+    size = np.array([*placement.size_m[:2], top.top_m - low])
+    middle = np.array([*placement.center_m[:2], low + size[2] / 2])
+    known = placement.parameters if placement.template == COUNTER else {}
+    return replace(placement, template=COUNTER, size_m=size, center_m=middle, parameters=known)
+
+
+def plate_pieces(
+    top: Worktop, covered: np.ndarray, grid: OccupancyGrid, state: str
+) -> tuple[list[Piece], Frame] | None:
+    """Return the pieces of a worktop's plate and their frame; None where all of it is covered.
+
+    Args:
+        top: the worktop.
+        covered: bool [X, Y] of the grid, columns where a counter carries a plate of its own.
+        grid: the room.
+        state: the plate's block.
+    """
+    if top.plan is None or not (top.plan & ~covered).any():
+        return None
+    boxes = partition((top.plan & ~covered)[:, :, None].astype(np.int32))
+    low, high = boxes[:, 1:3].min(axis=0), boxes[:, 4:6].max(axis=0)
+    size = (high - low) * grid.voxel_m
+    base = np.array([*(grid.origin_m[:2] + low * grid.voxel_m + size / 2), top.top_m - PLATE_M])
+    pieces = []
+    for x0, y0, x1, y1 in boxes[:, [1, 2, 4, 5]].tolist():
+        first = (np.array([x0, y0]) - low) * grid.voxel_m - size / 2
+        last = (np.array([x1, y1]) - low) * grid.voxel_m - size / 2
+        pieces.append(Piece(np.array([*first, 0.0, *last, PLATE_M]), state))
+    return pieces, Frame(base, np.array([*size, PLATE_M]), 0.0)
+
+
+def deepened(placement: Placement, grid: OccupancyGrid) -> Placement:
+    """Return a panel that hangs before a wall as deep as to that wall, any other as it is."""
+    low = placement.center_m - _turned(placement.size_m, placement.quarter_turns) / 2
+    high = 2 * placement.center_m - low
+    size = high - low
+    axis = int(size[:2].argmin())
+    if size[axis] > PANEL_M or size[1 - axis] < WIDE_M or size[2] < WIDE_M / 2:
+        return placement
+    if placement.class_id not in (SemanticClass.FURN, SemanticClass.OBJS) or low[2] < ROW_M[0]:
+        return placement
+    depths = {side: _unseen_depth(low, high, axis, side, grid) for side in (-1, 1)}
+    side = max(depths, key=lambda one: depths[one])
+    if depths[side] <= 0 or min(depths.values()) > 0:
+        return placement
+    if side < 0:
+        low[axis] -= depths[side]
+    else:
+        high[axis] += depths[side]
+    size_m = _turned(high - low, placement.quarter_turns)
+    return replace(placement, center_m=(low + high) / 2, size_m=size_m)
+
+
+def _unseen_depth(
+    low: np.ndarray, high: np.ndarray, axis: int, side: int, grid: OccupancyGrid
+) -> float:
+    """Return how far in metres it is from a side to a wall over unseen space; 0 where it is not."""
+    first = np.clip(np.floor((low - grid.origin_m) / grid.voxel_m + 0.5), 0, grid.shape).astype(int)
+    last = np.clip(np.floor((high - grid.origin_m) / grid.voxel_m + 0.5), first + 1, grid.shape)
+    window = [slice(int(a), int(b)) for a, b in zip(first, last, strict=True)]
+    for step in range(1, int(UNIT_M / grid.voxel_m) + 2):
+        layer = int(last[axis]) - 1 + step if side > 0 else int(first[axis]) - step
+        if not 0 <= layer < grid.shape[axis]:
+            return 0.0
+        window[axis] = slice(layer, layer + 1)
+        labels, source = grid.labels[tuple(window)], grid.source[tuple(window)]
+        rows = slice(max(window[2].start - AROUND_CELLS, 0), window[2].stop + AROUND_CELLS)
+        behind = grid.labels[(*window[:2], rows)]
+        if np.isin(behind, WALLS).mean() >= WALL_SHARE and not (labels == 0).mean() > WALL_SHARE:
+            return (step - 1) * grid.voxel_m
+        if ((source == UNSEEN) | np.isin(labels, WALLS)).mean() < UNSEEN_SHARE:
+            return 0.0
+    return 0.0
+
+
+def _turned(size: np.ndarray, quarter_turns: int) -> np.ndarray:
+    return size[[1, 0, 2]] if quarter_turns % 2 else size.copy()

@@ -1,0 +1,354 @@
+"""Objects as blocks: templates by their parts or idioms, all else from its own cells."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.construction.canvas import Canvas
+from world2minecraft.construction.cell_colours import default_colour, spread
+from world2minecraft.construction.celled import (
+    CLOSED,
+    CellsDesign,
+    Solid,
+    design_of_cells,
+    inner_cells,
+    kinds_of_sheet,
+    solid_of,
+)
+from world2minecraft.construction.cells import shape_of_cells
+from world2minecraft.construction.colour_sources import Coats, Hues
+from world2minecraft.construction.dressing import Dresser
+from world2minecraft.construction.fitted import (
+    LAID_ON,
+    Design,
+    design_of_parts,
+    of_halves,
+    one_block,
+)
+from world2minecraft.construction.fitting import without_loose
+from world2minecraft.construction.fitting.masks import SUB
+from world2minecraft.construction.guarding import BULKY, HUNG, solids_of, well_fitted
+from world2minecraft.construction.idioms import Thing, body_box, filled_by, idiom_box, put_idiom
+from world2minecraft.construction.lattice import volume_shares
+from world2minecraft.construction.lattice_fitting import best_place, best_step
+from world2minecraft.construction.palettes import Palette
+from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.construction.parts import design_of
+from world2minecraft.construction.places import LAST, in_order, within_storeys
+from world2minecraft.construction.plates import Plates
+from world2minecraft.construction.seats import chair_paints
+from world2minecraft.construction.substitutes import known_by_shape
+from world2minecraft.construction.surfaces import block_colours
+from world2minecraft.construction.tinting import Hue
+from world2minecraft.construction.windows import Window, window_on
+from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
+from world2minecraft.core.types import UNSEEN, OccupancyGrid, Placement
+from world2minecraft.furniture import Idiom, template
+from world2minecraft.furniture import block_designs as idiom
+from world2minecraft.furniture.solids import own_cells
+
+CELLS = "cells"
+OPEN = 0.6  # A block of which more than this was seen free holds nothing but a thin part.
+PLAIN = {"full", "slab"}  # Of so few blocks a bed or cupboard with stairs and panels is rubble.
+SURE_IOU = 0.5  # What matched as well as this is no guess; a block of a thin part is mostly free.
+FINE_SCALE = 3.0  # Blocks per metre from which a design is held against what was seen free.
+LEAST_ALONE = 0.25  # Blocks: a chair at one block a metre is less, and at two it is more.
+FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+
+
+class ObjectBuilder:
+    """Sets the objects of one room on a canvas whose shell stands."""
+
+    def __init__(
+        self,
+        canvas: Canvas,
+        grid: OccupancyGrid,
+        colours: np.ndarray,
+        coloured: np.ndarray,
+        palette: Palette,
+        parameters: BuildParameters,
+        footprints: Sequence[np.ndarray],
+    ):
+        free = (grid.labels == 0) & (grid.source != UNSEEN)
+        self.coats = Coats(grid, colours, coloured, parameters.close_tops)
+        self.open_share = volume_shares(free, grid, canvas.lattice)
+        self.within = within_storeys(canvas, footprints)
+        self.canvas, self.grid, self.palette = canvas, grid, palette
+        self.colours, self.coloured = colours, coloured
+        self.parameters = parameters
+        self.lattice = canvas.lattice
+        self.cell_blocks = grid.voxel_m * self.lattice.blocks_per_metre
+        self.dresser = Dresser(palette, parameters)
+        self.fitted = np.zeros(grid.shape, bool)  # Cells that some fit has shown or left out.
+        self.plates = Plates(canvas, palette)
+        self.paints = chair_paints(
+            grid, colours, coloured & self.coats.exposed, parameters.lightness_weight
+        )
+
+    def put_all(self, placements: Sequence[Placement]) -> None:
+        """Set every placement, then the object cells that no block near them shows."""
+        if self.parameters.close_tops:
+            self.plates.put_worktops(self.grid, self.colours, self.coloured)
+        voxels = self.parameters.style == "voxels"
+        if not voxels and self.lattice.blocks_per_metre < FINE_SCALE:
+            placements = known_by_shape(placements, self._cells_of, self.coats)
+        held = {id(one): self._cells_of(one) for one in placements}
+        own = [one for one in placements if one.template == CELLS or voxels]
+        solids = solids_of(own, held, self.coats)
+        well = {}
+        if voxels:
+            kinds = self._kinds_of_placement
+            well = well_fitted(placements, held, solids, self.coats, self.lattice, kinds)
+        for placement in sorted(placements, key=in_order):
+            cells = held[id(placement)]
+            known = placement.template != CELLS
+            if id(placement) in well:
+                self._put_made(placement, cells, well[id(placement)])
+            elif not known or not self.put_template(placement, cells, forced=not len(cells)):
+                solid = solids.get(id(placement))
+                self.put_cells(cells, placement.class_id, placement.object_id, solid)
+        rest = np.isin(self.grid.labels, OBJECT_CLASSES)
+        rest &= ~self._shown() & ~self._told(placements) & ~self.fitted
+        keys = (self.grid.labels.astype(np.int32) << 16) + self.grid.instance
+        for key in np.unique(keys[rest]).tolist():
+            cells, number = np.argwhere(rest & (keys == key)), key & 0xFFFF
+            missing = number and not (self.canvas.instance == number).any()
+            if missing or self._is_large(cells):
+                self.put_cells(cells, key >> 16, number)
+        self.plates.put_carpets()
+        classes = {one.object_id: one.class_id for one in placements}
+        for number in sorted(set(classes) - set(np.unique(self.canvas.instance).tolist())):
+            if self._is_large(np.argwhere(self.grid.instance == number)):
+                self._put_one(classes[number], number)
+
+    def _is_large(self, cells: np.ndarray) -> bool:
+        """Whether cells, int [N, 3], are worth a block: a cup as a cube would hide its table."""
+        if self.lattice.blocks_per_metre >= FINE_SCALE or not len(cells):
+            return True
+        size = (np.ptp(cells, axis=0) + 1) * self.cell_blocks
+        return float(np.prod(size)) >= LEAST_ALONE
+
+    def _put_one(self, class_id: int, number: int) -> None:
+        """Set the one free block that stands best for an object all of whose places are taken."""
+        cells = np.argwhere(self.grid.instance == number)
+        if not len(cells):
+            return
+        blocks, counts = np.unique(self._blocks_of(cells), axis=0, return_counts=True)
+        free = (self.canvas.states == 0) & self.within
+        place = best_place(blocks, counts, free)
+        if place is not None:
+            hues = Hues(cells, np.broadcast_to(place, cells.shape))
+            self._put_shapes(one_block(place), hues, Thing(class_id, number))
+
+    def _told(self, placements: Sequence[Placement]) -> np.ndarray:
+        """Return the cells, bool [X, Y, Z], of which a design of few blocks says enough.
+
+        Beside a chair of one or two blocks what is left of its cells would be a lump.
+        """
+        if self.lattice.blocks_per_metre >= FINE_SCALE or self.parameters.style == "voxels":
+            return np.zeros(self.grid.shape, bool)
+        own = {one.object_id for one in placements if one.template == CELLS}
+        told = {one.object_id for one in placements} - own
+        return np.isin(self.grid.instance, sorted(told & set(np.unique(self.canvas.instance))))
+
+    def _shown(self) -> np.ndarray:
+        """Return the cells, bool [X, Y, Z], that lie in or beside a block of their own object."""
+        cells = np.argwhere(np.isin(self.grid.labels, OBJECT_CLASSES))
+        numbers = self.grid.instance[tuple(cells.T)]
+        blocks = self._blocks_of(cells)
+        shape = np.array(self.lattice.shape)
+        shown = np.zeros(len(cells), bool)
+        for step in ((0, 0, 0), *FACES):
+            at = tuple(np.clip(blocks + step, 0, shape - 1).T)
+            shown |= (self.canvas.instance[at] == numbers) & (numbers > 0)
+        result = np.zeros(self.grid.shape, bool)
+        result[tuple(cells[shown].T)] = True
+        return result
+
+    def _cells_of(self, placement: Placement) -> np.ndarray:
+        """Return the cells, int [N, 3], of a placement's object that lie in its box or by it."""
+        reach = 2 * self.grid.voxel_m
+        return own_cells(replace(placement, size_m=placement.size_m + reach), self.grid)
+
+    def _kinds_of_placement(self, cells: np.ndarray, placement: Placement) -> frozenset[str]:
+        return self._kinds(cells, Thing(placement.class_id, placement.object_id))
+
+    def _put_made(self, placement: Placement, cells: np.ndarray, made: CellsDesign) -> None:
+        """Set a fit of an object's own cells."""
+        cells, hues = self.coats.with_tops(cells)
+        self.fitted[tuple(cells.T)] = True
+        thing = Thing(placement.class_id, placement.object_id)
+        self._put_design(made.design, Hues(hues, made.blocks), thing)
+
+    def put_cells(
+        self, cells: np.ndarray, class_id: int, number: int, solid: Solid | None = None
+    ) -> None:
+        """Set an object from its own cells; ``solid`` is what they are fitted to, where known."""
+        if not len(cells):
+            return
+        cells, hues = self.coats.with_tops(cells)
+        thing = Thing(class_id, number)
+        solid = solid or solid_of(cells, inner_cells(cells, self.grid, class_id), 0)
+        kinds = kinds_of_sheet(self._kinds(hues, thing), solid, self.cell_blocks)
+        if kinds & BULKY:
+            of_cells = (cells, solid, self.grid, self.lattice, kinds, number > 0)
+            made = design_of_cells(*of_cells, class_id in LAID_ON, self._hangs(cells, class_id))
+            design, blocks = made.design, made.blocks
+        else:
+            share = self.parameters.object_share
+            shape = shape_of_cells(cells, self.grid, self.lattice, share, shift=number > 0)
+            design, blocks = of_halves(shape.low, shape.halves), shape.blocks
+        self.fitted[tuple(cells.T)] = True
+        self._put_design(design, Hues(hues, blocks), thing)
+
+    def _hangs(self, cells: np.ndarray, class_id: int) -> bool:
+        """Whether nothing that is built lies under an object that may hang on a wall."""
+        blocks = np.unique(self._blocks_of(cells), axis=0)
+        lowest = blocks[blocks[:, 2] == blocks[:, 2].min()]
+        under = self.canvas.states[tuple((lowest - [0, 0, 1]).T)] > 0
+        return class_id in HUNG and not under.any()
+
+    def _put_design(self, design: Design, hues: Hues, thing: Thing) -> None:
+        """Set a design of own cells; one that hangs flush on a wall takes wall blocks."""
+        window = self._window(design)
+        filled = design.filled[window.box]
+        if window.is_flush(filled):
+            numbers = np.where(filled & window.wall, 1, design.numbers[window.box] * window.free)
+        else:
+            # Crumbs of furniture stay where they are.
+            if thing.instance and thing.class_id in LAST:
+                step = self._step(design.filled, design.low)
+                design, hues = design.moved(step), hues._replace(blocks=hues.blocks + step)
+                window = self._window(design)
+            numbers = design.numbers[window.box] * window.free
+            numbers = without_loose(numbers, design.shapes, window.held)
+        self._put_shapes(design.cut(window.low, window.box, numbers), hues, thing)
+
+    def put_template(self, placement: Placement, cells: np.ndarray, *, forced: bool) -> bool:
+        """Set a template by its vanilla design at small scales, else by its parts.
+
+        Returns:
+            False where its parts would stand in space that was seen free: nothing is set then,
+            unless it is ``forced``.
+        """
+        thing = Thing(placement.class_id, placement.object_id)
+        found = idiom(placement, self.lattice.blocks_per_metre)
+        if found is not None:
+            return self._put_idiom(found, placement, cells, thing, forced)
+        parts = template(placement.template).parts(placement.size_m, placement.parameters)
+        kinds = self._kinds(cells, thing)
+        if kinds & BULKY:
+            design = design_of_parts(placement, parts, self.lattice, kinds)
+        else:
+            coarse = design_of(placement, parts, self.lattice)
+            design = of_halves(coarse.low, coarse.halves, coarse.part)
+        window = self._window(design)
+        guessed = not forced and placement.iou < SURE_IOU
+        if guessed and self._contradicted(design, window) > self._limit(placement):
+            return False
+        design = design.moved(self._step(design.filled, design.low))
+        self.plates.plate_over(design, thing.instance)
+        window = self._window(design)
+        hues = self.coats.stretched(cells, placement, design.low, design.numbers.shape)
+        numbers = design.numbers[window.box] * window.free
+        self._put_shapes(design.cut(window.low, window.box, numbers), hues, thing)
+        return True
+
+    def _put_idiom(
+        self, found: Idiom, placement: Placement, cells: np.ndarray, thing: Thing, forced: bool
+    ) -> bool:
+        """Set a vanilla design; at fine scales a guessed one not where it was seen free."""
+        low, size = idiom_box(found, placement, self.lattice)
+        if self.lattice.blocks_per_metre >= FINE_SCALE:
+            filled = filled_by(found)
+            guessed = not forced and placement.iou < SURE_IOU
+            if guessed and self._open_in(filled, low) > self._limit(placement):
+                return False
+            low = low + self._step(filled, low, held=placement.iou >= SURE_IOU)
+        start, solid = body_box(found, placement, self.lattice, low, size)
+        hues = self.coats.stretched(cells, placement, start, solid.tolist())
+        seen = block_colours(tuple(size.tolist()), hues.blocks - low, *self.coats.colours_of(hues))
+        hue = Hue(*seen, self.paints.get(thing.instance))
+        put_idiom(self.canvas, found, low, thing, hue, self.palette, self.within, self.parameters)
+        self.fitted[tuple(cells.T)] = True
+        return True
+
+    def _limit(self, placement: Placement) -> float:
+        """Return how much of a design may stand in space that was seen free."""
+        if placement.class_id == SemanticClass.CHAIR:
+            return self.parameters.chair_contradicted
+        return self.parameters.most_contradicted
+
+    def _open_in(self, filled: np.ndarray, low: np.ndarray) -> float:
+        """Return the share of blocks, bool [X, Y, Z] at ``low``, that were seen free."""
+        at = np.argwhere(filled) + low
+        inside = ((at >= 0) & (at < self.open_share.shape)).all(axis=1)
+        return float((self.open_share[tuple(at[inside].T)] > OPEN).mean()) if inside.any() else 0.0
+
+    def _window(self, design: Design) -> Window:
+        return window_on(self.canvas, self.within, design.low, design.numbers.shape)
+
+    def _kinds(self, cells: np.ndarray, thing: Thing) -> frozenset[str]:
+        """Return the kinds of shape that exist in the colours of an object with cells [N, 3]."""
+        paint = self.paints.get(thing.instance)
+        if paint is not None:
+            return self.dresser.kinds(np.reshape(paint, (-1, 3)), thing.class_id)
+        colours, usable = self.coats.colours_of(Hues(cells, cells))
+        kinds = self.dresser.kinds(colours[usable], thing.class_id)
+        coarse = self.lattice.blocks_per_metre < FINE_SCALE
+        return kinds & PLAIN if coarse and thing.class_id in CLOSED else kinds
+
+    def _step(self, filled: np.ndarray, low: np.ndarray, *, held: bool = False) -> np.ndarray:
+        """Return the step of at most a block, int64 [3], that keeps most of a thing whole.
+
+        What is ``held`` in its place by a good match is moved where others stand there alone: a
+        block of a thin part is mostly free wherever it is.
+        """
+        free = (self.canvas.states == 0) & self.within
+        stands = int(low[2]) == self.lattice.ground_under(float(low[2]))
+        opened = np.zeros_like(free) if held else self.open_share > OPEN
+        return best_step(filled, low, free, opened, stands)
+
+    def _contradicted(self, design: Design, window: Window) -> float:
+        """Return the share of a design's blocks that were seen free, but for what they show.
+
+        A thin panel leaves most of its block free.
+        """
+        filled = np.argwhere(design.filled[window.box])
+        if not len(filled):
+            return 0.0
+        numbers = design.numbers[window.box][tuple(filled.T)]
+        most = np.maximum(OPEN, 1 - design.shapes.volumes[numbers] / (2 * SUB**3))
+        return float((self.open_share[tuple((filled + window.low).T)] > most).mean())
+
+    def _blocks_of(self, cells: np.ndarray) -> np.ndarray:
+        """Return the block, int [N, 3], in which each cell's centre lies, above the floor."""
+        centres = self.grid.origin_m + (cells + 0.5) * self.grid.voxel_m
+        blocks = np.floor(self.lattice.coordinates_of(centres)).astype(int)
+        blocks[:, 2] = np.maximum(blocks[:, 2], self.lattice.ground)
+        return blocks
+
+    def _put_shapes(self, design: Design, hues: Hues, thing: "Thing") -> None:
+        """Paint a design and set it.
+
+        A block without a colour of its own takes that of its part: a seat's that of the seat.
+        """
+        filled, low = design.filled, design.low
+        if not filled.any():
+            return
+        tinted, known = block_colours(filled.shape, hues.blocks - low, *self.coats.colours_of(hues))
+        default = default_colour(self.palette.defaults[thing.class_id])
+        colours = tinted.copy()
+        for group in np.unique(design.part[filled]):
+            mask = filled & (design.part == group)
+            usable = known & (mask if (known & mask).any() else filled)
+            colours[mask] = spread(tinted, usable, mask, default)
+        paint = self.paints.get(thing.instance)
+        if paint is not None:
+            colours[filled], known = paint, filled
+        states = self.dresser.states(design, colours, filled & known.any(), thing.class_id)
+        at = tuple(np.argwhere(filled).T[axis] + low[axis] for axis in range(3))
+        names, index = np.unique(states.astype(str), return_inverse=True)
+        ids = self.canvas.ids_of(names.tolist())[index]
+        self.canvas.put(at, ids, thing.class_id, thing.instance)

@@ -1,0 +1,190 @@
+"""From the colours of a surface to the few blocks that show it calmly.
+
+A surface takes the block nearest in Oklab among those its class allows. Alone that is noisy, so
+first a few blocks are chosen that serve the whole surface (one more only when it pays), then each
+block weighs its own colour against its neighbours: a plain wall becomes plain, while the edge
+between a red front and a dark counter stays.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from world2minecraft.construction.cell_colours import group_medians
+from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.minecraft.block_colours import colours_of
+
+LEAST_PART = 0.02  # Share of a surface that is a part; a guess: less is noise.
+LEAST_BLOCKS = 3.0
+ROUNDS = 4
+# A blue chair may be a stronger blue, but not purple: hue counts more than chroma.
+CHROMA_WEIGHT, HUE_WEIGHT = 0.6, 1.5
+# Of what is nearly grey the hue is noise, and a clear colour in its place is plainly wrong: the
+# kitchen's blue-grey carpet came out purple.
+FAINT_CHROMA, CLEAR_CHROMA, FAINT_WEIGHT = 0.01, 0.025, 2.5
+DULL_CHROMA, STRONG_CHROMA = 0.035, 0.055  # From where on a grey for a colour is a fault.
+FADED = 0.05  # How great a fault, of an object; on walls and floors a calm grey is none.
+SAME_PAINT = 0.06  # Oklab distance of two medians of one paint: about the noise of fused colours.
+MAX_DISTANCES = 1 << 24  # Blocks times candidates held at once: 64 MB.
+
+
+def costs_of(
+    colours: np.ndarray,
+    candidates: Sequence[str],
+    lightness_weight: float,
+    handicaps: np.ndarray,
+    fading: float = 0.0,
+) -> np.ndarray:
+    """Return squared distances, float32 [N, M], of Oklab colours [N, 3] to M blocks.
+
+    The difference of a and b is parted into that of chroma and the rest, which is that of hue.
+
+    ``handicaps`` float [M] are added to the distances, and ``fading`` to those of blocks that would
+    turn a clear colour grey: a purple sofa may be another purple, but no dark stone.
+    """
+    wanted = colours.astype(np.float32)[:, None]
+    offered = oklab_of_srgb(colours_of(candidates))
+    square = (wanted - offered) ** 2
+    own = np.hypot(wanted[..., 1], wanted[..., 2])
+    chroma = own - np.hypot(offered[:, 1], offered[:, 2])
+    hue = np.maximum(square[..., 1] + square[..., 2] - chroma**2, 0)
+    clear = np.clip((own - FAINT_CHROMA) / (CLEAR_CHROMA - FAINT_CHROMA), 0, 1)
+    weight = FAINT_WEIGHT + (CHROMA_WEIGHT - FAINT_WEIGHT) * clear
+    weight = np.where(chroma < 0, weight, CHROMA_WEIGHT)  # Greyer than it is, is no such fault.
+    apart = lightness_weight * square[..., 0] + weight * chroma**2 + HUE_WEIGHT * hue
+    faded = fading * np.clip((own - DULL_CHROMA) / (STRONG_CHROMA - DULL_CHROMA), 0, 1)
+    faded = faded * (np.hypot(offered[:, 1], offered[:, 2]) < own / 2)
+    return (np.sqrt(apart) + handicaps.astype(np.float32) + faded) ** 2
+
+
+def choose_few(costs: np.ndarray, most: int, noticed: float) -> np.ndarray:
+    """Return the columns of ``costs`` [N, M] that serve all rows best, ``most`` at the most.
+
+    Greedy: the column that serves all best, then each next one that saves more than it costs;
+    one must be worth it for as many blocks as make a part, at the Oklab distance ``noticed``.
+    """
+    price = noticed**2 * max(LEAST_BLOCKS, LEAST_PART * len(costs))
+    chosen = [int(costs.sum(0).argmin())]
+    served = costs[:, chosen[0]].copy()
+    while len(chosen) < most:
+        gains = np.maximum(served[:, None] - costs, 0).sum(0)
+        best = int(gains.argmax())
+        if gains[best] <= price:
+            break
+        chosen.append(best)
+        np.minimum(served, costs[:, best], out=served)
+    return np.array(sorted(chosen))
+
+
+def neighbour_table(positions: np.ndarray) -> np.ndarray:
+    """Return the six face neighbours, int64 [N, 6], of blocks int [N, 3]; N where there is none."""
+    low = positions.min(0) - 1
+    shape = positions.max(0) - low + 2
+    flat = np.asarray(np.ravel_multi_index(tuple((positions - low).T), tuple(shape)))
+    order = np.argsort(flat, kind="stable")
+    strides = np.array([shape[1] * shape[2], shape[2], 1])
+    steps = np.concatenate([strides, -strides])
+    wanted = flat[:, None] + steps
+    ordered = flat[order]
+    found = np.minimum(np.searchsorted(ordered, wanted), len(positions) - 1)
+    return np.where(ordered[found] == wanted, order[found], len(positions))
+
+
+def calm(costs: np.ndarray, positions: np.ndarray, step: float) -> np.ndarray:
+    """Return a column of ``costs`` [N, M] for each block, neighbours agreeing where they can.
+
+    Blocks of even and of odd places take turns, so that no two neighbours change at once.
+    """
+    chosen = costs.argmin(1)
+    if costs.shape[1] == 1 or step == 0 or len(costs) == 1:
+        return chosen
+    neighbours = neighbour_table(positions)
+    odd = positions.sum(1) % 2
+    for turn in range(ROUNDS):
+        mine = np.flatnonzero(odd == turn % 2)
+        around = np.append(chosen, -1)[neighbours[mine]]
+        energy = costs[mine].copy()
+        for column in range(costs.shape[1]):
+            differing = ((around != column) & (around >= 0)).sum(1)
+            energy[:, column] += step**2 * differing
+        chosen[mine] = energy.argmin(1)
+    return chosen
+
+
+def paint(
+    colours: np.ndarray,
+    positions: np.ndarray,
+    candidates: Sequence[str],
+    *,
+    most: int,
+    lightness_weight: float,
+    calm_step: float,
+    noticed: float,
+    match_weight: float | None = None,
+    handicaps: np.ndarray | None = None,
+    fading: float = 0.0,
+) -> np.ndarray:
+    """Return which candidate each block of a surface becomes.
+
+    Args:
+        colours: float32 [N, 3], the Oklab colours of its blocks.
+        positions: int [N, 3], where they are, each once.
+        candidates: M block states.
+        most: at most so many different blocks.
+        lightness_weight: how much lightness counts against hue and chroma.
+        calm_step: the Oklab distance given up for each neighbour that agrees.
+        noticed: the Oklab distance from which a part deserves a block of its own.
+        match_weight: the lightness weight with which each part's median is matched at last; None
+            takes ``lightness_weight``. A low weight finds the parts of an unevenly lit floor,
+            a higher one finds the block that is as light as it.
+        handicaps: float [M], Oklab distances added to those of each candidate; None adds none.
+        fading: the Oklab distance added to greys that stand for a clear colour.
+
+    Returns:
+        intp [N], indices into ``candidates``.
+    """
+    if not len(colours):
+        return np.zeros(0, np.intp)
+    stride = -(-len(colours) * len(candidates) // MAX_DISTANCES)
+    extra = np.zeros(len(candidates)) if handicaps is None else handicaps
+    sample = costs_of(colours[::stride], candidates, lightness_weight, extra, fading)
+    few = choose_few(sample, most, noticed)
+    offered = [str(candidates[index]) for index in few]
+    costs = costs_of(colours, offered, lightness_weight, extra[few], fading)
+    parts = calm(costs, positions, calm_step)
+    weight = lightness_weight if match_weight is None else match_weight
+    parts = _joined(parts, colours, len(few), lightness_weight, SAME_PAINT)
+    matched = _matched(parts, colours, candidates, weight, extra, fading)
+    shown = oklab_of_srgb(colours_of([str(candidates[index]) for index in matched]))
+    parts = _joined(parts, shown[parts], len(few), lightness_weight, noticed)
+    return _matched(parts, colours, candidates, weight, extra, fading)[parts]
+
+
+def _matched(
+    parts: np.ndarray,
+    colours: np.ndarray,
+    candidates: Sequence[str],
+    weight: float,
+    handicaps: np.ndarray,
+    fading: float,
+) -> np.ndarray:
+    """Return the candidate nearest to the median of each part, intp [parts]."""
+    medians, _ = group_medians(parts, colours, int(parts.max()) + 1)
+    return costs_of(medians, candidates, weight, handicaps, fading).argmin(1)
+
+
+def _joined(
+    parts: np.ndarray, colours: np.ndarray, count: int, lightness_weight: float, noticed: float
+) -> np.ndarray:
+    """Return the parts, int [N], a smaller one named as a larger one that looks like it."""
+    medians, sizes = group_medians(parts, colours, count)
+    medians[:, 0] *= np.sqrt(lightness_weight)
+    result = np.arange(count)
+    kept: list[int] = []
+    for part in np.argsort(-sizes, kind="stable").tolist():
+        alike = [k for k in kept if np.linalg.norm(medians[part] - medians[k]) < noticed]
+        if alike:
+            result[part] = alike[0]
+        else:
+            kept.append(part)
+    return result[parts]

@@ -1,0 +1,92 @@
+"""Where a player comes to stand: free, on the floor, looking at the furnished middle."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.construction.canvas import AIR, LIGHT
+from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
+from world2minecraft.core.coordinates import PLAYER_EYE_BLOCKS, ROOM_CORNER_BLOCK
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.geometry.padded_morphology import nearest_of, parts_of, shrunk
+
+PLAYER_BLOCKS = 2  # 1.8 high.
+CLEARANCE = 3.0  # Blocks to the nearest thing beyond which more room is worth no more. A guess.
+
+
+class Spawn(NamedTuple):
+    """Feet in world block coordinates, and the game's yaw."""
+
+    position: tuple[float, float, float]
+    yaw_deg: float
+
+
+def find_spawn(volume: BlockVolume) -> Spawn:
+    """Return where to stand in a volume.
+
+    It is a free place of the largest walkable part of the floor, with room around it, as far as
+    that goes from the furniture's middle within sight of it. Without any free place it is the top
+    of the room's middle.
+    """
+    ground = ROOM_CORNER_BLOCK[1] - volume.corner[1]
+    standing = standing_cells(volume)
+    if not standing.any():
+        return _on_top(volume)
+    parts, sizes = parts_of(standing)
+    largest = parts == int(np.argmax(sizes))
+    room = np.minimum(nearest_of(~np.pad(standing, 1))[1][1:-1, 1:-1], CLEARANCE)
+    focus = _focus(volume, standing)
+    cells = np.argwhere(largest)
+    offsets = focus - (cells + 0.5)
+    reach = np.hypot(*offsets.T)
+    sight = np.array([_free_way(volume, cell, focus, ground) for cell in cells])
+    score = room[tuple(cells.T)] * 2 + np.minimum(sight, reach) / max(reach.max(), 1) * CLEARANCE
+    best = int(np.argmax(np.round(score, 6)))
+    x, z = cells[best]
+    yaw = float(np.degrees(np.arctan2(-offsets[best, 0], offsets[best, 1])))
+    position = (volume.corner[0] + x + 0.5, float(ROOM_CORNER_BLOCK[1]), volume.corner[2] + z + 0.5)
+    return Spawn((float(position[0]), position[1], float(position[2])), round(yaw, 3))
+
+
+def standing_cells(volume: BlockVolume) -> np.ndarray:
+    """Return the columns, bool [X, Z], where a player stands on the floor's layer."""
+    ground = ROOM_CORNER_BLOCK[1] - volume.corner[1]
+    free = np.isin(
+        volume.states,
+        [i for i, state in enumerate(volume.palette) if state in (AIR, LIGHT) or "_sign[" in state],
+    )
+    floor = volume.semantic[:, ground - 1] == SemanticClass.FLOOR
+    return floor & free[:, ground : ground + PLAYER_BLOCKS].all(1) & _within(volume, ground)
+
+
+def _within(volume: BlockVolume, ground: int) -> np.ndarray:
+    """Return the columns whose four neighbours are floor too: not the rim beyond the walls."""
+    return shrunk(volume.states[:, ground - 1] > 0)
+
+
+def _focus(volume: BlockVolume, standing: np.ndarray) -> np.ndarray:
+    """Return the middle, float64 [2], of the furniture, or of the floor where there is none."""
+    things = np.isin(volume.semantic, OBJECT_CLASSES).sum(1)
+    if not things.any():
+        return np.argwhere(standing).mean(0) + 0.5
+    cells = np.argwhere(things > 0)
+    return np.average(cells + 0.5, axis=0, weights=things[tuple(cells.T)])
+
+
+def _free_way(volume: BlockVolume, cell: np.ndarray, focus: np.ndarray, ground: int) -> float:
+    """Return how far, in blocks, the eye sees from a cell towards the focus."""
+    start = cell + 0.5
+    length = float(np.hypot(*(focus - start)))
+    steps = np.arange(0.5, max(length, 0.5), 0.5)
+    points = start + np.outer(steps / max(length, 1e-9), focus - start)
+    x, z = np.clip(points.astype(int), 0, np.array(volume.states.shape)[[0, 2]] - 1).T
+    blocked = np.flatnonzero(volume.semantic[x, ground + int(PLAYER_EYE_BLOCKS), z] > 0)
+    return float(steps[blocked[0]]) if len(blocked) else length
+
+
+def _on_top(volume: BlockVolume) -> Spawn:
+    x, _, z = (size // 2 for size in volume.states.shape)
+    filled = np.flatnonzero(volume.states[x, :, z])
+    top = int(filled.max()) + 1 if len(filled) else 0
+    feet = np.array([x, top, z]) + volume.corner
+    return Spawn((float(feet[0]) + 0.5, float(feet[1]), float(feet[2]) + 0.5), 0.0)

@@ -1,0 +1,329 @@
+"""The shell of a room as blocks: floor, walls with windows, ceiling, by rules and never by fit.
+
+In: the labelled grid and the lattice. Out: masks of blocks for each part of the shell, each part
+a surface of its own with the cells that colour it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.construction.ceilings import close_ceiling, cover_with_glass, find_ceiling
+from world2minecraft.construction.doorways import open_doorways
+from world2minecraft.construction.lattice import Lattice, face_shares, overlaps, volume_shares
+from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.construction.structure_faces import (
+    blocks_behind,
+    find_faces,
+    see_through,
+    straighten,
+    vote,
+)
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import UNSEEN, OccupancyGrid
+from world2minecraft.geometry.padded_morphology import (
+    beside,
+    closed,
+    grown,
+    nearest_of,
+    parts_of,
+    shrunk,
+    without_holes,
+)
+
+CEILING, FLOOR, WALL, WINDOW = (
+    int(SemanticClass[name]) for name in ("CEILING", "FLOOR", "WALL", "WINDOW")
+)
+# A block with more seen free space than this is an opening, not a hole in what was seen. A guess:
+# a wall's own face takes up to half of its block's free space away.
+OPEN_SHARE = 0.35
+STANDING_M = 1.0  # Free space up to here shows that one can stand on the floor under it.
+FOOTPRINT_SHARE = 0.25
+OPEN_FLOOR = 0.5  # A block of an upper floor of which more was seen free is no floor.
+ROOM_M2 = 0.5  # Smaller pieces of floor lie in a window's niche or behind it.
+LEVEL_SHARE = 0.2  # Of a wall's columns that reach a height, to draw the others up to it.
+FLOORED_SHARE = 0.3  # Of an upper room's plan; furniture and shade hide much of it.
+STAIRWELL_M = 0.7  # A narrower hole in an upper floor was left by noise.
+
+
+@dataclass(frozen=True, eq=False)
+class Shell:
+    """Masks bool [X, Y, Z] of the lattice, and the cells [N, 3] and blocks [N, 3] of colours.
+
+    ``patches`` int32 [X, Y, Z] numbers the surfaces that are painted each by itself, from 1.
+    """
+
+    floor: np.ndarray
+    walls: np.ndarray
+    windows: np.ndarray
+    ceiling: np.ndarray
+    patches: np.ndarray
+    footprints: tuple[np.ndarray, ...]  # bool [X, Y] a storey: where one stands in its rooms
+    cells: np.ndarray
+    blocks: np.ndarray
+
+
+def build_shell(grid: OccupancyGrid, lattice: Lattice, parameters: BuildParameters) -> Shell:
+    """Return the shell of a room or a house; see docs/building.md for its rules.
+
+    Walls are found over all storeys at once, so that they stand over one another; the rest is
+    found storey by storey.
+    """
+    free = (grid.labels == 0) & (grid.source != UNSEEN)
+    open_share = volume_shares(free, grid, lattice)
+    coloured: list[tuple[np.ndarray, np.ndarray]] = []
+    patches = np.zeros(lattice.shape, np.int32)
+    walls = _walls(grid, free, open_share, lattice, parameters, patches, coloured)
+    ceiling = find_ceiling(grid, free, lattice, parameters, coloured)
+    footprints: list[np.ndarray] = []
+    floor = np.zeros(lattice.shape, bool)
+    for ground, top in lattice.storeys:
+        # First of all, so that what stands before a wall's hidden foot is not taken for a room.
+        _up_and_down(walls, ceiling, open_share, lattice, (ground, top), parameters)
+        open_floor = _open_floor(grid, free, lattice, ground)
+        footprint = _footprint(grid, open_share, walls, lattice, (ground, top), open_floor)
+        _floor(grid, footprint, walls, lattice, (ground, top), open_floor, floor, coloured)
+        _level_tops(walls, patches, open_share, (ground, top))
+        open_doorways(walls, grid, lattice, (ground, top))
+        footprints.append(footprint)
+        close_ceiling(ceiling, footprint, open_share < OPEN_SHARE, (ground, top))
+        if parameters.ceiling == "glass":
+            cover_with_glass(ceiling, walls, footprint, (ground, top))
+        if ground > lattice.ground:
+            _one_slab(ceiling, floor, ground - 1)
+    windows = _windows(grid, walls, free, lattice, parameters)
+    _number_levels(patches, ceiling, floor, lattice)
+    patches = _grow_patches(patches, walls)
+    return Shell(
+        floor=floor,
+        walls=walls & ~windows,
+        windows=windows,
+        ceiling=ceiling & ~walls & ~floor,
+        patches=patches,
+        footprints=tuple(footprints),
+        cells=np.concatenate([cells for cells, _ in coloured]),
+        blocks=np.concatenate([blocks for _, blocks in coloured]),
+    )
+
+
+def _open_floor(grid, free, lattice: Lattice, ground: int) -> np.ndarray:
+    """Return the columns, bool [X, Y], in which an upper storey's floor was seen through.
+
+    It is told by the layers of cells in which the rest of its floor lies, which may be a tenth of
+    a block thick.
+    """
+    shape = lattice.shape[:2]
+    if ground == lattice.ground:
+        return np.zeros(shape, bool)  # The lowest floor has no stairwell.
+    edges = lattice.edges_of(grid, 2)
+    near = np.flatnonzero(np.abs((edges[:-1] + edges[1:]) / 2 - ground) < 1)
+    if not len(near):
+        return np.zeros(shape, bool)
+    layer = near[(grid.labels[:, :, near] == FLOOR).sum(axis=(0, 1)).argmax()]
+    cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
+    share = cover[0] @ free[:, :, layer].astype(np.float32) @ cover[1].T
+    return np.asarray(share >= OPEN_FLOOR)
+
+
+def _one_slab(ceiling: np.ndarray, floor: np.ndarray, layer: int) -> None:
+    """Leave out, in place, what of a ceiling lies in or over the floor that it carries."""
+    under = floor[:, :, layer]
+    for z in (layer, layer + 1):
+        ceiling[:, :, z] &= ~under
+
+
+def _number_levels(patches, ceiling, floor, lattice) -> None:
+    """Number, in place, each storey's ceiling and floor as surfaces of their own."""
+    for ground, top in lattice.storeys:
+        for mask, start in ((ceiling, ground), (floor, ground - 1)):
+            part = mask[:, :, start:top]
+            patches[:, :, start:top][part] = patches.max() + 1
+
+
+def _walls(grid, free, open_share, lattice, parameters, patches, coloured) -> np.ndarray:
+    """Return where walls and windows stand, straight and one block thick."""
+    solid = (grid.labels == WALL) | (grid.labels == WINDOW)
+    walls = np.zeros(lattice.shape, bool)
+    for axis in (0, 1):
+        for faces in find_faces(grid, solid, free, lattice, axis):
+            straight = straighten(faces, grid.voxel_m, parameters)
+            votes = vote(straight, grid, lattice)
+            through = see_through(straight, votes, free, grid, lattice)
+            open_share[:] = np.where(through >= 0, through, open_share)
+            sheet = _closed(
+                votes.area >= parameters.face_share, axis, open_share, lattice, parameters
+            )
+            # A window's cells show the sky, and would paint the wall around it.
+            own = grid.labels[tuple(votes.cells.T)] == WALL
+            coloured.append((votes.cells[own], blocks_behind(votes, grid, lattice)[own]))
+            fresh = sheet & ~walls
+            layers = np.indices(lattice.shape, sparse=True)[axis]
+            number = 1 + int(patches.max()) + layers
+            patches[fresh] = np.broadcast_to(number, lattice.shape)[fresh]
+            walls |= sheet
+    walls |= _unfaced(grid, solid, free, walls, lattice, parameters)
+    return _with_corners(walls, open_share)
+
+
+def _closed(sheet, axis, open_share, lattice, parameters) -> np.ndarray:
+    """Close the small unseen holes of wall sheets square to an axis, leaving openings open."""
+    gap = max(1, round(parameters.gap_m * lattice.blocks_per_metre / 2))
+    reach = tuple(0 if other == axis else gap for other in range(3))
+    return sheet | (closed(sheet, reach) & (open_share < OPEN_SHARE))
+
+
+def _unfaced(grid, solid, free, walls, lattice, parameters) -> np.ndarray:
+    """Return wall blocks whose cells touch no seen free space, away from the walls that do."""
+    faced = beside(free)
+    edges = [lattice.edges_of(grid, axis) for axis in range(3)]
+    rest = face_shares(solid & ~faced, edges, lattice.shape) >= max(0.5, parameters.face_share)
+    near = grown(walls, (1, 1, 0))
+    return rest & ~near
+
+
+def _with_corners(walls: np.ndarray, open_share: np.ndarray) -> np.ndarray:
+    """Fill the block where two walls meet at an inner corner, which no face speaks for."""
+    along_x = np.zeros_like(walls)
+    along_x[1:] |= walls[:-1]
+    along_x[:-1] |= walls[1:]
+    along_y = np.zeros_like(walls)
+    along_y[:, 1:] |= walls[:, :-1]
+    along_y[:, :-1] |= walls[:, 1:]
+    return walls | (along_x & along_y & (open_share < 0.05))
+
+
+def _up_and_down(walls, ceiling, open_share, lattice, storey, parameters) -> None:
+    """Continue walls, in place, to their floor, over unseen gaps, and to a ceiling that is near.
+
+    ``storey`` is its first layer above the floor and the one past its last.
+    """
+    ground, top = storey
+    own = walls[:, :, ground:top]
+    shut = open_share[:, :, ground:top] < OPEN_SHARE
+    above = np.flip(np.maximum.accumulate(np.flip(own, 2), axis=2), 2)
+    own |= above & shut
+    held = np.argwhere(ceiling[:, :, ground : top + 2])
+    if not len(held):
+        return
+    level = min(int(np.median(held[:, 2])), own.shape[2] - 1)
+    reach = max(1, round(parameters.gap_m * lattice.blocks_per_metre))
+    for z in range(max(1, level - reach), level + 1):
+        own[:, :, z] |= own[:, :, z - 1] & shut[:, :, z]
+
+
+def _level_tops(walls, patches, open_share, storey) -> None:
+    """Raise, in place, the columns of each wall to the height that much of it reaches.
+
+    Where a scan looks down, walls end at a ragged line; what was seen free stays open.
+    """
+    ground, top = storey
+    own, shut = walls[:, :, ground:top], open_share[:, :, ground:top] < OPEN_SHARE
+    numbers = np.where(own, patches[:, :, ground:top], 0)
+    heights = np.arange(1, own.shape[2] + 1)
+    for number in np.unique(numbers[numbers > 0]).tolist():
+        tops = ((numbers == number) * heights).max(axis=2)
+        columns = tops > 0
+        level = int(np.quantile(tops[columns], 1 - LEVEL_SHARE, method="higher"))
+        for z in range(int(tops[columns].min()), level):
+            own[:, :, z] |= own[:, :, z - 1] & shut[:, :, z] & columns
+
+
+def _footprint(grid, open_share, walls, lattice, storey, open_floor) -> np.ndarray:
+    """Return the columns, bool [X, Y], in which one stands inside a storey's rooms.
+
+    ``open_floor`` bool [X, Y] are those where the floor itself was seen through: a stairwell.
+    """
+    ground, end = storey
+    top = min(ground + max(1, round(STANDING_M * lattice.blocks_per_metre)), end)
+    labels = grid.labels
+    things = (labels == FLOOR) | ((labels > WINDOW) & (labels != 255))
+    cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
+    edges = lattice.edges_of(grid, 2)
+    first, last = np.searchsorted((edges[:-1] + edges[1:]) / 2, [ground - 1.0, float(top)])
+    first = 0 if ground == lattice.ground else first
+    low = things[:, :, first : max(last, first + 1)].any(2).astype(np.float32)
+    stood = cover[0] @ low @ cover[1].T >= FOOTPRINT_SHARE
+    stood |= (open_share[:, :, ground:top] >= 0.5).any(2)
+    walled = walls[:, :, ground:top].any(2)
+    whole = without_holes(closed(stood & ~walled & ~open_floor, (1, 1)))
+    whole = _rooms(whole & ~walled & ~_wide(open_floor, lattice), lattice)
+    return whole if ground == lattice.ground else _carried_by_floor(whole, grid, lattice, ground)
+
+
+def _rooms(plan: np.ndarray, lattice: Lattice) -> np.ndarray:
+    """Return a plan, bool [X, Y], without what walls part from it and is too small for a room."""
+    parts, sizes = parts_of(plan)
+    least = min(ROOM_M2 * lattice.blocks_per_metre**2, sizes.max(initial=0))
+    return plan & (sizes[parts] >= least)
+
+
+def _carried_by_floor(plan: np.ndarray, grid, lattice, ground: int) -> np.ndarray:
+    """Return the parts of an upper storey's plan, bool [X, Y], under which floor was seen.
+
+    What was seen free outside, over the roof of a lower part of the house, is no room.
+    """
+    edges = lattice.edges_of(grid, 2)
+    middles = (edges[:-1] + edges[1:]) / 2
+    near = (middles > ground - 1.5) & (middles < ground + 0.5)
+    floor = (grid.labels[:, :, near] == FLOOR).any(2).astype(np.float32)
+    cover = [overlaps(lattice.edges_of(grid, axis), lattice.shape[axis]) for axis in (0, 1)]
+    seen = (cover[0] @ floor @ cover[1].T >= FOOTPRINT_SHARE) & plan
+    parts, sizes = parts_of(plan)
+    share = np.bincount(parts[seen], minlength=len(sizes)) / np.maximum(sizes, 1)
+    return plan & (share[parts] >= FLOORED_SHARE)
+
+
+def _wide(mask: np.ndarray, lattice: Lattice) -> np.ndarray:
+    """Return what of a plan, bool [X, Y], is as wide as a stairwell; the rest are holes."""
+    reach = max(0, round(STAIRWELL_M * lattice.blocks_per_metre / 2) - 1)
+    core = mask.copy()
+    for _ in range(reach):
+        core = shrunk(core)
+    return grown(core, (reach, reach)) & mask
+
+
+def _floor(grid, footprint, walls, lattice, storey, open_floor, floor, coloured) -> None:
+    """Set, in place, a storey's floor: one flat layer under its rooms, walls and open rim."""
+    ground, top = storey
+    plan = grown(footprint, (1, 1)) | walls[:, :, ground:top].any(2)
+    floor[:, :, ground - 1] |= plan & ~_wide(open_floor, lattice)
+    cells = np.argwhere(grid.labels == FLOOR)
+    height = lattice.edges_of(grid, 2)[cells[:, 2]]
+    nearest = np.abs(height[:, None] - np.array(lattice.grounds)).argmin(axis=1)
+    cells = cells[np.array(lattice.grounds)[nearest] == ground]
+    blocks = np.empty_like(cells)
+    for axis in (0, 1):
+        edges = lattice.edges_of(grid, axis)
+        blocks[:, axis] = np.floor((edges[:-1] + edges[1:]) / 2)[cells[:, axis]]
+    blocks[:, 2] = ground - 1
+    coloured.append((cells, blocks))
+
+
+def _windows(grid, walls, free, lattice, parameters) -> np.ndarray:
+    """Return the wall blocks that are glass: where windows outvote walls."""
+    shape = lattice.shape
+    area = {WALL: np.zeros(shape, np.float32), WINDOW: np.zeros(shape, np.float32)}
+    if not (grid.labels == WINDOW).any():
+        return np.zeros(shape, bool)
+    solid = (grid.labels == WALL) | (grid.labels == WINDOW)
+    for axis in (0, 1):
+        for faces in find_faces(grid, solid, free, lattice, axis):
+            straight = straighten(faces, grid.voxel_m, parameters)
+            kinds = grid.labels[tuple(straight.cells.T)]
+            for kind in area:
+                chosen = straight._replace(
+                    cells=straight.cells[kinds == kind], planes=straight.planes[kinds == kind]
+                )
+                area[kind] += vote(chosen, grid, lattice).area
+    return walls & (area[WINDOW] > area[WALL])
+
+
+def _grow_patches(patches: np.ndarray, walls: np.ndarray) -> np.ndarray:
+    """Give wall blocks that were added later the patch of the nearest wall block."""
+    missing = walls & (patches == 0)
+    if not missing.any() or not (patches > 0).any():
+        return patches
+    nearest, _ = nearest_of(patches > 0)
+    result = patches.copy()
+    result[missing] = patches[tuple(axis[missing] for axis in nearest)]
+    return result

@@ -1,0 +1,84 @@
+"""Library pieces for what few blocks a metre would make a heap of.
+
+From its own cells a sofa at two blocks a metre is a wall with a dent, and a plant a green box: no
+block is fine enough to show them. A design of about their size says what they are.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.construction.colour_sources import Coats, Hues
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Placement
+from world2minecraft.furniture import Span, Template, template, templates_of
+from world2minecraft.furniture.solids import OWN_CELLS
+
+# What people know by its shape; a cupboard is known by its place and colour.
+KNOWN_BY_SHAPE = tuple(SemanticClass[name] for name in ("CHAIR", "BED", "SOFA", "TABLE"))
+SLACK = 0.15  # By what share a side may lie beyond the sizes of a design.
+PLANT = "plant"
+GREEN_HUE_DEG, GREEN_CHROMA = (105.0, 165.0), 0.04  # Oklab; leaves in sun and shade.
+
+
+def known_by_shape(
+    placements: Sequence[Placement], cells_of: Callable[[Placement], np.ndarray], coats: Coats
+) -> list[Placement]:
+    """Return the placements, those that their cells would not show by a design of the library.
+
+    Args:
+        placements: of a whole room.
+        cells_of: gives the cells, int [N, 3], of a placement.
+        coats: their colours.
+    """
+    count = Counter(one.object_id for one in placements)
+    renewed = []
+    for one in placements:
+        cells = cells_of(one)
+        colours, usable = coats.colours_of(Hues(cells, cells))
+        colour = np.median(colours[usable], axis=0) if usable.any() else None
+        renewed.append(stand_in(one, count[one.object_id] == 1, colour))
+    return renewed
+
+
+def stand_in(placement: Placement, alone: bool, colour: np.ndarray | None) -> Placement:
+    """Return a placement by a design of its class where its own cells would show nothing.
+
+    Args:
+        placement: of any template; only what is built from its cells is changed.
+        alone: whether it is the only placement of its object.
+        colour: the Oklab colour of its cells, float [3], where it is known.
+    """
+    if placement.template != OWN_CELLS or not alone:
+        return placement
+    offered = [one for one in _offered(placement.class_id, colour) if _fits(one, placement)]
+    if not offered:
+        return placement
+    ious = {other.template: other.iou for other in reversed(placement.alternatives)}
+    best = max(offered, key=lambda one: (ious.get(one.name, 0.0), one.name))
+    return replace(placement, template=best.name, parameters={})
+
+
+def _offered(class_id: int, colour: np.ndarray | None) -> Sequence[Template]:
+    if class_id in KNOWN_BY_SHAPE:
+        return templates_of(class_id)
+    return (template(PLANT),) if class_id == SemanticClass.OBJS and is_green(colour) else ()
+
+
+def is_green(colour: np.ndarray | None) -> bool:
+    """Whether an Oklab colour, float [3], is that of leaves."""
+    if colour is None:
+        return False
+    hue = float(np.degrees(np.arctan2(colour[2], colour[1])))
+    low, high = GREEN_HUE_DEG
+    return bool(low <= hue <= high and np.hypot(colour[1], colour[2]) >= GREEN_CHROMA)
+
+
+def _fits(one: Template, placement: Placement) -> bool:
+    return all(_holds(*pair) for pair in zip(one.size_m, placement.size_m.tolist(), strict=True))
+
+
+def _holds(span: Span, side: float) -> bool:
+    return (1 - SLACK) * span.minimum <= side <= (1 + SLACK) * span.maximum

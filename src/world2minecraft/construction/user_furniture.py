@@ -1,0 +1,190 @@
+"""A mod's own furniture: its blocks in the place of a template, where they are of its size.
+
+Mods make furniture of one block, or of a few, for a world of a block a metre or two. So a piece
+is used only where the object comes to about as many blocks; else the program's own design stands
+there. Which way a block faces, and how it joins those beside it, stands in the palette's file.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from world2minecraft.construction.canvas import Canvas
+from world2minecraft.construction.idioms import idiom_box
+from world2minecraft.construction.pieces import FACINGS, Piece
+from world2minecraft.core.coordinates import cells_to_block_axes
+from world2minecraft.core.types import OccupancyGrid, Placement
+from world2minecraft.furniture import Idiom, template
+from world2minecraft.furniture.block_designs import block_size, laid
+from world2minecraft.furniture.solids import own_cells
+from world2minecraft.furniture.template import BlockSize, LocalBlock, Span, Template
+from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.minecraft.block_colours import DYES, WOODS, colours_of, nearest_oklab
+from world2minecraft.minecraft.block_states import BlockState, parse_state
+
+SLACK = 0.7  # Blocks by which an object may be larger than a piece of a fixed size.
+HIGHEST = 1.7  # Blocks: furniture of one layer stands for nothing higher.
+
+
+def furniture_of(
+    pieces: Sequence[Piece],
+    placement: Placement,
+    blocks_per_metre: float,
+    colour: np.ndarray | None,
+) -> Idiom | None:
+    """Return a palette's own blocks for a placement, turned; None where none is of its size.
+
+    Args:
+        pieces: the palette's.
+        placement: what stands where.
+        blocks_per_metre: the scale.
+        colour: the object's Oklab colour, float32 [3], where it is known.
+    """
+    if not pieces or placement.template == "cells":
+        return None
+    found = template(placement.template)
+    size = block_size(placement.size_m, blocks_per_metre)
+    fitting = (
+        piece
+        for piece in pieces
+        if {found.name, found.family} & set(piece.designs) and _fits(piece, size)
+    )
+    piece = next(fitting, None)
+    if piece is None:
+        return None
+    blocks = _joined(piece, _laid_out(piece, size, colour))
+    spans = (Span(1, 1, 1), Span(1, 1, 1), Span(1, 1, 1))
+    whole = Template(found.name, found.class_id, spans, lambda *_: [], lambda *_: blocks)
+    return laid(whole, size, None, placement.quarter_turns)
+
+
+def put_own_furniture(
+    canvas: Canvas,
+    pieces: Sequence[Piece],
+    placements: Sequence[Placement],
+    colours: np.ndarray,
+    grid: OccupancyGrid,
+    within: np.ndarray,
+) -> list[Placement]:
+    """Set a palette's own blocks where it has some; return the placements that are left.
+
+    Args:
+        canvas: where the shell stands.
+        pieces: the palette's.
+        placements: all furniture.
+        colours: float32 [X, Y, Z, 3], Oklab, of the grid's cells; zero where there is none.
+        grid: the room.
+        within: bool [X, Y, Z], where things may stand.
+    """
+    left = []
+    for placement in placements if pieces else ():
+        cells = own_cells(placement, grid)
+        known = colours[tuple(cells.T)]
+        known = known[known.any(axis=1)]
+        colour = np.median(known, axis=0) if len(known) else None
+        scale = canvas.lattice.blocks_per_metre
+        found = furniture_of(pieces, placement, scale, colour)
+        if found is None or not _put(canvas, found, placement, within):
+            left.append(placement)
+    return left if pieces else list(placements)
+
+
+def _put(canvas: Canvas, found: Idiom, placement: Placement, within: np.ndarray) -> bool:
+    """Set a piece where all of its place is free; return whether it was."""
+    low, _ = idiom_box(found, placement, canvas.lattice)
+    offsets = np.array([block.offset for block in found.blocks])
+    at = cells_to_block_axes(offsets[:, [0, 2, 1]], found.size[2])[:, [0, 2, 1]] + low
+    inside = ((at >= 0) & (at < canvas.states.shape)).all(axis=1)
+    if not inside.all() or canvas.states[tuple(at.T)].any() or not within[tuple(at.T)].all():
+        return False  # Half a piece of a mod is worse than the whole of another design.
+    for cell, block in zip(at.tolist(), found.blocks, strict=True):
+        number = canvas.id_of(block.state)
+        canvas.put(tuple(cell), number, placement.class_id, placement.object_id)
+    return True
+
+
+def _fits(piece: Piece, size: BlockSize) -> bool:
+    depth, width, height = size.exact
+    if piece.fill == "box":
+        return True
+    if piece.fill == "floor":
+        return height <= HIGHEST
+    sides = [1 + max(cell.at[axis] for cell in piece.cells) for axis in range(3)]
+    limits = [depth <= sides[0] + SLACK, width <= sides[1] + SLACK, height <= sides[2] + SLACK]
+    return limits[0] and (piece.fill == "row" or limits[1]) and limits[2]
+
+
+def _laid_out(piece: Piece, size: BlockSize, colour: np.ndarray | None) -> list[LocalBlock]:
+    """Return the blocks of a piece that looks east, each in the colour of the object."""
+    deep, wide, high = {
+        "one": (1, 1, 1),
+        "row": (1, size.width, 1),
+        "floor": (size.depth, size.width, 1),
+        "box": (size.depth, size.width, size.height),
+    }[piece.fill]
+    blocks = []
+    for cell in piece.cells:
+        properties = dict(cell.properties)
+        if piece.facing is not None:
+            properties["facing"] = FACINGS[piece.facing]
+        state = str(BlockState(_coloured(cell.id, colour), properties))
+        i0, j0, k0 = cell.at
+        blocks += [
+            LocalBlock((i0 + i, j0 + j, k0 + k), state, "body")
+            for i in range(deep)
+            for j in range(wide)
+            for k in range(high)
+        ]
+    return blocks
+
+
+def _coloured(name: str, colour: np.ndarray | None) -> str:
+    """Return a block's name with its wood or dye nearest to a colour."""
+    for word, kinds, sample in (("{wood}", WOODS, "_planks"), ("{dye}", DYES, "_wool")):
+        if word not in name:
+            continue
+        best = kinds[0]
+        if colour is not None:
+            offered = oklab_of_srgb(colours_of([kind + sample for kind in kinds]))
+            best = kinds[int(nearest_oklab(colour[None], offered)[0])]
+        name = name.replace(word, best)
+    return name
+
+
+def _joined(piece: Piece, blocks: list[LocalBlock]) -> list[LocalBlock]:
+    """Return blocks that look east with the properties by which they join those beside them.
+
+    Commands would compute these at the next update; a written world gets none.
+    """
+    if piece.joins is None:
+        return blocks
+    held = {block.cell for block in blocks}
+    result = []
+    for block in blocks:
+        i, j, k = block.cell
+        # The piece looks east: north is its left (j + 1), south its right.
+        beside = {
+            "east": (i + 1, j, k) in held,
+            "west": (i - 1, j, k) in held,
+            "north": (i, j + 1, k) in held,
+            "south": (i, j - 1, k) in held,
+        }
+        state = parse_state(block.state)
+        result.append(block._replace(state=str(state.having(**_joins(piece, beside)))))
+    return result
+
+
+def _joins(piece: Piece, beside: Mapping[str, bool]) -> dict[str, str]:
+    if piece.joins == "sides":
+        return {side: str(there).lower() for side, there in beside.items()}
+    # Seen along its facing, which is to its back: the clockwise side of west is north.
+    clockwise, counter = (
+        (beside["north"], beside["south"])
+        if piece.facing == "back"
+        else (beside["south"], beside["north"])
+    )
+    if piece.joins == "flags":
+        return {"left": str(clockwise).lower(), "right": str(counter).lower()}
+    if clockwise and counter:
+        return {"shape": "middle"}
+    return {"shape": "right" if counter else "left" if clockwise else "default"}

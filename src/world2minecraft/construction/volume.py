@@ -1,0 +1,126 @@
+"""Stage 7: the labelled grid and its placements become a volume of blocks."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from world2minecraft.construction.canvas import Canvas
+from world2minecraft.construction.cell_colours import cell_colours, one_paint, seen_colours
+from world2minecraft.construction.connect import settle
+from world2minecraft.construction.display.builder import DisplayBuilder
+from world2minecraft.construction.floating_blocks import carry_floaters, close_gaps
+from world2minecraft.construction.lamps import hang_lamps
+from world2minecraft.construction.lattice import is_exact, lattice_over, snapped_corner_m
+from world2minecraft.construction.lights import put_lights
+from world2minecraft.construction.objects import ObjectBuilder
+from world2minecraft.construction.palettes import Palette, load_palette
+from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.construction.plaque import SIGN, WALL_SIGN, with_plaque
+from world2minecraft.construction.restricting import restrict
+from world2minecraft.construction.shell import put_edge, put_shell
+from world2minecraft.construction.storeys import with_storeys
+from world2minecraft.construction.structure import build_shell
+from world2minecraft.construction.user_furniture import put_own_furniture
+from world2minecraft.construction.voxel_blocks import put_cells_exactly
+from world2minecraft.core.classes import OBJECT_CLASSES
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import BlockVolume, ObjectInstance, OccupancyGrid, Placement
+
+
+def build_volume(
+    grid: OccupancyGrid,
+    placements: Sequence[Placement],
+    instances: Sequence[ObjectInstance],
+    *,
+    corner_m: np.ndarray | None = None,
+    blocks_per_metre: float = 4.0,
+    parameters: BuildParameters | None = None,
+    name: str = "",
+) -> BlockVolume:
+    """Build a room of blocks.
+
+    Args:
+        grid: what each cell is; colours come from it.
+        placements: furniture in its place; object cells without one are built as they are.
+        instances: the objects, whose cells are those of ``grid.instance``.
+        corner_m: (x_min, y_max) of the room's inner box, which comes to stand at block
+            (0, 64, 0); rounded to whole voxels. None takes the grid's own corner.
+        blocks_per_metre: the scale. At one block a voxel, every occupied cell is one block.
+        parameters: how to build.
+        name: the scene's name for the plaque; without one there is none but where the
+            parameters say a text.
+
+    Raises:
+        UsageError: the scale is not above 0, or makes too many blocks.
+        UnknownNameError: no palette has this name.
+    """
+    chosen = parameters or BuildParameters()
+    if not 0 < blocks_per_metre < 1e4:
+        raise UsageError(f"blocks_per_metre must be above 0, not {blocks_per_metre}; try 4")
+    corner = grid_corner_m(grid) if corner_m is None else snapped_corner_m(grid, corner_m)
+    canvas = Canvas(with_storeys(lattice_over(grid, corner, blocks_per_metre), grid))
+    palette = load_palette(chosen.palette)
+    colours = cell_colours(grid, chosen.expose, chosen.saturation)
+    coloured = seen_colours(grid)
+    source = (grid, colours, coloured, palette, chosen)
+    if is_exact(grid, blocks_per_metre):
+        footprints = put_cells_exactly(canvas, *source)
+    else:
+        footprints = _put_room(canvas, placements, instances, *source)
+    restrict(canvas, palette)
+    settle(canvas)
+    if chosen.edge == "barrier":
+        put_edge(canvas, footprints)
+    if chosen.lights == "lamps" and not is_exact(grid, blocks_per_metre):
+        hang_lamps(canvas, footprints, palette)
+    if chosen.lights != "off":
+        put_lights(canvas, footprints)
+    restrict(canvas, palette)
+    volume = canvas.volume()
+    text = {"auto": name, "off": ""}.get(chosen.plaque, chosen.plaque)
+    allowed = palette.allows(SIGN) and palette.allows(WALL_SIGN)
+    return with_plaque(volume, text) if text and allowed else volume
+
+
+def _put_room(
+    canvas: Canvas,
+    placements: Sequence[Placement],
+    instances: Sequence[ObjectInstance],
+    grid: OccupancyGrid,
+    colours: np.ndarray,
+    coloured: np.ndarray,
+    palette: Palette,
+    parameters: BuildParameters,
+) -> tuple[np.ndarray, ...]:
+    """Set shell and objects; return each storey's footprint, bool [X, Y]."""
+    shell = build_shell(grid, canvas.lattice, parameters)
+    put_shell(canvas, shell, colours, coloured, palette, parameters)
+    things = coloured & np.isin(grid.labels, OBJECT_CLASSES)
+    painted = colours.copy()
+    painted[things] = one_paint(colours[things])
+    if parameters.style == "display":
+        source = (grid, painted, coloured, palette, parameters)
+        DisplayBuilder(canvas, *source, instances).put_all(placements)
+        return shell.footprints
+    builder = ObjectBuilder(canvas, grid, painted, coloured, palette, parameters, shell.footprints)
+    source = (placements, painted, grid, builder.within)
+    builder.put_all(put_own_furniture(canvas, palette.furniture, *source))
+    carry_floaters(canvas)
+    close_gaps(canvas)
+    return shell.footprints
+
+
+def grid_corner_m(grid: OccupancyGrid) -> np.ndarray:
+    """Return (x_min, y_max) of the grid's occupied cells, float64 [2], for a room of no known box.
+
+    A layer of wall cells there counts as shell, outside the corner.
+    """
+    occupied = np.asarray(grid.occupied.any(2))
+    if not occupied.any():
+        return np.array([grid.origin_m[0], grid.origin_m[1] + grid.shape[1] * grid.voxel_m])
+    cells = np.argwhere(occupied)
+    first, last = int(cells[:, 0].min()), int(cells[:, 1].max())
+    walls = np.asarray(np.isin(grid.labels, (3, 4)).any(2))
+    first += bool(walls[first].any())
+    last -= bool(walls[:, last].any())
+    return grid.origin_m[:2] + np.array([first, last + 1]) * grid.voxel_m

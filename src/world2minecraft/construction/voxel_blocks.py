@@ -1,0 +1,80 @@
+"""One voxel, one block: every occupied cell becomes one full block, by integer maps."""
+
+import numpy as np
+
+from world2minecraft.construction.canvas import BARRIER, Canvas
+from world2minecraft.construction.lattice import Lattice
+from world2minecraft.construction.palettes import Palette
+from world2minecraft.construction.parameters import BuildParameters
+from world2minecraft.construction.structure import STANDING_M, WALL, WINDOW
+from world2minecraft.construction.surfaces import painted
+from world2minecraft.core.types import UNSEEN, OccupancyGrid
+from world2minecraft.geometry.padded_morphology import grown, without_holes
+
+
+def put_cells_exactly(
+    canvas: Canvas,
+    grid: OccupancyGrid,
+    colours: np.ndarray,
+    coloured: np.ndarray,
+    palette: Palette,
+    parameters: BuildParameters,
+) -> tuple[np.ndarray, ...]:
+    """Set every occupied cell as one block; return each storey's footprint, bool [X, Y].
+
+    The floor's unseen holes are closed with invisible barriers, which carry class 0: one can walk
+    on them, and the occupied blocks are the occupied cells and no others.
+    """
+    start = _start(grid, canvas.lattice)
+    inside = tuple(slice(low, low + size) for low, size in zip(start, grid.shape, strict=True))
+    states = np.zeros(grid.shape, np.uint16)
+    occupied = grid.occupied
+    surfaces = np.where(occupied, grid.labels.astype(np.int32) << 16, 0)
+    surfaces[occupied] += grid.instance[occupied]
+    for surface in np.unique(surfaces[occupied]):
+        mask = surfaces == surface
+        class_id, number = int(surface) >> 16, int(surface) & 0xFFFF
+        limit = parameters.object_colours if number else parameters.structure_colours * 2
+        if class_id == WINDOW:
+            states[mask] = canvas.id_of(palette.glass)
+            continue
+        chosen = painted(mask, colours, coloured, class_id, palette, parameters, limit)
+        names, index = np.unique(chosen.astype(str), return_inverse=True)
+        states[mask] = canvas.ids_of(names.tolist())[index]
+    canvas.states[inside] = states
+    canvas.semantic[inside] = np.where(occupied, grid.labels, 0)
+    canvas.instance[inside] = np.where(occupied, grid.instance, 0)
+    footprints = []
+    for ground in canvas.lattice.grounds:
+        footprint = np.zeros(canvas.states.shape[:2], bool)
+        footprint[inside[:2]] = _footprint(grid, ground - start[2])
+        footprints.append(footprint)
+    _close_floor(canvas, footprints[0])
+    return tuple(footprints)
+
+
+def _start(grid: OccupancyGrid, lattice: Lattice) -> tuple[int, int, int]:
+    """Return the lattice index of cell (0, 0, 0), a whole number by construction."""
+    at = lattice.coordinates_of(grid.origin_m)
+    x, y, z = np.rint(at).astype(int).tolist()
+    return x, y, z
+
+
+def _footprint(grid: OccupancyGrid, ground: int) -> np.ndarray:
+    """Return the columns in which one stands: seen free or furnished low down, and no wall.
+
+    ``ground`` is the first layer of cells above a storey's floor.
+    """
+    low = int(np.clip(ground, 0, grid.shape[2] - 1))
+    high = low + max(2, int(STANDING_M / grid.voxel_m))
+    labels, source = grid.labels[:, :, low:high], grid.source[:, :, low:high]
+    stood = (((labels == 0) & (source != UNSEEN)) | ((labels > WINDOW) & (labels != 255))).any(2)
+    walls = np.isin(labels, (WALL, WINDOW)).any(2)
+    return without_holes(stood & ~walls)
+
+
+def _close_floor(canvas: Canvas, footprint: np.ndarray) -> None:
+    layer = canvas.lattice.ground - 1
+    plan = grown(footprint, (1, 1))
+    holes = plan & (canvas.states[:, :, layer] == 0)
+    canvas.states[:, :, layer][holes] = canvas.id_of(BARRIER)

@@ -1,0 +1,182 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from world2minecraft.construction.cell_colours import gains_of, group_medians, spread
+from world2minecraft.construction.idioms import DYES
+from world2minecraft.construction.paint import calm, choose_few, neighbour_table, paint
+from world2minecraft.construction.palettes import load_palette
+from world2minecraft.geometry.colour import (
+    linear_of_oklab,
+    linear_of_srgb,
+    oklab_of_linear,
+    oklab_of_srgb,
+    srgb_of_linear,
+)
+from world2minecraft.minecraft.block_colours import colour_of, colours_of, nearest_block
+from world2minecraft.minecraft.collision_shapes import is_full_cube
+
+WOOLS = [f"minecraft:{dye}_wool" for dye in DYES]
+TERMS = dict(most=3, lightness_weight=0.4, calm_step=0.04, noticed=0.1)
+
+
+def test_oklab_of_known_colours():
+    # The values that the definition's author prints for the corners of sRGB.
+    known = {
+        (255, 255, 255): (1.0, 0.0, 0.0),
+        (255, 0, 0): (0.6279, 0.2249, 0.1258),
+        (0, 255, 0): (0.8664, -0.2339, 0.1795),
+        (0, 0, 255): (0.4520, -0.0324, -0.3115),
+        (0, 0, 0): (0.0, 0.0, 0.0),
+    }
+    for rgb, oklab in known.items():
+        assert oklab_of_srgb(np.array(rgb, np.uint8)) == pytest.approx(oklab, abs=2e-4)
+
+
+@given(st.tuples(*[st.integers(0, 255)] * 3))
+def test_oklab_there_and_back(rgb):
+    oklab = oklab_of_srgb(np.array(rgb, np.uint8))
+    assert np.abs(srgb_of_linear(linear_of_oklab(oklab)).astype(int) - rgb).max() <= 1
+    linear = linear_of_srgb(np.array(rgb, np.uint8))
+    assert linear_of_oklab(oklab_of_linear(linear)) == pytest.approx(linear, abs=1e-5)
+
+
+def test_each_wool_is_nearest_to_itself():
+    assert nearest_block(colours_of(WOOLS), WOOLS).tolist() == list(range(16))
+
+
+@given(st.lists(st.tuples(*[st.integers(0, 255)] * 3), min_size=1, max_size=20))
+def test_the_nearest_block_is_the_nearest(colours):
+    rgb = np.array(colours, np.uint8)
+    offered = oklab_of_srgb(colours_of(WOOLS))
+    chosen = nearest_block(rgb, WOOLS)
+    for colour, index in zip(oklab_of_srgb(rgb), chosen, strict=True):
+        apart = np.linalg.norm(offered - colour, axis=1)
+        assert apart[index] == pytest.approx(apart.min(), abs=1e-6)
+
+
+def test_no_candidates_is_an_error():
+    with pytest.raises(ValueError, match="needs at least one candidate block"):
+        nearest_block(np.zeros((1, 3), np.uint8), [])
+
+
+@pytest.mark.parametrize(
+    "shape,material",
+    [
+        ("red_carpet", "red_wool"),
+        ("minecraft:oak_slab[type=top,waterlogged=false]", "oak_planks"),
+        ("stone_brick_wall", "stone_bricks"),
+        ("quartz_stairs", "quartz_block"),
+        ("dark_oak_fence_gate", "dark_oak_planks"),
+        ("waxed_cut_copper_slab", "cut_copper"),
+        ("red_stained_glass_pane", "red_stained_glass"),
+        ("spruce_wood", "spruce_log"),
+        ("crimson_hyphae", "crimson_stem"),
+        ("lime_bed", "lime_wool"),
+    ],
+)
+def test_shapes_have_the_colour_of_their_material(shape, material):
+    assert colour_of(shape) == colour_of(material)
+
+
+def test_a_mod_s_block_has_a_colour_of_its_own_that_stays():
+    first = colour_of("tmeo_ultra:shafazhuanjiao")
+    assert first == colour_of("tmeo_ultra:shafazhuanjiao[facing=east]") == (183, 152, 150)
+    assert first != colour_of("tmeo_ultra:yigui")
+
+
+def test_a_noisy_surface_becomes_one_block():
+    rng = np.random.default_rng(0)
+    positions = np.argwhere(np.ones((12, 1, 12), bool))
+    base = oklab_of_srgb(np.array([170, 45, 40], np.uint8))
+    colours = (base + rng.normal(0, 0.03, (len(positions), 3))).astype(np.float32)
+    index = paint(colours, positions, WOOLS, **TERMS)
+    assert {WOOLS[i] for i in index} == {"minecraft:red_wool"}
+
+
+def test_an_edge_between_colours_stays_where_it_is():
+    positions = np.argwhere(np.ones((10, 1, 6), bool))
+    rgb = np.where((positions[:, 2] < 4)[:, None], (161, 39, 35), (30, 30, 34)).astype(np.uint8)
+    chosen = np.array(WOOLS)[paint(oklab_of_srgb(rgb), positions, WOOLS, **TERMS)]
+    assert set(chosen[positions[:, 2] < 4]) == {"minecraft:red_wool"}
+    assert set(chosen[positions[:, 2] >= 4]) == {"minecraft:black_wool"}
+
+
+def test_few_means_few():
+    rng = np.random.default_rng(2)
+    rgb = rng.integers(0, 256, (300, 3)).astype(np.uint8)
+    positions = np.argwhere(np.ones((300, 1, 1), bool))
+    index = paint(oklab_of_srgb(rgb), positions, WOOLS, **TERMS)
+    assert 1 < len(set(index.tolist())) <= 3
+    costs = np.array([[0.0, 1.0, 1.0], [1.0, 0.0, 0.99]] * 20)
+    assert choose_few(costs, 3, 0.1).tolist() == [0, 1]
+
+
+@given(st.integers(0, 10_000))
+def test_neighbours_are_those_one_step_away(seed):
+    rng = np.random.default_rng(seed)
+    positions = np.argwhere(rng.random((4, 3, 5)) < 0.5)
+    if not len(positions):
+        return
+    table = neighbour_table(positions)
+    for row, place in zip(table, positions, strict=True):
+        found = {tuple(positions[i]) for i in row if i < len(positions)}
+        apart = np.abs(positions - place).sum(1)
+        assert found == {tuple(other) for other in positions[apart == 1]}
+
+
+def test_calm_without_a_step_is_the_nearest():
+    costs = np.random.default_rng(5).random((50, 4))
+    positions = np.argwhere(np.ones((50, 1, 1), bool))
+    assert np.array_equal(calm(costs, positions, 0.0), costs.argmin(1))
+
+
+def test_medians_are_those_of_each_group():
+    rng = np.random.default_rng(6)
+    groups = rng.integers(0, 7, 60)
+    colours = rng.random((60, 3)).astype(np.float32)
+    medians, sizes = group_medians(groups, colours, 9)
+    for group in range(9):
+        mine = colours[groups == group]
+        assert sizes[group] == len(mine)
+        wanted = np.median(mine, axis=0) if len(mine) else np.zeros(3)
+        assert medians[group] == pytest.approx(wanted, abs=1e-6)
+
+
+def test_unseen_blocks_take_near_colours_or_the_median():
+    colours = np.zeros((9, 1, 1, 3), np.float32)
+    colours[0], colours[1] = 0.2, 0.6
+    known = np.zeros((9, 1, 1), bool)
+    known[:2] = True
+    found = spread(colours, known, np.ones_like(known), np.full(3, 0.9))
+    assert found[:, 0] == pytest.approx([0.2, 0.6, 0.6, 0.6, *[0.4] * 5])
+    nothing = spread(colours, known & False, np.ones_like(known), np.full(3, 0.9))
+    assert nothing[:, 0] == pytest.approx([0.9] * 9)
+
+
+def test_a_dim_room_is_lifted_and_a_bright_one_left():
+    rng = np.random.default_rng(7)
+    bright = rng.uniform(0.5, 0.9, (200, 1)) * np.ones(3)
+    assert gains_of(bright) == pytest.approx([1, 1, 1])
+    dim = gains_of(bright * 0.4)
+    assert dim == pytest.approx([dim[0]] * 3)
+    assert 1.5 < dim[0] <= 1.8
+    warm = gains_of(bright * [1.0, 0.95, 0.9])
+    assert warm[0] < warm[1] < warm[2]
+
+
+def test_the_palette_allows_only_blocks_that_stay_as_they_are():
+    palette = load_palette("vanilla")
+    falling = ("sand", "gravel", "concrete_powder", "red_sand")
+    glowing = ("lantern", "froglight", "glowstone", "shroomlight", "magma", "lamp")
+    for blocks in palette.blocks.values():
+        assert len(set(blocks)) == len(blocks) > 10
+        for block in blocks:
+            name = block.partition("[")[0].removeprefix("minecraft:")
+            assert is_full_cube(block)
+            assert name not in falling
+            assert not any(word in name for word in (*glowing, "leaves", "glazed", "log", "ice"))
+            assert not name.startswith(("exposed_", "weathered_", "copper", "cut_copper"))
+    for class_id, default in palette.defaults.items():
+        assert default in palette.blocks[class_id]
