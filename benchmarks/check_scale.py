@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from world2minecraft.capture.scale import collect_unscaled, estimate_scale, resized
 from world2minecraft.rooms import room_views
 from world2minecraft.rooms.trials import DIFFICULTIES, Trial, trials
-from world2minecraft.scan.metric import collect_unscaled, estimate_scale, resized
 
 MOST_FRAMES = 60
 

@@ -1,6 +1,6 @@
 """Depth of photos by OpenCV's StereoSGBM: pairs are rectified, matched, and carried back.
 
-It takes the place of ``world2minecraft.stereo.depth_maps``, with the same neighbours and the same
+It takes the place of ``world2minecraft.capture.stereo.depth_maps``, with the same neighbours and the same
 filter behind it, so that the two differ only in how depth is estimated.
 ``python -m benchmarks.rival_sgbm ARGUMENTS`` runs ``w2m ARGUMENTS`` with it; ``check_photos``
 compares the two.
@@ -13,6 +13,11 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from world2minecraft.capture.stereo.downscaled_photos import SmallPhoto, small_photos
+from world2minecraft.capture.stereo.maps import confirmed
+from world2minecraft.capture.stereo.neighbours import DEPTH_PERCENTILES, chosen_neighbours
+from world2minecraft.capture.stereo.parameters import StereoParameters
+from world2minecraft.capture.stereo.sweep import depth_range
 from world2minecraft.cli import run
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.progress import Progress, silent
@@ -20,11 +25,6 @@ from world2minecraft.core.types import Camera, DepthMap, SparseScene
 from world2minecraft.core.types.photos import PhotoStream
 from world2minecraft.geometry.unprojection import pixel_rays
 from world2minecraft.prepare import preparing
-from world2minecraft.stereo.maps import confirmed
-from world2minecraft.stereo.neighbours import DEPTH_PERCENTILES, chosen_neighbours
-from world2minecraft.stereo.parameters import StereoParameters
-from world2minecraft.stereo.small import SmallPhoto, small_photos
-from world2minecraft.stereo.sweep import depth_range
 
 ASKED, PAIRS = 12, 6  # So many neighbours are looked at for so many pairs that can be rectified.
 MOST_ALONG = 0.6  # Share of a motion that may go along the view: rectified, more turns too far.
@@ -56,7 +56,7 @@ def depth_maps(
     progress: Progress = silent,
     guide=None,
 ) -> Iterator[DepthMap]:
-    """Yield the depth maps of a scene's photos at half their size; see ``world2minecraft.stereo``.
+    """Yield the depth maps of a scene's photos at half their size; see ``world2minecraft.capture.stereo``.
 
     ``parameters`` are those of ours: the angle wanted between photos, and the agreement asked for,
     hold here too. ``guide`` does not.

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from world2minecraft import live as live_module
+from world2minecraft.capture import write_plain
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.formats.room import read_room
@@ -16,7 +17,6 @@ from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct
 from world2minecraft.rooms import generate_room
 from world2minecraft.rooms.capture import room_views
-from world2minecraft.scan import write_plain
 
 FRAMES = 12
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from benchmarks import rival_sgbm
-from tests.stereo.plane_photos import row_of_photos, scene_of
+from tests.capture.stereo.plane_photos import row_of_photos, scene_of
 
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import Photo

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from benchmarks import scan_benchmark
 
+from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.files import read_json
 from world2minecraft.evaluate import read_truth
 from world2minecraft.metrics.truth import carry_truth
 from world2minecraft.rooms.trials import trial_named
-from world2minecraft.scan.sources import find_capture
 
 NAME, VOXEL_M = "noise-500", 0.08
 

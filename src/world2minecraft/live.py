@@ -16,6 +16,11 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from world2minecraft.capture import open_scan, realigned, write_plain
+from world2minecraft.capture.frames import FrameFiles
+from world2minecraft.capture.options import parse_options
+from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.view_stream import read_view
 from world2minecraft.construction import build_volume
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.files import read_json, write_bytes, write_json
@@ -29,11 +34,6 @@ from world2minecraft.pipeline import reconstruct
 from world2minecraft.register import corrected, register
 from world2minecraft.rendering.preview import preview
 from world2minecraft.run_folder import check_writable
-from world2minecraft.scan import open_scan, realigned, write_plain
-from world2minecraft.scan.frames import FrameFiles
-from world2minecraft.scan.options import parse_options
-from world2minecraft.scan.sources import find_capture
-from world2minecraft.scan.stream import read_view
 from world2minecraft.steps import labelled
 
 FIRST_PLACING = 4  # Fewer frames rarely show two walls and a floor.

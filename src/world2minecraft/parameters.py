@@ -8,6 +8,8 @@ import math
 from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
+from world2minecraft.capture.sfm import PosingParameters
+from world2minecraft.capture.stereo import StereoParameters
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.find import FindParameters
@@ -17,9 +19,7 @@ from world2minecraft.fuse import CleanParameters, FuseParameters
 from world2minecraft.label import LABELLERS
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.occupy import PREDICTORS, OccupyParameters
-from world2minecraft.posing import PosingParameters
 from world2minecraft.register import RegisterParameters
-from world2minecraft.stereo import StereoParameters
 
 
 @dataclass(frozen=True)

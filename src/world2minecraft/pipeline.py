@@ -18,6 +18,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from world2minecraft import __version__
+from world2minecraft.capture import realigned, settled
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Scan
 from world2minecraft.formats.evidence import write_evidence
@@ -32,7 +33,6 @@ from world2minecraft.plans import add_plan_openings, voted_by_plan
 from world2minecraft.prepare import open_prepared
 from world2minecraft.register import corrected, register, told
 from world2minecraft.run_folder import RunFolder, hash_capture
-from world2minecraft.scan import realigned, settled
 from world2minecraft.steps import LATER_STEPS
 
 STAGES = ("scan", "register", "fuse", *LATER_STEPS)

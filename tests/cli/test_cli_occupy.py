@@ -6,6 +6,7 @@ from PIL import Image
 from tests.exact_room import CAMERA, BoxRoom
 from tests.occupy.tiny_network import FACTS, sized, write_network
 
+from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotation_about_z
 from world2minecraft.core.errors import InputError
@@ -15,7 +16,6 @@ from world2minecraft.dataset.formats.depth_codes import depth_png
 from world2minecraft.dataset.frame_completion import GridPlace
 from world2minecraft.dataset.saved_cells import SaidCells, cells_in_grid
 from world2minecraft.formats.room import read_room
-from world2minecraft.scan.plain import write_plain
 
 POSE = look_at(np.array([2.2, 0.5, 1.5]), np.array([2.2, 3.0, 1.2]))
 ORIGIN_M = np.array([-0.2, 0.48, -0.08])

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from world2minecraft.capture import write_plain
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import Camera, View
-from world2minecraft.scan import write_plain
 
 CAMERA = Camera(80, 60, 60.0, 60.0, 40.0, 30.0)
 
@@ -68,7 +68,9 @@ def test_json(capture, tmp_path, capsys):
 
 
 def test_a_stop_is_told_and_is_no_failure(capture, capsys, monkeypatch):
-    monkeypatch.setattr("world2minecraft.scan.survey.doubts.is_installed", lambda module: False)
+    monkeypatch.setattr(
+        "world2minecraft.capture.quality.diagnostics.is_installed", lambda module: False
+    )
     assert w2m(["scan", str(capture), "--no-picture"]) == 0
     assert "  stop      finding poses needs an extra" in capsys.readouterr().out
 

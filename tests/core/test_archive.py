@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from world2minecraft.capture.images import check_whole, read_colour, read_header, read_raw
 from world2minecraft.core.archives import ArchivePath, is_zip
 from world2minecraft.core.errors import (
     DamagedFileError,
@@ -15,7 +16,6 @@ from world2minecraft.core.errors import (
     World2MinecraftError,
 )
 from world2minecraft.core.files import read_bytes, read_json
-from world2minecraft.scan.images import check_whole, read_colour, read_header, read_raw
 
 FILES = {
     "a.json": b'{"x": 1}',

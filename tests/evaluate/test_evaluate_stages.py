@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from world2minecraft.capture import open_scan
 from world2minecraft.evaluate import evaluate_reconstruction
 from world2minecraft.evaluate.frames import used_frames
 from world2minecraft.evaluate.recorded import recorded_parameters
@@ -12,7 +13,6 @@ from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.fuse import read_out
 from world2minecraft.parameters import Parameters, with_settings
 from world2minecraft.pipeline import reconstruct
-from world2minecraft.scan import open_scan
 
 
 @pytest.fixture(scope="module")

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotation_about_z
 from world2minecraft.core.files import write_json, write_npz
 from world2minecraft.core.types import OBSERVED, UNSEEN, Camera, OccupancyGrid, Scan, View
@@ -16,7 +17,6 @@ from world2minecraft.formats.room import read_room, write_room
 from world2minecraft.formats.scan import write_scan
 from world2minecraft.parameters import Parameters
 from world2minecraft.rendering.voxel_camera import cast_voxels, prepare_voxels
-from world2minecraft.scan.plain import write_plain
 
 FINE_M, VOXEL_M = 0.02, 0.08
 SIZE_M = (3.2, 2.4, 2.08)

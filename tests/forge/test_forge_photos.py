@@ -9,6 +9,7 @@ from forge_runs import FRAMES
 from forge_serving import client, served, small_editor
 from PIL import Image
 
+from world2minecraft.capture.depth_images import read_depth
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Camera
@@ -17,7 +18,6 @@ from world2minecraft.forge.photos import find_capture_of, ideal_camera, read_pho
 from world2minecraft.formats.room import read_room
 from world2minecraft.geometry.undistort import undistorted
 from world2minecraft.geometry.unprojection import project
-from world2minecraft.scan.depth import read_depth
 
 
 @pytest.fixture(scope="module")

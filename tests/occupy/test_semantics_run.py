@@ -9,11 +9,11 @@ from tests.exact_room import BoxRoom
 from tests.occupy.tiny_network import write_network
 from tests.occupy.tiny_segmenters import write_segmenter
 
+from world2minecraft.capture import write_plain
 from world2minecraft.occupy import OccupyParameters, kept
 from world2minecraft.occupy.hf_semantics import HuggingFaceSemantics
 from world2minecraft.parameters import Parameters
 from world2minecraft.pipeline import reconstruct
-from world2minecraft.scan import write_plain
 
 ROOM = BoxRoom()
 

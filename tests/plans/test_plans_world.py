@@ -9,6 +9,7 @@ from roomplans import captured_room, session_of
 from test_plans_roomplan import layout
 
 from world2minecraft import cli
+from world2minecraft.capture.readers.floorplan_only import plan_in
 from world2minecraft.cli.from_plan import say_plan
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import rotation_about_z
@@ -33,7 +34,6 @@ from world2minecraft.plans import (
 from world2minecraft.plans.cells import cells_of_plan
 from world2minecraft.plans.furniture import template_of
 from world2minecraft.plans.outlines import moved_plan
-from world2minecraft.scan.plan_alone import plan_in
 
 SESSION = session_of(21.0, (3.0, -1.4, 0.7))
 

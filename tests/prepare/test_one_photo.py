@@ -9,16 +9,16 @@ from PIL import Image
 from tests.exact_room import BoxRoom
 from tests.occupy.tiny_network import FACTS, write_network
 
+from world2minecraft.capture import describe_capture
+from world2minecraft.capture.options import parse_options
+from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.telling import summary_lines
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.making import make_run
 from world2minecraft.parameters import Parameters
 from world2minecraft.prepare import one_photo, open_prepared
-from world2minecraft.scan import describe_capture
-from world2minecraft.scan.options import parse_options
-from world2minecraft.scan.sources import find_capture
-from world2minecraft.scan.telling import summary_lines
 
 CAMERA = Camera(320, 240, 260.0, 260.0, 160.0, 120.0)
 FOV_DEG = 2 * np.degrees(np.arctan(120 / 260))

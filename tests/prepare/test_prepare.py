@@ -8,6 +8,9 @@ import pytest
 from PIL import Image
 from tests.exact_room import BoxRoom
 
+from world2minecraft.capture import open_scan, write_plain
+from world2minecraft.capture.judged import judge_capture
+from world2minecraft.capture.options import ScanOptions
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera, DepthMap, SparseScene, View
@@ -15,9 +18,6 @@ from world2minecraft.geometry.unprojection import lift_depth, project
 from world2minecraft.parameters import Parameters
 from world2minecraft.prepare import open_prepared, prepared, preparing
 from world2minecraft.prepare.scaling import clicked, depth_ratios, normalised, scaled_capture
-from world2minecraft.scan import open_scan, write_plain
-from world2minecraft.scan.judged import judge_capture
-from world2minecraft.scan.options import ScanOptions
 
 CAMERA = Camera(320, 240, 260.0, 260.0, 160.0, 120.0)
 UNIT_M = 0.37  # What one unit of the stand-in's scene is.

@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
+from world2minecraft.capture.judged import judge_capture
+from world2minecraft.capture.options import ScanOptions
 from world2minecraft.rooms import generate_room, scan_room
 from world2minecraft.rooms.film import TURN, plan_film
 from world2minecraft.rooms.photo import prepare_photos
 from world2minecraft.rooms.shots import Shooting
 from world2minecraft.rooms.texture import mixed
-from world2minecraft.scan.judged import judge_capture
-from world2minecraft.scan.options import ScanOptions
 
 SMALL = {"width": 160, "height": 120, "seed": 3}
 

@@ -11,14 +11,14 @@ import pytest
 from tests.site.pages import FENCE
 
 from world2minecraft import cli
+from world2minecraft.capture import open_scan
+from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.sources import find_capture
 from world2minecraft.label import LABELLERS
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.unlabelled_volume import unlabelled
 from world2minecraft.occupy import predictor
-from world2minecraft.scan import open_scan
-from world2minecraft.scan.plain import write_plain
-from world2minecraft.scan.sources import find_capture
 from world2minecraft.vln.agents.choice import AGENTS
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "extending.md").read_text()

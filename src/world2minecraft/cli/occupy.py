@@ -76,9 +76,9 @@ def run(
     the room, x, y, z up. A capture with --grid answers in that grid, whose world must be the
     capture's. ``labels`` is uint8, ids 0 to 11, 255 where nobody looked.
     """
+    from world2minecraft.capture.readers.photos import PHOTO_SUFFIXES
     from world2minecraft.core.errors import InputError
     from world2minecraft.dataset.frame_completion import read_grid_place
-    from world2minecraft.scan.photo_folder import PHOTO_SUFFIXES
 
     if not source.exists():
         raise InputError(source, "is not there; give a depth PNG, a photo or a capture")
@@ -98,8 +98,8 @@ def run(
 
 def _check_no_depth(source: Path) -> None:
     """Refuse a depth picture of which nobody says where it was taken."""
+    from world2minecraft.capture.images import read_header
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.scan.images import read_header
 
     if source.suffix.lower() == ".png" and read_header(source).mode.startswith("I"):
         raise UsageError(f"{source} is a depth picture; --grid tells where its cells lie")
@@ -123,11 +123,11 @@ class _Frame:
 
     def by_depth(self, place: "GridPlace") -> "SaidCells":
         """Return what the completion network says."""
+        from world2minecraft.capture.depth_images import check_depth_kind
+        from world2minecraft.capture.images import read_colour, read_header, read_raw
         from world2minecraft.core.errors import CaptureError
         from world2minecraft.dataset.frame_completion import VOXEL_M, complete_frame, depth_of_png
         from world2minecraft.dataset.saved_cells import SaidCells
-        from world2minecraft.scan.depth import check_depth_kind
-        from world2minecraft.scan.images import read_colour, read_header, read_raw
 
         header = read_header(self.source)
         if header.mode in ("RGB", "RGBA", "CMYK", "YCbCr"):
@@ -149,10 +149,10 @@ class _Frame:
 
     def by_network(self, place: "GridPlace", predictor: str) -> "SaidCells":
         """Return what a monocular network says."""
+        from world2minecraft.capture.images import read_colour, read_header
         from world2minecraft.core.errors import CaptureError
         from world2minecraft.dataset.saved_cells import cells_by_network
         from world2minecraft.occupy.mono import MonoPredictor
-        from world2minecraft.scan.images import read_colour, read_header
 
         photo = self.colour or self.source
         if read_header(photo).mode.startswith(("I", "F")):

@@ -180,12 +180,12 @@ def built_from_plan(
 
     UsageError for options that need frames, of which a plan has none.
     """
+    from world2minecraft.capture.readers.floorplan_only import plan_in
     from world2minecraft.cli.from_plan import say_plan
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
     from world2minecraft.making import make_from_plan
     from world2minecraft.prepare import scene_name
-    from world2minecraft.scan.plan_alone import plan_in
 
     drawn = plan_in(capture)
     if drawn is None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.scan import CaptureSummary
+    from world2minecraft.capture import CaptureSummary
 
 EXAMPLES = """\
 w2m scan my_photos                        a folder of photos: JPEG, PNG, HEIC
@@ -48,12 +48,12 @@ def run(
         as_json: print JSON.
         settings: options of the reader, such as ``capture.depth_unit=mm``.
     """
+    from world2minecraft.capture import describe_capture
+    from world2minecraft.capture.readers.floorplan_only import plan_in
+    from world2minecraft.capture.telling import as_data, plan_lines, summary_lines
     from world2minecraft.core.errors import UsageError
     from world2minecraft.formats.roomplan import read_roomplan
     from world2minecraft.parameters import Parameters, with_settings
-    from world2minecraft.scan import describe_capture
-    from world2minecraft.scan.plan_alone import plan_in
-    from world2minecraft.scan.telling import as_data, plan_lines, summary_lines
 
     if picture is not None and (no_picture or as_json):
         raise UsageError("--picture draws one; leave out --no-picture and --json")
@@ -80,9 +80,9 @@ def _print_all(lines: list[str], as_json: bool) -> None:
 
 def _write_picture(summary: "CaptureSummary", picture: Path | None) -> str:
     """Write the picture and return where it is, or why there is none."""
+    from world2minecraft.capture.poster import is_poster, poster_png
     from world2minecraft.core.errors import OutputError
     from world2minecraft.core.files import write_bytes
-    from world2minecraft.scan.poster import is_poster, poster_png
 
     chosen = picture or Path(f"{Path(summary.folder.name).stem or 'capture'}-scan.png")
     if picture is None and chosen.exists() and not is_poster(chosen):

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from world2minecraft.capture.images import read_colour
+from world2minecraft.capture.sources import find_capture
 from world2minecraft.compare.judge import QUALITY
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.external_models.chat_messages import Picture
 from world2minecraft.rendering.output.images import colour_bytes
-from world2minecraft.scan.images import read_colour
-from world2minecraft.scan.sources import find_capture
 
 LONGEST_PX = 1024
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.capture.images import SUFFIXES, read_colour, read_header
 from world2minecraft.core.errors import InputError
 from world2minecraft.dataset.store import OccStore, open_store
 from world2minecraft.dataset.store.layout import META
-from world2minecraft.scan.images import SUFFIXES, read_colour, read_header
 
 
 @dataclass(frozen=True)

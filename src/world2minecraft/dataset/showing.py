@@ -6,12 +6,12 @@ labels belong together. A figure beside says the same of the depth.
 
 import numpy as np
 
+from world2minecraft.capture.poster.canvas import FAINT, INK, PANEL, RULE, Sheet
 from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.dataset.values import OccSample
 from world2minecraft.geometry.unprojection import lift_depth
 from world2minecraft.rendering.voxel_camera import cast_voxels
-from world2minecraft.scan.poster.ink import FAINT, INK, PANEL, RULE, Sheet
 
 PANEL_PX = (480, 360)
 MARGIN_PX, LINE_PX, HEAD_PX = 24, 26, 54

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.capture import open_scan
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Scan, View
@@ -34,7 +35,6 @@ from world2minecraft.formats.scan import write_scan
 from world2minecraft.fuse import fuse_views
 from world2minecraft.occupy import predictor
 from world2minecraft.parameters import Parameters
-from world2minecraft.scan import open_scan
 from world2minecraft.steps import LATER_STEPS
 
 AFTER = ("alignment", "fusion", "labels", "instances", "templates")

@@ -20,6 +20,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.capture.readers.floorplan_only import plan_in
+from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.errors import (
     ConflictError,
     DamagedFileError,
@@ -32,8 +34,6 @@ from world2minecraft.core.errors import (
 from world2minecraft.core.files import read_json, write_json
 from world2minecraft.forge.upload_names import UploadFile, checked_files, common_folder
 from world2minecraft.minecraft.worlds.installation import check_name
-from world2minecraft.scan.plan_alone import plan_in
-from world2minecraft.scan.sources import find_capture
 
 MOST_UPLOAD_BYTES = 512 << 20
 SPARE_BYTES = 256 << 20  # What a run of the capture writes, with room to breathe.

@@ -15,14 +15,14 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from world2minecraft.capture.depth_images import DepthEncoding, read_depth
+from world2minecraft.capture.frames import FrameFiles
+from world2minecraft.capture.images import read_colour, read_small
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.evaluate.frames import computed
 from world2minecraft.geometry.undistort import undistorted
 from world2minecraft.report.placed import judge_capture_of, placed_frames, used_by
-from world2minecraft.scan.depth import DepthEncoding, read_depth
-from world2minecraft.scan.frames import FrameFiles
-from world2minecraft.scan.images import read_colour, read_small
 
 LONGEST_PX, SMALL_PX = 1280, 200
 HELD_BYTES = 48 << 20  # Of pictures that were made: some hundred.

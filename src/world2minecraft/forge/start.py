@@ -27,6 +27,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
+from world2minecraft.capture.scale.known_lengths import LENGTHS_M
 from world2minecraft.construction.parameters import STYLES
 from world2minecraft.core.errors import ConflictError, InputError, UsageError
 from world2minecraft.forge.apart import run_apart
@@ -38,7 +39,6 @@ from world2minecraft.forge.tasks import parameters_of
 from world2minecraft.forge.usual import demo_s, reconstruct_s
 from world2minecraft.forge.workshop import Workshop
 from world2minecraft.rooms import BASE_KINDS
-from world2minecraft.scan.metric.known import LENGTHS_M
 
 SCALES = (1, 2, 4, 12.5)
 USUAL_SCALE = 4

@@ -7,6 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.capture import describe_capture
+from world2minecraft.capture.poster import poster_png
+from world2minecraft.capture.readers.floorplan_only import plan_in
+from world2minecraft.capture.telling import as_data, plan_lines, summary_lines
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.files import write_bytes, write_json
 from world2minecraft.core.progress import Progress
@@ -15,10 +19,6 @@ from world2minecraft.parameters import Parameters, with_settings
 from world2minecraft.plans import read_roomplan
 from world2minecraft.prepare import scene_name
 from world2minecraft.rooms import generate_room, scan_room
-from world2minecraft.scan import describe_capture
-from world2minecraft.scan.plan_alone import plan_in
-from world2minecraft.scan.poster import poster_png
-from world2minecraft.scan.telling import as_data, plan_lines, summary_lines
 
 SURVEY, PICTURE = "survey.json", "survey.png"
 DEMO_SEED, DEMO_FRAMES = 5, 40  # Those of ``w2m demo``.

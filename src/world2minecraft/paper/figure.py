@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from world2minecraft.capture.images import read_colour
 from world2minecraft.core.classes import CLASS_COLOURS, OBJECT_CLASSES, UNKNOWN
 from world2minecraft.core.coordinates import grid_to_block_axes
 from world2minecraft.core.errors import CaptureError
@@ -29,7 +30,6 @@ from world2minecraft.rendering.views.cameras import camera_of
 from world2minecraft.rendering.views.orbit import orbit_shots
 from world2minecraft.report.placed import PlacedFrame, judge_capture_of, placed_frames, used_by
 from world2minecraft.report.scene import read_built
-from world2minecraft.scan.images import read_colour
 
 VIEWS, STEPS = 3, 6  # Rows, and pictures of a walk.
 CELL_PX = (480, 360)

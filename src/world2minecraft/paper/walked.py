@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.capture.images import read_colour
 from world2minecraft.core.errors import InputError
-from world2minecraft.scan.images import read_colour
 from world2minecraft.vln.running.scene_ground import SceneGround
 from world2minecraft.vln.running.trace import (
     TRACE_FILE,

@@ -11,18 +11,18 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.capture.judged import JudgedCapture
+from world2minecraft.capture.options import parse_options
+from world2minecraft.capture.photos import judged_photos
+from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.readers.single_photo import SOURCE
+from world2minecraft.capture.stereo import DepthModel, depth_model
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, View
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
 from world2minecraft.geometry.view_region import USUAL_SHAPE, USUAL_VOXEL_M
 from world2minecraft.parameters import Parameters
-from world2minecraft.scan.judged import JudgedCapture
-from world2minecraft.scan.one_photo import SOURCE
-from world2minecraft.scan.options import parse_options
-from world2minecraft.scan.photos import judged_photos
-from world2minecraft.scan.plain import write_plain
-from world2minecraft.stereo import DepthModel, depth_model
 
 DEPTH_WIDE_PX = 640
 TRUST = 255  # There is nothing else to trust.

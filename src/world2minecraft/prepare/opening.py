@@ -3,11 +3,11 @@
 from dataclasses import replace
 from pathlib import Path
 
+from world2minecraft.capture import open_scan
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Scan
 from world2minecraft.parameters import Parameters
 from world2minecraft.prepare.preparing import prepared
-from world2minecraft.scan import open_scan
 
 # Names of folders that say nothing of their scene.
 NAMELESS = ("capture", "frames", "scan", "data", "input")

@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from world2minecraft.capture.frames import FrameFiles
+from world2minecraft.capture.images import ImagePlace, read_header
+from world2minecraft.capture.judged import JudgedCapture
+from world2minecraft.capture.photos import CapturePhotos
+from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.types import Camera, DepthMap, Photo, PhotoStream, SparseScene, View
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
-from world2minecraft.scan.frames import FrameFiles
-from world2minecraft.scan.images import ImagePlace, read_header
-from world2minecraft.scan.judged import JudgedCapture
-from world2minecraft.scan.photos import CapturePhotos
-from world2minecraft.scan.stream import read_view
 
 
 def stereo_views(

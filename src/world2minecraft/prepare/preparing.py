@@ -5,6 +5,15 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from world2minecraft.capture.frames import Capture
+from world2minecraft.capture.images import read_header
+from world2minecraft.capture.judged import JudgedCapture, judge
+from world2minecraft.capture.options import parse_options
+from world2minecraft.capture.photos import CapturePhotos, judged_photos
+from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.sfm import check_poses, find_poses
+from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.stereo import depth_maps, depth_model, network_maps
 from world2minecraft.core.errors import (
     CaptureError,
     DamagedFileError,
@@ -16,19 +25,10 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import SparseScene, View
 from world2minecraft.parameters import Parameters
-from world2minecraft.posing import check_poses, find_poses
 from world2minecraft.prepare.one_photo import is_one_photo, prepare_photo
 from world2minecraft.prepare.pictures import depth_views, stereo_views
 from world2minecraft.prepare.scaling import normalised, scaled_by_depth, scaled_capture
 from world2minecraft.run_folder import check_writable, hash_capture
-from world2minecraft.scan.frames import Capture
-from world2minecraft.scan.images import read_header
-from world2minecraft.scan.judged import JudgedCapture, judge
-from world2minecraft.scan.options import parse_options
-from world2minecraft.scan.photos import CapturePhotos, judged_photos
-from world2minecraft.scan.plain import write_plain
-from world2minecraft.scan.sources import find_capture
-from world2minecraft.stereo import depth_maps, depth_model, network_maps
 
 FOLDER = "capture"
 STAMP = "prepared.json"

@@ -6,6 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.capture.alignment.align import ImplausibleRoomError
+from world2minecraft.capture.judged import JudgedCapture, judge_capture, spread_over
+from world2minecraft.capture.options import ScanOptions
+from world2minecraft.capture.scale import KnownPoints, collect_unscaled, estimate_scale, parse_known
+from world2minecraft.capture.view_stream import CaptureViews, read_view, without_colour
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, InputError, UnknownNameError, UsageError
 from world2minecraft.core.files import read_json, write_json
@@ -13,11 +18,6 @@ from world2minecraft.core.types import SparseScene, View
 from world2minecraft.geometry.unprojection import project
 from world2minecraft.parameters import Parameters
 from world2minecraft.prepare.pictures import posed_frame
-from world2minecraft.scan.align import ImplausibleRoomError
-from world2minecraft.scan.judged import JudgedCapture, judge_capture, spread_over
-from world2minecraft.scan.metric import KnownPoints, collect_unscaled, estimate_scale, parse_known
-from world2minecraft.scan.options import ScanOptions
-from world2minecraft.scan.stream import CaptureViews, read_view, without_colour
 
 LEAST_RATIOS = 50
 LOOKED_AT = 24  # Frames whose depth is held against the points.

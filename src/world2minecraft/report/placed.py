@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.capture.frames import FrameFiles
+from world2minecraft.capture.judged import JudgedCapture, judge_capture
+from world2minecraft.capture.options import parse_options
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import Camera
 from world2minecraft.evaluate.frames import computed
 from world2minecraft.formats.poses import read_poses
-from world2minecraft.scan.frames import FrameFiles
-from world2minecraft.scan.judged import JudgedCapture, judge_capture
-from world2minecraft.scan.options import parse_options
 
 
 @dataclass(frozen=True, eq=False)

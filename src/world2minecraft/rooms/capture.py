@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import write_json, write_npz
 from world2minecraft.core.progress import Progress, silent
@@ -18,7 +19,6 @@ from world2minecraft.formats.objects import rounded
 from world2minecraft.rooms.phone import phone_shots, write_photos, write_video
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.shots import FrameTruth, Shooting, Shot, room_shots, room_to_scan
-from world2minecraft.scan.plain import write_plain
 
 
 def scan_room(

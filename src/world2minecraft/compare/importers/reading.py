@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.capture.readers.meshes.naming import class_of_name
 from world2minecraft.core.classes import STRUCTURE_CLASSES, UNKNOWN, SemanticClass
 from world2minecraft.core.types import Layout, LayoutObject
-from world2minecraft.scan.solids.naming import class_of_name
 
 FARTHEST_M = 1000.0  # From a room's corner; farther is a slip of units.
 MOST_SCENES = 100_000

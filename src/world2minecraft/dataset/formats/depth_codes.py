@@ -10,8 +10,8 @@ from typing import Literal
 
 import numpy as np
 
+from world2minecraft.capture.depth_images import DepthEncoding
 from world2minecraft.rendering.output.images import number_bytes
-from world2minecraft.scan.depth import DepthEncoding
 
 NYU_FAR_MM = 8191
 MM_FAR = 65534  # 65535 is a hole to some cameras' readers.

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from world2minecraft.capture.depth_images import check_depth_kind
+from world2minecraft.capture.images import read_colour, read_header, read_raw
 from world2minecraft.dataset.formats.depth_codes import Code, metres_of
-from world2minecraft.scan.depth import check_depth_kind
-from world2minecraft.scan.images import read_colour, read_header, read_raw
 
 
 def colour_at(path: Path) -> np.ndarray | None:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from world2minecraft.capture.sources import SOURCES
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import CaptureError, InputError
 from world2minecraft.core.files import write_json, write_npz
@@ -14,7 +15,6 @@ from world2minecraft.evaluate.scannet.seen import seen_free
 from world2minecraft.evaluate.scannet.surface import surface_voxels
 from world2minecraft.evaluate.truth import Truth
 from world2minecraft.rooms.capture import stated_object
-from world2minecraft.scan.sources import SOURCES
 
 RECORDINGS = ("scannet_sens", "scannet_folder")
 VOXEL_M = 0.02  # As the truth of generated rooms: a quarter of a cell.

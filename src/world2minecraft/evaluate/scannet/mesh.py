@@ -12,14 +12,19 @@ from typing import Any
 
 import numpy as np
 
+from world2minecraft.capture.readers.datasets.nyu40_labels import (
+    TABLE,
+    find_table,
+    nyu40_classes,
+    raw_id_classes,
+)
+from world2minecraft.capture.readers.datasets.scannet_metadata import axis_alignment, read_facts
+from world2minecraft.capture.readers.meshes.ply import read_ply
 from world2minecraft.core.classes import CLASS_COUNT, OBJECT_CLASSES, UNKNOWN, SemanticClass
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import LayoutObject
-from world2minecraft.scan.datasets.nyu40 import TABLE, find_table, nyu40_classes, raw_id_classes
-from world2minecraft.scan.datasets.scannet_extras import axis_alignment, read_facts
-from world2minecraft.scan.solids.ply import read_ply
 
 LABELLED = "_vh_clean_2.labels.ply"
 NYU40_NUMBERS = 40

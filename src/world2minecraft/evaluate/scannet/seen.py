@@ -8,16 +8,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from world2minecraft.capture.depth_images import DepthEncoding, read_depth
+from world2minecraft.capture.frames import FrameFiles
+from world2minecraft.capture.judged import judge_capture, spread_over
+from world2minecraft.capture.options import ScanOptions
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import CaptureError, DamagedFileError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.evaluate.frames import UsedFrame
 from world2minecraft.evaluate.reach import CROSSED, Believed, reached_cells
 from world2minecraft.evaluate.truth import Truth
-from world2minecraft.scan.depth import DepthEncoding, read_depth
-from world2minecraft.scan.frames import FrameFiles
-from world2minecraft.scan.judged import judge_capture, spread_over
-from world2minecraft.scan.options import ScanOptions
 
 MOST_FRAMES = 200  # Evenly spread over the recording: seven a second of a walk of half a minute.
 APART_M, APART_SHARE = 0.08, 0.05  # A cell, or what such sensors err by at 2 m and beyond.

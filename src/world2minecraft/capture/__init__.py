@@ -1,0 +1,14 @@
+"""Stage 1: a capture on disk becomes an aligned Scan.
+
+``open_scan`` finds out the source, checks the frames, finds gravity and the walls and returns
+views that are read from disk one at a time. ``describe_capture`` tells in a moment what a folder
+holds. ``write_plain`` writes our own layout.
+"""
+
+from world2minecraft.capture.alignment.align import realigned
+from world2minecraft.capture.describing import CaptureSummary, describe_capture
+from world2minecraft.capture.open_scan import open_scan
+from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.view_stream import settled
+
+__all__ = ["CaptureSummary", "describe_capture", "open_scan", "realigned", "settled", "write_plain"]

@@ -1,0 +1,147 @@
+"""The walls: how the room is turned about the vertical, and where its inner box ends.
+
+All here is in a level frame: z up, the floor at 0.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.capture.alignment.places import face_place_m
+from world2minecraft.capture.alignment.surface import profile
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.geometry.oriented_points import Surface
+
+UPRIGHT = 0.17  # Sine of 10 degrees: how far a wall's normal may lean.
+FACING = 0.94  # Cosine of 20 degrees.
+WALL_LEAST_M2 = 0.5  # A wardrobe's door has more; what is small is furniture.
+WALL_SHARE = 0.2  # Of the largest surface that faces the same way.
+BEYOND_SHARE = 0.03  # Of the patches: what is seen through doors, windows and mirrors.
+CEILING_LEAST_M = 1.8
+EDGE_QUANTILE = 0.005
+
+
+@dataclass(frozen=True)
+class Box:
+    """The room's inner box in the level frame, float64 [3] each, and which sides were seen.
+
+    ``seen`` names of x-, x+, y-, y+, z+ the sides that a surface holds; the others end where
+    the points end.
+    """
+
+    low_m: np.ndarray
+    high_m: np.ndarray
+    seen: tuple[str, ...]
+
+
+def find_yaw(surface: Surface) -> float:
+    """Return the degrees, -45 up to 45, by which walls are turned from the axes.
+
+    The normals of upright surfaces vote modulo a quarter turn; the large walls' own lines then
+    say it finely.
+    """
+    upright = surface.normals[np.abs(surface.normals[:, 2]) < UPRIGHT]
+    if len(upright) < 50:
+        return 0.0
+    angles = np.degrees(np.arctan2(upright[:, 1], upright[:, 0])) % 90
+    votes = np.bincount(np.minimum(angles.astype(np.int64), 89), minlength=90).astype(float)
+    votes = sum(np.roll(votes, shift) * (3 - abs(shift)) for shift in (-2, -1, 0, 1, 2))
+    yaw = float(np.argmax(votes)) + 0.5
+    for within_deg in (8.0, 4.0, 3.0):
+        off = (angles - yaw + 45) % 90 - 45
+        near = np.abs(off) < within_deg
+        if near.sum() > 20:
+            yaw += float(np.mean(off[near]))
+    for _ in range(2):
+        yaw += _wall_slope(surface.turned(rotation_about_z(-yaw)))
+    return (yaw + 45) % 90 - 45
+
+
+def _wall_slope(surface: Surface) -> float:
+    """Return the mean turn in degrees that is left in the large walls, by fitting their lines."""
+    total, weights = 0.0, 0.0
+    for axis in (0, 1):
+        for sign in (-1, 1):
+            points = surface.points_m[sign * surface.normals[:, axis] > FACING]
+            found = profile(points, axis)
+            for place in found.peaks(max(WALL_LEAST_M2, 0.4 * float(found.area_m2.max()))):
+                slope, weight = _line_slope(points, axis, float(place))
+                total += weight * (-slope if axis == 0 else slope)
+                weights += weight
+    return float(np.degrees(np.arctan(total / weights))) if weights > 0 else 0.0
+
+
+def _line_slope(points: np.ndarray, axis: int, place_m: float) -> tuple[float, float]:
+    """Fit ``p[axis] = place + slope * p[other]`` near a place (Tukey); weight by its certainty."""
+    along, across = points[:, 1 - axis], points[:, axis]
+    slope, level, middle = 0.0, place_m, 0.0
+    weight = np.zeros(0)
+    for limit_m in (0.10, 0.06, 0.04, 0.04):
+        off = across - level - slope * (along - middle)
+        weight = np.where(np.abs(off) < limit_m, (1 - (off / limit_m) ** 2) ** 2, 0.0)
+        if weight.sum() < 20:
+            return 0.0, 0.0
+        middle = float(np.average(along, weights=weight))
+        level = float(np.average(across, weights=weight))
+        spread = float(np.sum(weight * (along - middle) ** 2))
+        if spread < 1e-6:
+            return 0.0, 0.0
+        slope = float(np.sum(weight * (along - middle) * (across - level)) / spread)
+    return slope, float(np.sum(weight * (along - middle) ** 2))
+
+
+def find_box(surface: Surface) -> Box:
+    """Return the inner box of a room whose walls lie along x and y and whose floor is z = 0."""
+    low, high, seen = np.zeros(3), np.zeros(3), []
+    for axis, name in ((0, "x"), (1, "y")):
+        for sign, ends, side in ((1, low, "-"), (-1, high, "+")):
+            place, found = _side(surface, axis, sign)
+            ends[axis] = place
+            if found:
+                seen.append(name + side)
+    high[2], found = _ceiling(surface)
+    if found:
+        seen.append("z+")
+    return Box(low, high, tuple(seen))
+
+
+def _side(surface: Surface, axis: int, sign: int) -> tuple[float, bool]:
+    """Return where the room ends at one side, and whether a wall holds it.
+
+    ``sign`` is that of the inward normal: +1 at the low side. The outermost large surface is the
+    wall, unless too much of the scan lies beyond it.
+    """
+    outward = -sign * surface.points_m[:, axis]
+    patches = _distinct(surface.points_m, outward)
+    end = float(np.quantile(patches, 1 - EDGE_QUANTILE))
+    facing = sign * surface.normals[:, axis] > FACING
+    found = profile(np.column_stack([outward, _others(surface.points_m, axis)])[facing], 0)
+    places = found.peaks(max(WALL_LEAST_M2, WALL_SHARE * float(found.area_m2.max())))
+    for place in places[::-1]:
+        if np.mean(patches > place + 0.10) <= BEYOND_SHARE:
+            return face_place_m(surface.chosen(facing), axis, -sign * float(place)), True
+    return -sign * end, False
+
+
+def _others(points: np.ndarray, axis: int) -> np.ndarray:
+    return points[:, [other for other in range(3) if other != axis]]
+
+
+def _distinct(points: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return one of the values for each 10 cm cell that holds a point."""
+    cells = np.floor(points / 0.1).astype(np.int64)
+    cells -= cells.min(axis=0)
+    code = (cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1]) * (cells[:, 2].max() + 1)
+    return values[np.unique(code + cells[:, 2], return_index=True)[1]]
+
+
+def _ceiling(surface: Surface) -> tuple[float, bool]:
+    """Return the height of the highest large surface that faces down, or where points end."""
+    points = surface.points_m
+    facing = surface.chosen(surface.normals[:, 2] < -FACING)
+    found = profile(facing.points_m, 2)
+    high = _distinct(points, points[:, 2])
+    for place in found.peaks(WALL_LEAST_M2)[::-1]:
+        if place > CEILING_LEAST_M and np.mean(high > place + 0.10) <= BEYOND_SHARE:
+            return face_place_m(facing, 2, float(place)), True
+    return float(np.quantile(high, 1 - EDGE_QUANTILE)), False

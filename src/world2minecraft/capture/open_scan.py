@@ -1,0 +1,125 @@
+"""``open_scan``: a capture on disk becomes a Scan that later stages read view by view."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from world2minecraft.capture.alignment.align import Alignment, ImplausibleRoomError, align
+from world2minecraft.capture.calibration import estimate_colour_camera
+from world2minecraft.capture.judged import JudgedCapture, judge_capture, spread_over
+from world2minecraft.capture.options import parse_options
+from world2minecraft.capture.view_stream import CaptureViews, without_colour
+from world2minecraft.core.errors import CaptureError, UsageError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Scan
+
+ALIGNED_FRAMES = 24  # Of the kitchen's 40; more moved its floor by under 2 mm.
+ESTIMATING_FRAMES = 12  # Ten gave the kitchen's focal length to 0.3 %, whichever ten.
+MAX_CELLS = 40_000_000  # A grid of 400 x 400 x 250; its evidence takes about 2.5 GB.
+STAGE = "scan"
+STEPS = 100
+
+
+def open_scan(
+    path: str | Path,
+    *,
+    voxel_m: float = 0.08,
+    labels: Path | None = None,
+    progress: Progress = silent,
+    options: Mapping[str, str] | None = None,
+) -> Scan:
+    """Open a capture: find out its layout, check it and find the room in it.
+
+    Args:
+        path: the capture's folder.
+        voxel_m: the cell that the room will be cut into; a room of too many cells is refused
+            here, before any long work. The room's inner corner is a corner of a cell.
+        labels: a folder of label images ``NAME.png`` (uint8 class ids), one for each frame.
+        progress: told of the stage ``scan``.
+        options: see ``ScanOptions``: ``depth_unit``, ``every``, ``colour_camera``.
+
+    Raises:
+        CaptureError: the capture cannot be used; the message says why and what to do.
+        LimitError: an image is too large. UsageError: an option is wrong.
+    """
+    chosen = parse_options(options or {})
+    if not voxel_m > 0:
+        raise UsageError(f"the voxel must be above 0 m, not {voxel_m}")
+    judged = judge_capture(
+        path, chosen, labels, lambda done, total: progress(STAGE, 40 * done // total, STEPS)
+    )
+    if not judged.complete and judged.capture.room is None:
+        lacks = "depth images" if judged.posed else "poses"
+        raise CaptureError(
+            judged.capture.folder,
+            f"has no {lacks}; w2m reconstruct computes them from the pictures first",
+        )
+    stream = CaptureViews(judged.frames, judged.encoding, judged.capture.full_trust)
+    notes = list(judged.notes)
+    if judged.capture.one_matrix and chosen.colour_camera == "auto":
+        progress(STAGE, 40, STEPS, "finding the colour camera")
+        stream, found = _with_colour_camera(stream)
+        notes.append(found)
+    progress(STAGE, 60, STEPS, "finding gravity and walls")
+    alignment = _aligned(judged, stream)
+    check_cells(alignment, voxel_m)
+    progress(STAGE, STEPS, STEPS)
+    return Scan(
+        views=stream,
+        scan_to_room=alignment.scan_to_room,
+        room_size_m=alignment.room_size_m,
+        frames_used=tuple(frame.name for frame in stream.frames),
+        frames_skipped=judged.skipped,
+        scale=judged.capture.scale,
+        scale_sigma=judged.capture.scale_sigma,
+        source=judged.capture.source,
+        notes=(*notes, *alignment.notes),
+        depth_kind=judged.capture.depth_kind,
+        world_up=judged.capture.world_up,
+    )
+
+
+def _with_colour_camera(stream: CaptureViews) -> tuple[CaptureViews, str]:
+    """Return the stream with the estimated colour camera where it is clear, and what to tell."""
+    both = [frame for frame in stream.frames if frame.depth_path and frame.colour_path]
+    estimate = estimate_colour_camera(stream.read(spread_over(both, ESTIMATING_FRAMES)))
+    if estimate is None:
+        return stream, "too few depth edges to check the colour camera; it is taken as stated"
+    if not estimate.clear:
+        return stream, "depth edges meet colour edges: one camera, as stated"
+    frames = tuple(
+        replace(frame, colour_camera=estimate.applied(frame.colour_camera))
+        if frame.colour_camera
+        else frame
+        for frame in stream.frames
+    )
+    stated = next(frame.colour_camera for frame in both if frame.colour_camera)
+    note = (
+        f"the colour camera is estimated from edges: focal length {estimate.scale:.3f} of the "
+        f"stated {stated.fx_px:.0f} px, principal point moved by ({estimate.shift_x_px:+.1f}, "
+        f"{estimate.shift_y_px:+.1f}) px; frames kept apart fit {estimate.gain:.1f} times better"
+    )
+    return CaptureViews(frames, stream.encoding, stream.full_trust), note
+
+
+def _aligned(judged: JudgedCapture, stream: CaptureViews) -> Alignment:
+    if judged.capture.room is not None:
+        return Alignment(*judged.capture.room, ())
+    with_depth = without_colour(stream.frames)
+    try:
+        views = stream.read(spread_over(with_depth, ALIGNED_FRAMES))
+        return align(views, judged.capture.world_up)
+    except ImplausibleRoomError as error:
+        raise CaptureError(judged.capture.folder, str(error)) from error
+
+
+def check_cells(alignment: Alignment, voxel_m: float) -> None:
+    """Raise UsageError where a room has too many cells; the message names a voxel that will do."""
+    volume_m3 = float(alignment.room_size_m.prod())
+    if volume_m3 / voxel_m**3 > MAX_CELLS:
+        least_m = (volume_m3 / MAX_CELLS) ** (1 / 3)
+        raise UsageError(
+            f"a voxel of {voxel_m:g} m would cut this room into {volume_m3 / voxel_m**3:,.0f} "
+            f"cells; take at least --voxel {math.ceil(1000 * least_m) / 1000:.3f}"
+        )

@@ -1,0 +1,73 @@
+"""Which way a capture takes through ``w2m reconstruct``, in words, and about how long that is."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from world2minecraft.capture.judged import JudgedCapture
+
+Kind = Literal["rgbd", "posed photos", "photos", "video", "unposed rgbd", "solid"]
+# Seconds on two cores: rgbd from the kitchen's 40 frames (10 s in all), pictures from 100 of a
+# generated room.
+BUILD_S, FRAME_S, POSE_S, STEREO_S = 6.0, 0.1, 0.7, 0.7
+
+
+@dataclass(frozen=True)
+class Route:
+    """``kind`` of input, what it is called, what reconstruct does with it, and for how long."""
+
+    kind: Kind
+    called: str
+    words: str
+    about_s: float
+
+    @property
+    def about(self) -> str:
+        """The time, as rough as it is."""
+        if self.about_s < 60:
+            return f"about {max(10, round(self.about_s / 10) * 10)} s"
+        return f"about {round(self.about_s / 60)} min"
+
+    @property
+    def from_pictures(self) -> bool:
+        """Whether depth is computed from the pictures."""
+        return self.kind in ("posed photos", "photos", "video")
+
+
+_CALLED = {
+    "rgbd": "posed RGB-D frames",
+    "posed photos": "pictures with poses, no depth",
+    "photos": "photos without poses",
+    "video": "a video without poses",
+    "unposed rgbd": "RGB-D frames without poses",
+    "solid": "a solid, looked at from within",
+}
+_WORDS = {
+    "rgbd": "depth and poses are taken as they are",
+    "posed photos": "poses are checked and depth is computed from the pictures",
+    "photos": "poses and depth are computed from the pictures",
+    "video": "poses and depth are computed from its sharpest pictures",
+    "unposed rgbd": "poses are found from the pictures, their scale from the depth",
+    "solid": "its surface is seen by virtual cameras and read like depth",
+}
+
+
+def route_of(judged: JudgedCapture) -> Route:
+    """Return the route of a judged capture."""
+    kind = _kind(judged)
+    each = FRAME_S
+    if kind in ("photos", "video", "unposed rgbd"):
+        each += POSE_S
+    if kind in ("photos", "video", "posed photos"):
+        each += STEREO_S
+    return Route(kind, _CALLED[kind], _WORDS[kind], BUILD_S + each * len(judged.frames))
+
+
+def _kind(judged: JudgedCapture) -> Kind:
+    source = judged.capture.source
+    if source.startswith("solid"):  # Rendered sequences have exact depth too, and are frames.
+        return "solid"
+    if judged.has_depth:
+        return "rgbd" if judged.posed else "unposed rgbd"
+    if judged.posed:
+        return "posed photos"
+    return "video" if source == "video" else "photos"

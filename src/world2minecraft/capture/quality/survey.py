@@ -1,0 +1,43 @@
+"""``survey_capture``: all that a first look at a capture finds."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.capture.judged import JudgedCapture
+from world2minecraft.capture.quality.overlap import neighbour_shares
+from world2minecraft.capture.quality.pictures import Picture, look_at_pictures
+from world2minecraft.capture.quality.top_view import Plan, plan_of
+from world2minecraft.capture.quality.view_directions import Directions, directions_of
+
+PICTURES_POSED = 40  # Where poses tell what was seen, pictures are judged by a sample.
+
+
+@dataclass(frozen=True, eq=False)
+class Survey:
+    """What a first look found.
+
+    ``shares`` float64 [len(pictures) - 1] is how much of each picture the next shows too, NaN
+    where that is not known. ``plan`` and ``directions`` are None where there are no poses.
+    """
+
+    judged: JudgedCapture
+    pictures: tuple[Picture, ...]
+    shares: np.ndarray
+    plan: Plan | None
+    directions: Directions | None
+
+
+def survey_capture(judged: JudgedCapture) -> Survey:
+    """Look at some pictures of a judged capture and, where it has poses, lay out a plan."""
+    if judged.posed:
+        pictures = look_at_pictures(judged.frames, PICTURES_POSED)
+        plan = plan_of(judged)
+        lenses = [frame.colour_camera or frame.depth_camera for frame in judged.frames]
+        # With depth, how much neighbours share matters little; stereo lives of it.
+        unknown = np.full(max(0, len(pictures) - 1), np.nan)
+        shares = unknown if judged.has_depth else neighbour_shares(pictures)
+        seen = directions_of(lenses, plan.cameras)
+        return Survey(judged, tuple(pictures), shares, plan, seen)
+    pictures = look_at_pictures(judged.frames)
+    return Survey(judged, tuple(pictures), neighbour_shares(pictures), None, None)

@@ -1,0 +1,273 @@
+"""A first top view of a capture: coloured points of some frames, laid into one level frame.
+
+Points above ``CUT`` of the room's height are left out, so that one looks in from above; where a
+column holds points at many heights stands a wall or something tall.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.capture.alignment.align import Alignment, ImplausibleRoomError, align
+from world2minecraft.capture.alignment.gravity import frame_of_up
+from world2minecraft.capture.frames import FrameFiles
+from world2minecraft.capture.judged import JudgedCapture, spread_over
+from world2minecraft.capture.open_scan import ALIGNED_FRAMES
+from world2minecraft.capture.quality.view_directions import up_of_cameras
+from world2minecraft.capture.view_stream import CaptureViews
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import View
+from world2minecraft.geometry.unprojection import lift_depth, project
+
+POINTS_EACH = 60_000
+CELLS = 560  # Along the longer side of the plan.
+CUT, CUT_MOST_M = 0.85, 2.1
+TOP_M = 0.08  # Of each cell's points, those this far below the highest give its colour.
+RISE_M = 0.10
+TALL_BINS = 9  # Points at so many heights, RISE_M apart, make a wall's full ink.
+MARGIN_M = 0.35
+UNCOLOURED = np.array([176, 178, 180], np.uint8)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A top view, +y (north) at the top of the picture.
+
+    ``colour`` uint8 [H, W, 3], ``seen`` bool [H, W] and ``tall`` float32 [H, W] 0 to 1 have row 0
+    at the north; they are empty (H = W = 0) where there is no depth. ``corner_m`` is the south
+    west corner of the raster, ``size_m`` its extent, ``cell_m`` its grain. ``cameras`` float64
+    [F, 4, 4] are all usable frames in the plan's frame. ``room_size_m`` is None where no room was
+    found; then ``problem`` says why. ``notes`` are those of the alignment.
+    """
+
+    colour: np.ndarray
+    seen: np.ndarray
+    tall: np.ndarray
+    height_m: np.ndarray
+    corner_m: np.ndarray
+    size_m: np.ndarray
+    cell_m: float
+    cameras: np.ndarray
+    room_size_m: np.ndarray | None = None
+    notes: tuple[str, ...] = ()
+    problem: str = ""
+    near_m: float = 0.0
+    far_m: float = 0.0
+    holes: float = 0.0
+    trust: float | None = None
+
+
+def plan_of(judged: JudgedCapture) -> Plan:
+    """Lay some frames of a posed capture into a plan; without depth, the cameras alone."""
+    poses = np.array([np.asarray(frame.camera_to_world) for frame in judged.frames])
+    with_depth = [frame for frame in judged.frames if frame.depth_path]
+    if not with_depth:
+        return _plan_of_cameras(judged, poses)
+    gathered = _Gathered(judged, spread_over(with_depth, ALIGNED_FRAMES))
+    problem, found = "", None
+    try:
+        found = align(gathered.views(), judged.capture.world_up)
+    except ImplausibleRoomError as error:
+        problem = str(error)
+    if not sum(map(len, gathered.points)):
+        raise CaptureError(
+            judged.capture.folder,
+            f"none of the {len(gathered.holes)} depth images looked at has any depth that the "
+            "device trusts; scan again, nearer and slower",
+        )
+    scan_to_level = _level(judged, poses) if found is None else found.scan_to_room
+    return _drawn(gathered, scan_to_level @ poses, scan_to_level, found, problem)
+
+
+class _Gathered:
+    """Reads views once for ``align`` and keeps some coloured points of each on the way."""
+
+    def __init__(self, judged: JudgedCapture, frames: Sequence[FrameFiles]):
+        self._stream = CaptureViews(judged.frames, judged.encoding, judged.capture.full_trust)
+        self._frames = frames
+        self.points: list[np.ndarray] = [np.zeros((0, 3), np.float32)]
+        self.colours: list[np.ndarray] = [np.zeros((0, 3), np.uint8)]
+        self.depths: list[np.ndarray] = []
+        self.holes: list[float] = []
+        self.trusts: list[float] = []
+
+    def views(self) -> Iterator[View]:
+        """Yield the views, in order."""
+        for view in self._stream.read(self._frames):
+            self._keep(view)
+            yield view
+
+    def _keep(self, view: View) -> None:
+        if view.depth_m is None or view.depth_camera is None:
+            return
+        points, _ = lift_depth(view.depth_m, view.depth_camera, np.eye(4))
+        self.holes.append(1 - len(points) / view.depth_m.size)
+        if view.trust is not None:
+            self.trusts.append(float(view.trust.mean()) / 255)
+        points = points[:: max(1, len(points) // POINTS_EACH)].astype(np.float64)
+        self.depths.append(points[::8, 2].astype(np.float32))
+        colours = _colours(view, apply(view.depth_to_colour, points))
+        self.points.append(apply(view.depth_camera_to_scan, points).astype(np.float32))
+        self.colours.append(colours)
+
+
+def _colours(view: View, points: np.ndarray) -> np.ndarray:
+    """Return what the colour image shows at points of its camera, uint8 [N, 3]."""
+    colours = np.tile(UNCOLOURED, (len(points), 1))
+    if view.colour is None or view.colour_camera is None:
+        return colours
+    ahead = np.flatnonzero(points[:, 2] > 0.05)
+    pixels = np.floor(project(points[ahead], view.colour_camera))
+    height, width = view.colour.shape[:2]
+    with np.errstate(invalid="ignore"):
+        inside = ((pixels >= 0) & (pixels < (width, height))).all(axis=1)
+    u, v = pixels[inside].astype(int).T
+    colours[ahead[inside]] = view.colour[v, u]
+    return colours
+
+
+def _level(judged: JudgedCapture, poses: np.ndarray) -> np.ndarray:
+    """Return a turn that sets the scan upright, first look to the north, from what is known."""
+    up = judged.capture.world_up
+    turned = np.eye(4)
+    turned[:3, :3] = frame_of_up(up_of_cameras(poses) if up is None else np.asarray(up))
+    look = turned[:3, :3] @ poses[0, :3, 2]
+    if np.hypot(look[0], look[1]) > 0.1:
+        angle = np.pi / 2 - np.arctan2(look[1], look[0])
+        turn = np.eye(4)
+        turn[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+        turned = turn @ turned
+    return turned
+
+
+def _plan_of_cameras(judged: JudgedCapture, poses: np.ndarray) -> Plan:
+    cameras = _level(judged, poses) @ poses
+    places = cameras[:, :2, 3]
+    low, high = places.min(axis=0), places.max(axis=0)
+    margin = max(MARGIN_M, 0.15 * float((high - low).max()))
+    low, high = low - margin, high + margin
+    empty = np.zeros((0, 0))
+    return Plan(
+        empty[..., None].astype(np.uint8).reshape(0, 0, 1),
+        empty.astype(bool),
+        empty.astype(np.float32),
+        empty.astype(np.float32),
+        low,
+        high - low,
+        float((high - low).max()) / CELLS,
+        cameras,
+    )
+
+
+def _drawn(
+    gathered: _Gathered,
+    cameras: np.ndarray,
+    scan_to_level: np.ndarray,
+    found: Alignment | None,
+    problem: str,
+) -> Plan:
+    points = apply(scan_to_level, np.concatenate(gathered.points).astype(np.float64))
+    colours = np.concatenate(gathered.colours)
+    low, high = _extent(points, cameras[:, :2, 3], found)
+    cell = float((high - low).max()) / CELLS
+    floor = 0.0 if found is not None else float(np.quantile(points[:, 2], 0.01))
+    height = (
+        float(found.room_size_m[2])
+        if found is not None
+        else float(np.quantile(points[:, 2], 0.99) - floor)
+    )
+    points[:, 2] -= floor
+    shape = tuple(np.maximum(np.ceil((high - low) / cell), 1).astype(int)[::-1])
+    inside = ((points[:, :2] > low) & (points[:, :2] < high)).all(axis=1)
+    inside &= (points[:, 2] > -0.3) & (points[:, 2] < height - 0.1)
+    points, colours = points[inside], colours[inside]
+    column, row = np.floor((points[:, :2] - low) / cell).astype(np.int64).T
+    pixel = (shape[0] - 1 - np.minimum(row, shape[0] - 1)) * shape[1] + np.minimum(
+        column, shape[1] - 1
+    )
+    tall = _tallness(pixel, points[:, 2], shape)
+    below = points[:, 2] < min(CUT * height, CUT_MOST_M)
+    colour, seen, top = _topmost(pixel[below], points[below, 2], colours[below], shape)
+    depths = np.concatenate(gathered.depths)
+    near, far = np.quantile(depths, [0.05, 0.95]) if len(depths) else (0.0, 0.0)
+    return Plan(
+        colour,
+        seen,
+        tall,
+        top,
+        low,
+        np.array([shape[1], shape[0]]) * cell,
+        cell,
+        cameras,
+        None if found is None else found.room_size_m,
+        () if found is None else found.notes,
+        problem,
+        round(float(near), 2),
+        round(float(far), 2),
+        round(float(np.mean(gathered.holes)), 3),
+        round(float(np.mean(gathered.trusts)), 3) if gathered.trusts else None,
+    )
+
+
+def _extent(
+    points: np.ndarray, places: np.ndarray, found: Alignment | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the corners of the plan: almost all points, all cameras, and the room."""
+    low = np.minimum(np.quantile(points[:, :2], 0.003, axis=0), places.min(axis=0))
+    high = np.maximum(np.quantile(points[:, :2], 0.997, axis=0), places.max(axis=0))
+    if found is not None:
+        low, high = np.minimum(low, 0.0), np.maximum(high, found.room_size_m[:2])
+        # What was seen through a window must not make the room small.
+        low, high = np.maximum(low, -2.0), np.minimum(high, found.room_size_m[:2] + 2.0)
+    return low - MARGIN_M, high + MARGIN_M
+
+
+def _tallness(pixel: np.ndarray, z: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """Return how many different heights each cell's points have, as a share of a wall's."""
+    raised = (z > 0.15) & (z < 3.0)
+    bins = (z[raised] / RISE_M).astype(np.int64)
+    distinct = np.unique(pixel[raised] * 64 + bins) // 64
+    count = np.bincount(distinct, minlength=shape[0] * shape[1]).reshape(shape)
+    return np.minimum(count / TALL_BINS, 1.0).astype(np.float32)
+
+
+def _topmost(
+    pixel: np.ndarray, z: np.ndarray, colours: np.ndarray, shape: tuple[int, ...]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the mean colour and height of the highest points of each cell, and which have any."""
+    count = shape[0] * shape[1]
+    top = np.full(count, -np.inf)
+    np.maximum.at(top, pixel, z)
+    highest = z > top[pixel] - TOP_M
+    pixel, colours, z = pixel[highest], colours[highest], z[highest]
+    weight = np.bincount(pixel, minlength=count).astype(np.float64)
+    channels = [colours[:, axis].astype(np.float64) for axis in range(3)]
+    sums = np.stack(
+        [np.bincount(pixel, values, minlength=count) for values in (*channels, z)], axis=1
+    )
+    sums, weight = _filled(sums.reshape(*shape, 4), weight.reshape(shape))
+    seen = weight > 0
+    mean = sums / np.maximum(weight, 1e-9)[..., None]
+    return np.round(mean[..., :3]).astype(np.uint8), seen, mean[..., 3].astype(np.float32)
+
+
+def _filled(sums: np.ndarray, weight: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Close small holes: a cell without points takes those of its neighbours, if three have any."""
+    for _ in range(3):
+        near, near_sums = np.zeros_like(weight), np.zeros_like(sums)
+        held = (weight > 0).astype(np.float64)
+        mean = sums / np.maximum(weight, 1e-9)[..., None]
+        padded = np.pad(held, 1)
+        padded_mean = np.pad(mean * held[..., None], ((1, 1), (1, 1), (0, 0)))
+        for down in range(3):
+            for right in range(3):
+                rows = slice(down, down + weight.shape[0])
+                columns = slice(right, right + weight.shape[1])
+                near += padded[rows, columns]
+                near_sums += padded_mean[rows, columns]
+        empty = (weight == 0) & (near >= 3)
+        sums = np.where(empty[..., None], near_sums, sums)
+        weight = np.where(empty, near, weight)
+    return sums, weight

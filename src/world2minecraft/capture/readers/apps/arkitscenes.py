@@ -1,0 +1,222 @@
+"""ARKitScenes, raw and 3DOD: pictures, depth and poses that belong together by their time.
+
+Images are named ``VIDEO_SECONDS.png``. ``lowres_wide.traj`` states ten poses a second: seconds,
+an axis times its angle and a place, world to camera with OpenCV axes, in a world whose z is up.
+Images come up to sixty times a second; for each pose the depth image nearest in time is taken,
+and the pose is carried to its time. Confidence is 0 to 2; lenses stand in ``.pincam`` files.
+"""
+
+import re
+from bisect import bisect_left
+from collections.abc import Sequence
+
+import numpy as np
+
+from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.readers.apps.app_values import camera, files_by_stem, read_text
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.types import Camera
+from world2minecraft.geometry.rotation import rotation_of_vector
+
+TRAJECTORY = "lowres_wide.traj"
+SAME_S = 0.009  # Half a frame at 60 Hz; stamps of one frame differ by about a millisecond.
+MAX_GAP_S = 0.25  # Poses come every 0.1 s; over a longer gap nothing is told between them.
+COLOURS = ("vga_wide", "lowres_wide")  # The first holds the same view at 640x480.
+ARKITSCENES_UP = np.array([0.0, 0.0, 1.0])
+_STEM = re.compile(r"(?:.*_)?(\d{1,9}\.\d{1,9})", re.ASCII)
+Timed = tuple[list[float], list[AnyPath]]
+
+
+class ARKitScenesSource:
+    """Reads one video of ARKitScenes."""
+
+    layout = "lowres_wide.traj with lowres_wide/, lowres_depth/ (ARKitScenes)"
+
+    def recognise(self, folder: AnyPath) -> bool:
+        """Return whether a trajectory lies there or in the folder of frames."""
+        return folder.is_dir() and _inner(folder) is not None
+
+    def read(self, folder: AnyPath) -> Capture:
+        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        inner = _inner(folder) or folder
+        times, poses = _trajectory(inner / TRAJECTORY)
+        kind = next((name for name in COLOURS if (inner / name).is_dir()), None)
+        if kind is None:
+            raise CaptureError(inner, "has no lowres_wide/ with pictures; fetch the whole video")
+        colours, lenses = (
+            _timed(inner / kind, ".png"),
+            _timed(inner / f"{kind}_intrinsics", ".pincam"),
+        )
+        depths, trusts = (
+            _timed(inner / "lowres_depth", ".png"),
+            _timed(inner / "confidence", ".png"),
+        )
+        chosen = depths if depths[0] else colours
+        frames = tuple(
+            _frame(time, times, poses, colours, lenses, depths, trusts)
+            for time in _near_poses(chosen[0], times)
+        )
+        if not frames:
+            raise CaptureError(
+                inner, f"no image was taken at a time of {TRAJECTORY}; copy both of one video"
+            )
+        left = len(chosen[0]) - len(frames)
+        notes = (f"{left} images between the stated poses are left out",) if left else ()
+        return Capture(
+            folder,
+            "arkitscenes",
+            frames,
+            depth_unit="mm",
+            notes=notes,
+            full_trust=2.0,
+            world_up=ARKITSCENES_UP,
+        )
+
+
+def _inner(folder: AnyPath) -> AnyPath | None:
+    """Return the folder of the trajectory: this one, or the frames of 3DOD."""
+    if (folder / TRAJECTORY).is_file():
+        return folder
+    parts = sorted(folder.glob("*_frames"), key=lambda path: path.name)
+    return next((part for part in parts if (part / TRAJECTORY).is_file()), None)
+
+
+def _trajectory(path: AnyPath) -> tuple[list[float], list[np.ndarray]]:
+    """Return the times in seconds, rising, and the cameras to world at them."""
+    rows: dict[float, np.ndarray] = {}
+    for line, text in enumerate(read_text(path).splitlines(), 1):
+        words = text.split()
+        if not words:
+            continue
+        try:
+            values = np.array([float(word) for word in words])
+        except ValueError:
+            values = np.zeros(0)
+        if len(values) != 7 or not np.isfinite(values[0]):
+            raise CaptureError(path, f"line {line} must hold 7 numbers: time, rotation, place")
+        rows[float(values[0])] = _camera_to_world(values[1:4], values[4:7])
+    if not rows:
+        raise CaptureError(path, "states no pose; copy it again")
+    times = sorted(rows)
+    return times, [rows[time] for time in times]
+
+
+def _camera_to_world(turn: np.ndarray, place: np.ndarray) -> np.ndarray:
+    pose = np.eye(4)
+    rotation = rotation_of_vector(turn)
+    pose[:3, :3] = rotation.T
+    pose[:3, 3] = -rotation.T @ place
+    return pose
+
+
+def _turn(rotation: np.ndarray) -> np.ndarray:
+    """Undo ``rotation_of_vector`` for turns well under half a circle."""
+    twice = np.array(
+        [
+            rotation[2, 1] - rotation[1, 2],
+            rotation[0, 2] - rotation[2, 0],
+            rotation[1, 0] - rotation[0, 1],
+        ]
+    )
+    sine = np.linalg.norm(twice) / 2
+    angle = np.arctan2(sine, (np.trace(rotation) - 1) / 2)
+    return twice / 2 * (angle / sine if sine > 1e-12 else 1.0)
+
+
+def _timed(folder: AnyPath, suffix: str) -> Timed:
+    """Return the files of a folder by their times, rising."""
+    found = []
+    for stem, path in files_by_stem(folder, (suffix,)).items():
+        match = _STEM.fullmatch(stem)
+        if match:
+            found.append((float(match[1]), path))
+    found.sort(key=lambda item: item[0])
+    return [time for time, _ in found], [path for _, path in found]
+
+
+def _near_poses(image_times: Sequence[float], pose_times: Sequence[float]) -> list[float]:
+    """Return for each pose the image time nearest to it, each once, rising."""
+    near = {
+        image_times[index] for time in pose_times if (index := _nearest(image_times, time)) >= 0
+    }
+    return sorted(time for time in near if _apart(pose_times, time) <= MAX_GAP_S)
+
+
+def _nearest(times: Sequence[float], time: float) -> int:
+    """Return the index of the nearest time, -1 where there is none."""
+    place = bisect_left(times, time)
+    around = [index for index in (place - 1, place) if 0 <= index < len(times)]
+    return min(around, key=lambda index: abs(times[index] - time), default=-1)
+
+
+def _apart(times: Sequence[float], time: float) -> float:
+    index = _nearest(times, time)
+    return abs(times[index] - time) if index >= 0 else float("inf")
+
+
+def _at(timed: Timed, time: float, within_s: float = SAME_S) -> AnyPath | None:
+    index = _nearest(timed[0], time)
+    return timed[1][index] if index >= 0 and abs(timed[0][index] - time) <= within_s else None
+
+
+def _frame(
+    time: float,
+    pose_times: Sequence[float],
+    poses: Sequence[np.ndarray],
+    colours: Timed,
+    lenses: Timed,
+    depths: Timed,
+    trusts: Timed,
+) -> FrameFiles:
+    name = f"{time:.3f}"
+    picture, depth = _at(colours, time, 2 * SAME_S), _at(depths, time)
+    lens_path = _at(lenses, time, 2 * SAME_S)
+    if picture is None or lens_path is None:
+        lacks = "picture" if picture is None else "intrinsics (.pincam)"
+        return FrameFiles(name, None, problem=f"has no {lacks} of its time")
+    try:
+        lens = _lens(lens_path)
+    except InputError as error:
+        return FrameFiles(name, None, problem=f"{lens_path.name} {error.reason}")
+    pose = _pose_at(time, pose_times, poses)
+    return FrameFiles(
+        name,
+        pose,
+        picture,
+        lens,
+        depth,
+        lens if depth else None,
+        problem="" if pose is not None else "has no pose near its time",
+        trust_path=_at(trusts, time) if depth else None,
+        time_s=time,
+    )
+
+
+def _lens(path: AnyPath) -> Camera:
+    words = read_text(path).split()
+    try:
+        values = [float(word) for word in words]
+    except ValueError:
+        values = []
+    if len(values) != 6:
+        raise CaptureError(path, f"must hold width, height, fx, fy, cx, cy, not {len(words)} words")
+    return camera(path, (values[0], values[1]), values[2:])
+
+
+def _pose_at(time: float, times: Sequence[float], poses: Sequence[np.ndarray]) -> np.ndarray | None:
+    """Return the pose at a time: a stated one, or carried between the two around it."""
+    after = bisect_left(times, time)
+    nearest = _nearest(times, time)
+    if abs(times[nearest] - time) < 1e-3 or after in (0, len(times)):
+        return poses[nearest] if abs(times[nearest] - time) <= 2 * SAME_S else None
+    first, second = poses[after - 1], poses[after]
+    span = times[after] - times[after - 1]
+    if span > MAX_GAP_S:
+        return None
+    share = (time - times[after - 1]) / span
+    pose = np.eye(4)
+    turn = _turn(first[:3, :3].T @ second[:3, :3])
+    pose[:3, :3] = first[:3, :3] @ rotation_of_vector(share * turn)
+    pose[:3, 3] = (1 - share) * first[:3, 3] + share * second[:3, 3]
+    return pose

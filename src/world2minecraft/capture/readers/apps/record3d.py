@@ -1,0 +1,205 @@
+"""Record3D's ``.r3d`` and its EXR + JPG export, packed or unpacked.
+
+``metadata`` (or ``metadata.json``) holds the size ``w``, ``h`` of the pictures and ``dw``, ``dh``
+of the depth, the matrix ``K`` column by column, newer versions ``perFrameIntrinsicCoeffs`` (fx,
+fy, cx, cy), and ``poses`` (qx qy qz qw x y z, camera to world, OpenGL axes). ``rgbd/N.jpg``,
+``N.depth`` (LZFSE, float32 metres) and ``N.conf`` (LZFSE, 0 to 2) belong to one frame. The front
+camera has no tracking: all its poses are the same.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.images import ImagePlace
+from world2minecraft.capture.readers.apps.app_values import (
+    ARKIT_UP,
+    arkit_pose_of_quaternion,
+    camera,
+    files_by_stem,
+    number,
+    numbers,
+)
+from world2minecraft.capture.readers.apps.exr import ExrImage
+from world2minecraft.capture.readers.apps.lzfse_image import (
+    MAX_FILE_BYTES,
+    LzfseImage,
+    unpacked_bytes,
+)
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.files import read_bytes, read_json
+from world2minecraft.core.types import Camera
+from world2minecraft.geometry.quaternions import pose_of
+
+_PICTURES = (".jpg", ".jpeg", ".png")
+_STILL = 1e-6  # Poses that differ by less were never tracked.
+LEAST_LEAN = 0.5  # Cameras that look steeply up or down say little of their roll.
+MAX_ROLL_DEG = 15.0  # Of most frames; held by hand, phones roll by about five.
+
+
+class Record3DSource:
+    """Reads what Record3D exports."""
+
+    layout = "metadata with rgbd/0.jpg, .depth, .conf (Record3D, a .r3d file)"
+
+    def recognise(self, folder: AnyPath) -> bool:
+        """Return whether the metadata and the folder of frames are there."""
+        if not folder.is_dir():
+            return False
+        packed = (folder / "metadata").is_file() and (folder / "rgbd").is_dir()
+        exported = (folder / "metadata.json").is_file() and (folder / "rgb").is_dir()
+        return packed or (exported and any((folder / "depth").glob("*.exr")))
+
+    def read(self, folder: AnyPath) -> Capture:
+        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        packed = (folder / "rgbd").is_dir()
+        path = folder / ("metadata" if (folder / "metadata").is_file() else "metadata.json")
+        stated = read_json(path)
+        if not isinstance(stated, dict):
+            raise CaptureError(path, "must be an object with K, w, h and poses")
+        pictures = files_by_stem(folder / ("rgbd" if packed else "rgb"), _PICTURES)
+        stems = {int(stem): stem for stem in pictures if _is_index(stem)}
+        if not stems:
+            raise CaptureError(folder, "has no frames (rgbd/0.jpg); export it again")
+        lenses, poses = _lenses(path, stated), _poses(path, stated)
+        size = _depth_size(folder, path, stated) if packed else None
+        notes: tuple[str, ...] = ()
+        if poses is not None and len(poses) > 1 and np.ptp(poses, axis=0).max() < _STILL:
+            poses, notes = None, ("the front camera was used, which Record3D does not track",)
+        frames = tuple(
+            _frame(folder, index, pictures[stem], lenses, poses, size)
+            for index, stem in sorted(stems.items())
+        )
+        return Capture(
+            folder,
+            "record3d",
+            frames,
+            depth_unit="m",
+            notes=notes,
+            full_trust=2.0,
+            world_up=_world_up(poses),
+        )
+
+
+def _is_index(stem: str) -> bool:
+    return stem.isascii() and stem.isdigit() and len(stem) < 9
+
+
+def _lenses(path: AnyPath, stated: dict[str, Any]) -> list[Camera | None]:
+    """Return the cameras of the frames; one that stands for all where no others are stated.
+
+    A frame of which nothing sensible is stated has none.
+    """
+    size = (number(path, stated, "w"), number(path, stated, "h"))
+    each = stated.get("perFrameIntrinsicCoeffs")
+    if isinstance(each, list) and each:
+        lenses = [numbers(path, "perFrameIntrinsicCoeffs", one, 4) for one in each]
+        told = [bool(np.isfinite(lens).all() and lens.min() > 0) for lens in lenses]
+        return [
+            camera(path, size, lens.tolist()) if is_told else None
+            for lens, is_told in zip(lenses, told, strict=True)
+        ]
+    matrix = numbers(path, "K", stated.get("K"), 9).reshape(3, 3)
+    if matrix[0, 2] == 0 and matrix[1, 2] == 0:  # Column by column, as the app writes it.
+        matrix = matrix.T
+    return [camera(path, size, [matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2]])]
+
+
+def _poses(path: AnyPath, stated: dict[str, Any]) -> np.ndarray | None:
+    """Return float64 [N, 7], or None where none are stated."""
+    values = stated.get("poses")
+    if values is None:
+        return None
+    if not isinstance(values, list) or not values:
+        raise CaptureError(path, '"poses" must be a list of qx, qy, qz, qw, x, y, z')
+    return np.stack([numbers(path, "poses", value, 7) for value in values])
+
+
+def _world_up(poses: np.ndarray | None) -> np.ndarray | None:
+    """Return up where it is known: in ARKit's own world, not in that of the first frame.
+
+    Some versions give poses relative to the first, which then is no turn at all; a video that was
+    trimmed may begin later. In a world that leans, cameras that look all around roll.
+    """
+    if poses is None or not np.isfinite(poses[0]).all() or abs(poses[0, 3]) > 1 - 1e-6:
+        return None
+    finite = poses[np.isfinite(poses).all(axis=1)]
+    cameras = np.stack([pose_of(pose[4:], pose[:4]) for pose in finite])
+    up = np.swapaxes(cameras[:, :3, :3], 1, 2) @ ARKIT_UP
+    level = up[np.hypot(up[:, 0], up[:, 1]) > LEAST_LEAN]
+    roll_deg = np.degrees(np.arctan2(level[:, 0], level[:, 1]))
+    off_deg = np.abs((roll_deg + 45) % 90 - 45)
+    return ARKIT_UP if len(level) and np.quantile(off_deg, 0.8) < MAX_ROLL_DEG else None
+
+
+def _depth_size(folder: AnyPath, path: AnyPath, stated: dict[str, Any]) -> tuple[int, int] | None:
+    """Return the width and height of the depth, None where there is none.
+
+    Old versions state none; then the first depth that is whole tells it, by its length and the
+    shape of the pictures.
+    """
+    if "dw" in stated and "dh" in stated:
+        sides = (number(path, stated, "dw"), number(path, stated, "dh"))
+        if not all(side == int(side) and 0 < side <= 8192 for side in sides):
+            raise CaptureError(path, f'"dw" and "dh" must be 1 to 8192, not {sides}')
+        return int(sides[0]), int(sides[1])
+    shape = number(path, stated, "w") / max(number(path, stated, "h"), 1e-9)
+    for depth in files_by_stem(folder / "rgbd", (".depth",)).values():
+        try:
+            pixels = unpacked_bytes(depth, read_bytes(depth, MAX_FILE_BYTES)) / 4
+        except InputError:
+            continue
+        high = round(math.sqrt(pixels / max(shape, 1e-9)))
+        wide = round(pixels / max(high, 1))
+        if wide * high == pixels and 0 < max(wide, high) <= 8192:
+            return wide, high
+        raise CaptureError(path, 'states no size of the depth: add "dw" and "dh" in pixels')
+    return None
+
+
+def _frame(
+    folder: AnyPath,
+    index: int,
+    picture: AnyPath,
+    lenses: list[Camera | None],
+    poses: np.ndarray | None,
+    size: tuple[int, int] | None,
+) -> FrameFiles:
+    depth, trust = _depth(folder, picture.stem, size)
+    lens = lenses[index] if index < len(lenses) else (lenses[0] if len(lenses) == 1 else None)
+    pose, problem = None, ""
+    if poses is not None and index < len(poses):
+        pose = arkit_pose_of_quaternion(poses[index, :4], poses[index, 4:])
+    elif poses is not None:
+        problem = "has no pose in metadata"
+    if lens is None:
+        problem = "has no intrinsics in metadata"
+    return FrameFiles(
+        f"{index:06d}",
+        pose,
+        picture,
+        lens,
+        depth,
+        lens if depth else None,
+        problem=problem,
+        trust_path=trust if depth else None,
+    )
+
+
+def _depth(
+    folder: AnyPath, stem: str, size: tuple[int, int] | None
+) -> tuple[ImagePlace | None, ImagePlace | None]:
+    """Return the depth and trust images named as a picture, each None where it is not there."""
+    if not (folder / "rgbd").is_dir():
+        exported = folder / "depth" / f"{stem}.exr"
+        return (ExrImage(exported) if exported.is_file() else None), None
+    depth, trust = folder / "rgbd" / f"{stem}.depth", folder / "rgbd" / f"{stem}.conf"
+    if size is None or not depth.is_file():
+        return None, None
+    return (
+        LzfseImage(depth, *size, "float32"),
+        LzfseImage(trust, *size, "L") if trust.is_file() else None,
+    )

@@ -1,0 +1,170 @@
+"""The pictures of a video that an app wrote beside its depth, by their number.
+
+The times of all pictures are listed once, without decoding. Pictures are decoded in a row; one
+that lies elsewhere is reached from the key picture before it.
+"""
+
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.capture.images import MAX_PIXELS, ImageHeader
+from world2minecraft.core.archives import AnyPath, ArchivePath
+from world2minecraft.core.errors import (
+    DamagedFileError,
+    InputError,
+    LimitError,
+    MissingExtraError,
+    reason_of,
+)
+
+MAX_PICTURES = 1_000_000  # Four hours and a half at 60 Hz.
+
+
+class Movie:
+    """An opened video: its pictures' times and size, and where decoding stands."""
+
+    def __init__(self, path: AnyPath):
+        """Open a video and list its pictures.
+
+        Raises:
+            DamagedFileError: it is no whole video. LimitError: its pictures are too large or too
+                many. MissingExtraError: ``av`` is not installed.
+        """
+        try:
+            import av  # noqa: PLC0415
+            from av.error import FFmpegError  # noqa: PLC0415
+        except ImportError as error:
+            raise MissingExtraError("reading videos", "capture") from error
+        self.path = path
+        self._errors = (FFmpegError, ValueError, IndexError, OSError)
+        try:
+            self._container: Any = av.open(path.open("rb"), "r")
+            self._stream: Any = self._container.streams.video[0]
+            self._stream.codec_context.thread_count = 1
+            self.size = (self._stream.codec_context.width, self._stream.codec_context.height)
+            self.times, self.key_times = self._times()
+        except self._errors as error:
+            reason = f"is no whole video ({reason_of(error, 80)}); copy it again"
+            raise DamagedFileError(path, reason) from error
+        held = len(self.times)
+        if self.size[0] * self.size[1] > MAX_PIXELS or held > MAX_PICTURES:
+            raise LimitError(
+                path, f"has {held:,} pictures of {self.size}; too many to read: cut it"
+            )
+        self._decoded: Iterator[Any] = iter(())
+        self._next = -1
+
+    def _times(self) -> tuple[list[int], list[int]]:
+        every, key = [], []
+        for packet in self._container.demux(self._stream):
+            if packet.pts is not None:
+                every.append(packet.pts)
+                if packet.is_keyframe:
+                    key.append(packet.pts)
+        return sorted(every), sorted(key)
+
+    def picture(self, index: int) -> np.ndarray:
+        """Return a picture, uint8 [H, W, 3]. Raises DamagedFileError where it cannot be decoded."""
+        try:
+            return self._picture(index)
+        except self._errors as error:
+            self._next = -1
+            reason = f"picture {index} cannot be decoded ({reason_of(error, 80)}); copy it again"
+            raise DamagedFileError(self.path, reason) from error
+
+    def _picture(self, index: int) -> np.ndarray:
+        if 0 <= self._next <= index and not self._key_between(index):
+            found = self._decoded_at(index)
+            if found is not None:
+                return found
+        # Pictures that are shown before their key picture need the one before that too.
+        before = bisect_right(self.key_times, self.times[index])
+        for key in (before - 1, before - 2, 0):
+            time = self.key_times[max(key, 0)] if self.key_times else self.times[0]
+            self._container.seek(time, stream=self._stream, backward=True, any_frame=False)
+            self._decoded = self._container.decode(self._stream)
+            found = self._decoded_at(index)
+            if found is not None:
+                return found
+        raise ValueError("it is missing")
+
+    def _decoded_at(self, index: int) -> np.ndarray | None:
+        """Decode on until a picture; None where it does not come."""
+        time = self.times[index]
+        for frame in self._decoded:
+            if frame.pts is not None and frame.pts >= time:
+                if frame.pts > time or (frame.width, frame.height) != self.size:
+                    return None
+                self._next = index + 1
+                return np.ascontiguousarray(frame.to_ndarray(format="rgb24"))
+        return None
+
+    def _key_between(self, index: int) -> bool:
+        """Whether a key picture lies ahead, so that seeking spares decoding all until there."""
+        here = self.times[min(self._next, len(self.times) - 1)]
+        ahead = bisect_right(self.key_times, self.times[index]) > bisect_right(self.key_times, here)
+        return ahead and index > self._next
+
+
+@lru_cache(maxsize=2)
+def _opened(path: AnyPath, stamp: tuple[int, int]) -> Movie:
+    return Movie(path)
+
+
+def open_movie(path: AnyPath) -> Movie:
+    """Open a video once for all its pictures, and again where its file has changed.
+
+    Raises:
+        InputError: it is missing; else what ``Movie`` raises.
+    """
+    try:
+        found = (path.path if isinstance(path, ArchivePath) else path).stat()
+    except OSError as error:
+        raise InputError(path, f"cannot be read: {error.strerror or error}") from error
+    return _opened(path, (found.st_size, found.st_mtime_ns))
+
+
+@dataclass(frozen=True)
+class MoviePicture:
+    """An ``ImageSource``: one picture of a video."""
+
+    path: AnyPath
+    index: int
+
+    def __str__(self) -> str:
+        """The video and the picture's number, for messages."""
+        return f"{self.path}, picture {self.index}"
+
+    @property
+    def stem(self) -> str:
+        """The picture's number with six digits, as the files beside the video are named."""
+        return f"{self.index:06d}"
+
+    @property
+    def name(self) -> str:
+        """The video's name and the picture's number."""
+        return f"{self.path.name} picture {self.index}"
+
+    def header(self) -> ImageHeader:
+        """Return the video's size."""
+        return ImageHeader(*open_movie(self.path).size, "RGB")
+
+    def check_whole(self) -> None:
+        """Check that the video has so many pictures."""
+        held = len(open_movie(self.path).times)
+        if self.index >= held:
+            raise DamagedFileError(self, f"is not there: the video holds {held}; copy it again")
+
+    def colour(self) -> np.ndarray:
+        """Return uint8 [H, W, 3] sRGB."""
+        self.check_whole()
+        return open_movie(self.path).picture(self.index)
+
+    def raw(self) -> np.ndarray:
+        """Raise: a video holds colours."""
+        raise DamagedFileError(self, "holds colours, not single values")

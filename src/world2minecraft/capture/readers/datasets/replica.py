@@ -1,0 +1,98 @@
+"""Replica as NICE-SLAM rendered it: ``results/frame000000.jpg``, ``depth000000.png``, ``traj.txt``.
+
+A line of ``traj.txt`` is 4x4 camera to world, OpenCV axes. ``cam_params.json`` here or one folder
+up has w, h, fx, fy, cx, cy and scale, the depth units a metre.
+"""
+
+import math
+
+import numpy as np
+
+from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.readers.datasets.intrinsics import stated_camera
+from world2minecraft.capture.readers.datasets.text_tables import read_rows, to_floats
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.types import Camera
+
+PARAMETERS = "cam_params.json"
+# w h fx fy cx cy scale: the one camera of this data set.
+PUBLISHED = (1200, 680, 600.0, 600.0, 599.5, 339.5, 6553.5)
+
+
+class ReplicaSource:
+    """Reads a room of Replica's rendered sequences."""
+
+    layout = "results/frame000000.jpg, depth000000.png and traj.txt (Replica of NICE-SLAM)"
+
+    def recognise(self, folder: AnyPath) -> bool:
+        """Return whether the trajectory and such images are there."""
+        results = folder / "results"
+        named = (folder / "traj.txt").is_file() and results.is_dir()
+        return named and next(iter(results.glob("frame*.*")), None) is not None
+
+    def read(self, folder: AnyPath) -> Capture:
+        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        path = folder / "traj.txt"
+        rows = read_rows(path)
+        if not rows or any(len(row) != 16 for row in rows):
+            raise CaptureError(path, "must hold 16 numbers a line, a 4x4 pose")
+        words = [word for row in rows for word in row]
+        poses = to_floats(path, words).reshape(len(rows), 4, 4)
+        images = _numbered(folder / "results", "frame")
+        depths = _numbered(folder / "results", "depth")
+        camera, scale, notes = _camera(folder)
+        frames = []
+        for number, colour in sorted(images.items()):
+            depth = depths.get(number)
+            known = number < len(poses)
+            frames.append(
+                FrameFiles(
+                    colour.stem,
+                    poses[number] if known else None,
+                    colour,
+                    camera,
+                    depth,
+                    camera if depth else None,
+                    problem="" if known else "has no line in traj.txt",
+                )
+            )
+        unit = repr(1 / scale)
+        return Capture(
+            folder, "replica", tuple(frames), depth_unit=unit, notes=notes, depth_kind="exact"
+        )
+
+
+def _numbered(folder: AnyPath, prefix: str) -> dict[int, AnyPath]:
+    found = {}
+    for path in sorted(folder.glob(f"{prefix}*.*"), key=str):
+        digits = path.stem.removeprefix(prefix)
+        if digits.isdecimal() and len(digits) <= 9:
+            found[int(digits)] = path
+    return found
+
+
+def _camera(folder: AnyPath) -> tuple[Camera, float, tuple[str, ...]]:
+    keys = ("w", "h", "fx", "fy", "cx", "cy", "scale")
+    for path in (folder / PARAMETERS, folder.parent / PARAMETERS):
+        if not path.is_file():
+            continue
+        stated = read_json(path, 1 << 20)
+        stated = stated.get("camera", stated) if isinstance(stated, dict) else {}
+        values = [stated.get(key) if isinstance(stated, dict) else None for key in keys]
+        numbers = [
+            float(value)
+            for value in values
+            if isinstance(value, int | float) and math.isfinite(value) and value > 0
+        ]
+        if len(numbers) != len(keys):
+            raise CaptureError(path, f"must state {', '.join(keys)}, each above 0")
+        return _stated(path, numbers), numbers[-1], ()
+    note = f"no {PARAMETERS}: the one published for Replica is taken (1200x680, 600 px)"
+    return _stated(folder, list(PUBLISHED)), PUBLISHED[-1], (note,)
+
+
+def _stated(where: AnyPath, numbers: list[float]) -> Camera:
+    width, height, *lens = numbers[:6]
+    return stated_camera(where, (round(width), round(height)), np.array(lens))

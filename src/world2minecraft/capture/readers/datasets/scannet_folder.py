@@ -1,0 +1,133 @@
+"""A ScanNet scene that its exporter wrote: numbered files in ``color/``, ``depth/``, ``pose/``.
+
+``intrinsic/intrinsic_color.txt`` and ``intrinsic_depth.txt`` (4x4) speak of the images as they
+were recorded; many people make the exported ones smaller. Depth is in millimetres. Poses of
+-inf mean lost tracking.
+"""
+
+import numpy as np
+
+from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.images import SUFFIXES
+from world2minecraft.capture.poses import read_pose
+from world2minecraft.capture.readers.datasets.intrinsics import (
+    VGA,
+    first_size,
+    matrix_camera,
+    size_meant,
+)
+from world2minecraft.capture.readers.datasets.nyu40_labels import MappedLabels
+from world2minecraft.capture.readers.datasets.scannet_metadata import (
+    find_labels,
+    read_facts,
+    upright,
+)
+from world2minecraft.capture.readers.datasets.text_tables import read_matrix
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.types import Camera
+
+RECORDED = (1296, 968)  # The iPad's colour images; the depth images are VGA.
+
+
+class ScanNetFolderSource:
+    """Reads an exported ScanNet scene."""
+
+    layout = "color/0.jpg, depth/0.png, pose/0.txt, intrinsic/intrinsic_depth.txt (ScanNet export)"
+
+    def recognise(self, folder: AnyPath) -> bool:
+        """Return whether poses and images lie in folders so named, with a matrix beside them."""
+        images = (folder / "color").is_dir() or (folder / "depth").is_dir()
+        return images and (folder / "pose").is_dir() and bool(_matrix_files(folder))
+
+    def read(self, folder: AnyPath) -> Capture:
+        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        colours, depths = _images(folder / "color"), _images(folder / "depth")
+        poses = {
+            int(path.stem): path for path in (folder / "pose").glob("*.txt") if _numbered(path)
+        }
+        numbers = sorted(colours.keys() | depths.keys())
+        if not numbers or not poses:
+            raise CaptureError(folder, "has no numbered images and poses, such as pose/0.txt")
+        cameras = _cameras(folder, list(colours.values()), list(depths.values()))
+        facts_path = folder / f"{folder.name}.txt"
+        labels, notes = find_labels(folder, folder.name)
+        frames = tuple(
+            _frame(n, colours.get(n), depths.get(n), poses.get(n), labels.get(n), cameras)
+            for n in numbers
+        )
+        up = upright(facts_path, read_facts(facts_path))
+        return Capture(folder, "scannet_folder", frames, depth_unit="mm", notes=notes, world_up=up)
+
+
+def _matrix_files(folder: AnyPath) -> dict[str, AnyPath]:
+    """Return the files of the matrices by kind; exporters name them in two ways."""
+    found = {}
+    for kind in ("color", "depth"):
+        for name in (
+            f"intrinsic/intrinsic_{kind}.txt",
+            f"intrinsic_{kind}.txt",
+            f"intrinsics_{kind}.txt",
+        ):
+            if (folder / name).is_file():
+                found[kind] = folder / name
+                break
+    return found
+
+
+def _numbered(path: AnyPath) -> bool:
+    return path.stem.isdecimal() and len(path.stem) <= 9
+
+
+def _images(folder: AnyPath) -> dict[int, AnyPath]:
+    found = folder.iterdir() if folder.is_dir() else ()
+    return {
+        int(path.stem): path
+        for path in sorted(found, key=str)
+        if _numbered(path) and path.suffix.lower() in SUFFIXES
+    }
+
+
+def _cameras(folder: AnyPath, colours: list[AnyPath], depths: list[AnyPath]) -> dict[str, Camera]:
+    """Return the cameras by kind, at the size that each matrix speaks of."""
+    files = _matrix_files(folder)
+    cameras = {}
+    for kind, images, recorded in (("color", colours, RECORDED), ("depth", depths, VGA)):
+        if not images:
+            continue
+        path = files.get(kind)
+        if path is None:
+            raise CaptureError(folder, f"has no intrinsic/intrinsic_{kind}.txt (4x4)")
+        matrix = read_matrix(path, [(4, 4), (3, 3)])
+        size = size_meant((matrix[0, 2], matrix[1, 2]), [first_size(images), recorded, VGA])
+        cameras[kind] = matrix_camera(path, size or recorded, matrix)
+    return cameras
+
+
+def _frame(
+    number: int,
+    colour: AnyPath | None,
+    depth: AnyPath | None,
+    pose_path: AnyPath | None,
+    labels: MappedLabels | None,
+    cameras: dict[str, Camera],
+) -> FrameFiles:
+    pose, problem = None, ""
+    if pose_path is None:
+        problem = f"has no pose/{number}.txt"
+    else:
+        try:
+            pose = read_pose(pose_path)
+        except InputError as error:
+            problem = f"{pose_path.name}: {error.reason}"
+    return FrameFiles(
+        f"{number:06d}",
+        pose,
+        colour,
+        cameras["color"] if colour else None,
+        depth,
+        cameras["depth"] if depth else None,
+        np.eye(4),
+        labels if colour else None,
+        problem,
+    )

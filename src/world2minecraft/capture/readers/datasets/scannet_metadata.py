@@ -1,0 +1,119 @@
+"""What lies beside a ScanNet scene: ``SCENE.txt``, label images, the table of the raw ids."""
+
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.capture.images import read_header
+from world2minecraft.capture.readers.datasets.nyu40_labels import TABLE, MappedLabels, find_table
+from world2minecraft.capture.readers.datasets.text_tables import to_floats
+from world2minecraft.core.archives import AnyPath, ArchivePath, is_zip
+from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.files import read_bytes
+
+LABEL_KINDS = ("label-filt", "label")  # The filtered ones have fewer slips at edges.
+NO_TABLE = f"the label images are left out: put {TABLE} (from the data set) beside the scene"
+
+
+def read_facts(path: AnyPath) -> dict[str, np.ndarray]:
+    """Return the numbers of a ``SCENE.txt`` by name; lines of words are left out.
+
+    Raises:
+        CaptureError: ``axisAlignment`` is no matrix of 16 numbers.
+    """
+    if not path.is_file():
+        return {}
+    facts = {}
+    for line in read_bytes(path, 1 << 20).decode("utf-8", "replace").splitlines():
+        key, _, value = line.partition("=")
+        try:
+            facts[key.strip()] = to_floats(path, value.split())
+        except CaptureError:
+            continue  # Such as sceneType = Apartment.
+    return facts
+
+
+def axis_alignment(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | None:
+    """Return the rigid float64 [4, 4] from the poses' world to one whose z is up, where stated.
+
+    Test scenes have none.
+
+    Raises:
+        CaptureError: it is no rotation and shift.
+    """
+    if "axisAlignment" not in facts:
+        return None
+    values = facts["axisAlignment"]
+    stated = values.reshape(4, 4) if len(values) == 16 else np.full((4, 4), np.nan)
+    rotation = stated[:3, :3]
+    is_turn = np.abs(rotation @ rotation.T - np.eye(3)).max() < 1e-3
+    if not is_turn or np.linalg.det(rotation) < 0 or not np.isfinite(stated).all():
+        raise CaptureError(path, "axisAlignment must be 16 numbers, a 4x4 rotation and shift")
+    left, _, right = np.linalg.svd(rotation)  # It is stated with six digits.
+    aligned = np.eye(4)
+    aligned[:3, :3], aligned[:3, 3] = left @ right, stated[:3, 3]
+    return aligned
+
+
+def upright(path: AnyPath, facts: dict[str, np.ndarray]) -> np.ndarray | None:
+    """Return the unit vector of the poses' world that points up, where the scene states it."""
+    aligned = axis_alignment(path, facts)
+    return None if aligned is None else aligned[2, :3].copy()
+
+
+def stated_lens(facts: dict[str, np.ndarray], kind: str) -> tuple[float, ...] | None:
+    """Return fx, fy, cx, cy of ``color`` or ``depth`` where the scene's text states them."""
+    keys = [f"{name}_{kind}" for name in ("fx", "fy", "mx", "my")]
+    if not all(len(facts.get(key, ())) == 1 for key in keys):
+        return None
+    return tuple(float(facts[key][0]) for key in keys)
+
+
+def find_labels(scene: AnyPath, name: str) -> tuple[dict[int, MappedLabels], tuple[str, ...]]:
+    """Return label images by the frame's number, and a note where they cannot be used.
+
+    Args:
+        scene: the folder of the scene.
+        name: the scene's name, such as ``scene0000_00``, by which its zips are named.
+    """
+    notes: list[str] = []
+    for place in [place for kind in LABEL_KINDS for place in _label_places(scene, name, kind)]:
+        try:
+            images = _numbered(place)
+        except InputError as error:  # A broken zip of labels must not stop a scan.
+            broken = place.path if isinstance(place, ArchivePath) else place
+            notes.append(f"{broken.name} is left out: it {error.reason}")
+            continue
+        if images:
+            mapped, more = _mapped(scene, images)
+            return mapped, (*notes, *more)
+    return {}, tuple(dict.fromkeys(notes))
+
+
+def _label_places(scene: AnyPath, name: str, kind: str) -> list[AnyPath]:
+    """Return where label images of a kind may lie: a folder, or the published zip of it."""
+    places: list[AnyPath] = [scene / kind]
+    zipped = scene / f"{name}_2d-{kind}.zip"
+    if isinstance(zipped, Path) and is_zip(zipped):
+        places += [ArchivePath(zipped, kind), ArchivePath(zipped)]
+    return places
+
+
+def _numbered(folder: AnyPath) -> dict[int, AnyPath]:
+    """Return the images of a folder by their number; none where it is missing."""
+    found = folder.glob("*.png") if folder.is_dir() else ()
+    return {int(path.stem): path for path in found if path.stem.isdecimal() and len(path.stem) <= 9}
+
+
+def _mapped(
+    scene: AnyPath, images: dict[int, AnyPath]
+) -> tuple[dict[int, MappedLabels], tuple[str, ...]]:
+    table = find_table([scene, scene.parent, scene.parent.parent])
+    if table is None:
+        try:
+            mode = read_header(images[min(images)]).mode
+        except InputError:
+            return {}, (NO_TABLE,)
+        if mode not in ("L", "P"):
+            return {}, (NO_TABLE,)
+    return {number: MappedLabels(path, table) for number, path in images.items()}, ()

@@ -1,0 +1,126 @@
+"""SUN3D and SUN RGB-D: ``image/``, ``depth/``, ``extrinsics/`` and ``intrinsics.txt``.
+
+Both keep depth in millimetres with its 16 bits rotated by three. SUN RGB-D is one frame a folder;
+its extrinsics turn the camera's axes level, so that -y is up. SUN3D is a sequence: its extrinsics
+are three rows a frame, camera to world. Axes are OpenCV's.
+"""
+
+import re
+
+import numpy as np
+
+from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.images import SUFFIXES
+from world2minecraft.capture.readers.datasets.intrinsics import first_size, matrix_camera
+from world2minecraft.capture.readers.datasets.text_tables import (
+    by_number,
+    read_matrix,
+    read_rows,
+    to_floats,
+)
+from world2minecraft.capture.readers.datasets.time_sync import pair_times
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import CaptureError
+
+UNIT = "rotated"
+WITHIN_S = 0.033  # SUN3D's recorder pairs each picture with a depth of the same thirtieth.
+ONE_FRAME = "one frame alone: what it did not see stays unknown"
+_STAMPED = re.compile(r"(\d{1,9})-(\d{1,15})")
+
+
+class SunSource:
+    """Reads a frame of SUN RGB-D or a sequence of SUN3D."""
+
+    layout = "image/*.jpg, depth_bfx/*.png, extrinsics/*.txt, intrinsics.txt (SUN RGB-D, SUN3D)"
+
+    def recognise(self, folder: AnyPath) -> bool:
+        """Return whether the images' folders and the intrinsics are there."""
+        depth = _depth_folder(folder)
+        return depth is not None and (folder / "image").is_dir() and _lens(folder).is_file()
+
+    def read(self, folder: AnyPath) -> Capture:
+        """List the frames. Raises CaptureError as ``Source.read`` says."""
+        depth_folder = _depth_folder(folder) or folder
+        pairs = _pairs(folder, _images(folder / "image"), _images(depth_folder))
+        matrix = read_matrix(_lens(folder), [(3, 3), (4, 4)])
+        size = first_size([colour for colour, _ in pairs])
+        if size is None:
+            raise CaptureError(folder, "has no image that can be read; copy it again")
+        camera = matrix_camera(_lens(folder), size, matrix)
+        poses = _poses(folder, len(pairs))
+        frames = tuple(
+            FrameFiles(colour.stem, pose, colour, camera, depth, camera, time_s=_seconds(colour))
+            for (colour, depth), pose in zip(pairs, poses, strict=True)
+        )
+        single = len(frames) == 1
+        return Capture(
+            folder,
+            "sun",
+            frames,
+            depth_unit=UNIT,
+            notes=(ONE_FRAME,) if single else (),
+            world_up=np.array([0.0, -1.0, 0.0]) if single else None,
+        )
+
+
+def _lens(folder: AnyPath) -> AnyPath:
+    return folder / "intrinsics.txt"
+
+
+def _depth_folder(folder: AnyPath) -> AnyPath | None:
+    """Return where depth lies; ``depth_bfx`` has its holes filled by guesses: it comes last."""
+    return next(
+        (folder / name for name in ("depth", "depth_bfx") if (folder / name).is_dir()), None
+    )
+
+
+def _images(folder: AnyPath) -> list[AnyPath]:
+    return sorted(
+        (path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES),
+        key=by_number,
+    )
+
+
+def _seconds(path: AnyPath) -> float | None:
+    """Return the time in a SUN3D name, ``0000001-000000033369.jpg``, in seconds."""
+    match = _STAMPED.fullmatch(path.stem)
+    return int(match[2]) / 1e6 if match else None
+
+
+def _pairs(
+    folder: AnyPath, colours: list[AnyPath], depths: list[AnyPath]
+) -> list[tuple[AnyPath, AnyPath]]:
+    """Pair images: in order where they are as many, else by the times in their names."""
+    if colours and len(colours) == len(depths):
+        return list(zip(colours, depths, strict=True))
+    times = [[_seconds(path) for path in paths] for paths in (colours, depths)]
+    if not colours or not depths or any(None in stamps for stamps in times):
+        raise CaptureError(
+            folder, f"has {len(colours)} pictures and {len(depths)} depth images; they must pair"
+        )
+    colour_s, depth_s = (np.array(stamps, np.float64) for stamps in times)
+    pairs = pair_times(colour_s, depth_s, WITHIN_S)
+    if not pairs:
+        raise CaptureError(folder, "no picture and depth image are of the same time")
+    return [(colours[first], depths[second]) for first, second in pairs]
+
+
+def _poses(folder: AnyPath, count: int) -> list[np.ndarray | None]:
+    """Return camera to world of each frame; of the files in ``extrinsics`` the newest counts."""
+    files = sorted((folder / "extrinsics").glob("*.txt"), key=str)
+    if not files:
+        return [np.eye(4)] if count == 1 else [None] * count
+    path = files[-1]
+    words = [word for row in read_rows(path) for word in row]
+    if len(words) != 12 * count:
+        raise CaptureError(
+            path, f"must hold 3x4 numbers for each of {count} frames, not {len(words)}"
+        )
+    stated = to_floats(path, words).reshape(count, 3, 4)
+    poses = []
+    for rows in stated:
+        pose = np.vstack([rows, [0, 0, 0, 1]])
+        if count == 1:
+            pose[:3, 3] = 0  # The camera is the origin; it is turned level, no more.
+        poses.append(pose)
+    return poses

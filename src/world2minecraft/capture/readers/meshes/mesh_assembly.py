@@ -1,0 +1,139 @@
+"""Many small meshes become one: places, colours, pictures and labels end to end."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.capture.images import MAX_PIXELS
+from world2minecraft.capture.readers.meshes.mesh_rasterizer import GREY
+from world2minecraft.capture.readers.meshes.surface_model import MAX_FACES, MAX_VERTICES, Mesh
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, LimitError
+
+MOST_PIXELS = 48_000_000  # Of all pictures; larger ones are shrunk: 2 mm of a room in 144 MB.
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One mesh of a scene in its frame.
+
+    ``vertices`` float64 [V, 3], ``faces`` int [F, 3], ``colour`` uint8 [V, 3] or none; ``picture``
+    is a Pillow image with ``uv`` float [V, 2] (0, 0 upper left), or none; ``tint`` uint8 [3] is
+    multiplied on the picture. ``label`` is its class id, or uint8 [F] one for each face.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    colour: np.ndarray | None = None
+    picture: Image.Image | None = None
+    uv: np.ndarray | None = None
+    tint: tuple[int, int, int] = (255, 255, 255)
+    label: int | np.ndarray = 255
+
+
+def check_sizes(place: AnyPath, vertices: int, faces: int) -> None:
+    """Refuse what is too large. Raises LimitError."""
+    for name, count, most in (
+        ("vertices", vertices, MAX_VERTICES),
+        ("triangles", faces, MAX_FACES),
+    ):
+        if count > most:
+            raise LimitError(
+                place, f"has {count:,} {name}; at most {most:,} are read: export it coarser"
+            )
+
+
+def joined(place: AnyPath, parts: Sequence[Part]) -> tuple[Mesh, np.ndarray]:
+    """Return one mesh near the origin, and the float64 [3] that was taken off its places.
+
+    Raises:
+        DamagedFileError: a place is not finite, a face names no vertex or a picture is damaged.
+        LimitError: it is too large.
+    """
+    check_sizes(place, sum(len(p.vertices) for p in parts), sum(len(p.faces) for p in parts))
+    for part in parts:
+        if len(part.faces) and not 0 <= part.faces.min() <= part.faces.max() < len(part.vertices):
+            raise DamagedFileError(place, "has faces of vertices that it lacks; export it again")
+    vertices = np.concatenate([np.zeros((0, 3)), *(part.vertices for part in parts)])
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    faces = np.concatenate(
+        [np.zeros((0, 3), np.int64), *(p.faces + s for p, s in zip(parts, starts, strict=False))]
+    )
+    good: np.ndarray = np.all(np.isfinite(vertices), axis=1)
+    if len(good) and good.mean() < 0.5:
+        raise DamagedFileError(
+            place, "has places that are no numbers (NaN, infinity): export it again"
+        )
+    whole = good[faces].all(axis=1) if len(faces) else np.zeros(0, bool)
+    offset = np.floor(np.median(vertices[good], axis=0)) if good.any() else np.zeros(3)
+    vertices = np.where(good[:, None], vertices, offset)
+    pixels, sizes, numbers = _pictures(place, parts)
+    image = np.repeat(np.array(numbers, np.int16), [len(p.faces) for p in parts])
+    labels = np.concatenate(
+        [np.zeros(0, np.uint8), *(np.broadcast_to(p.label, len(p.faces)) for p in parts)]
+    ).astype(np.uint8)
+    pictured = bool(len(pixels))
+    mesh = Mesh(
+        (vertices - offset).astype(np.float32),
+        faces[whole].astype(np.int32),
+        _colours(parts),
+        _uv(parts) if pictured else None,
+        image[whole] if pictured else None,
+        pixels,
+        sizes,
+        labels[whole] if (labels != 255).any() else None,
+    )
+    return mesh, offset
+
+
+def _colours(parts: Sequence[Part]) -> np.ndarray | None:
+    if all(part.colour is None for part in parts):
+        return None
+    grey = np.full((1, 3), GREY, np.uint8)
+    return np.concatenate(
+        [np.repeat(grey, len(p.vertices), axis=0) if p.colour is None else p.colour for p in parts]
+    )
+
+
+def _uv(parts: Sequence[Part]) -> np.ndarray:
+    uv = [np.zeros((len(p.vertices), 2)) if p.uv is None else p.uv for p in parts]
+    return np.nan_to_num(np.concatenate(uv), posinf=0, neginf=0).astype(np.float32)
+
+
+def _pictures(place: AnyPath, parts: Sequence[Part]) -> tuple[np.ndarray, np.ndarray, list[int]]:
+    """Return the pixels and the sizes of the distinct pictures, and which one each part has."""
+    numbers: list[int] = []
+    known: dict[tuple, int] = {}
+    chosen: list[tuple[Image.Image, tuple[int, int, int]]] = []
+    for part in parts:
+        if part.picture is None or part.uv is None:
+            numbers.append(-1)
+            continue
+        if part.picture.width * part.picture.height > MAX_PIXELS:
+            raise LimitError(place, "has a picture of over 64 megapixels: make it smaller")
+        key = (id(part.picture), part.tint)
+        if key not in known:
+            known[key] = len(chosen)
+            chosen.append((part.picture, part.tint))
+        numbers.append(known[key])
+    total = sum(picture.width * picture.height for picture, _ in chosen)
+    shrink = max(1, int(np.ceil(np.sqrt(total / MOST_PIXELS))))
+    arrays = [_decoded(place, picture, tint, shrink) for picture, tint in chosen]
+    sizes = np.array([(a.shape[1], a.shape[0]) for a in arrays], np.int64).reshape(-1, 2)
+    flat = [np.zeros((0, 3), np.uint8), *(a.reshape(-1, 3) for a in arrays)]
+    return np.concatenate(flat), sizes, numbers
+
+
+def _decoded(
+    place: AnyPath, picture: Image.Image, tint: tuple[int, int, int], shrink: int
+) -> np.ndarray:
+    try:
+        image = picture.convert("RGB")
+    except (OSError, SyntaxError, ValueError, EOFError) as error:
+        raise DamagedFileError(place, "has a picture that is damaged; export it again") from error
+    array = np.asarray(image.reduce(shrink) if shrink > 1 else image, np.uint8)
+    if tint == (255, 255, 255):
+        return array
+    return (array.astype(np.uint16) * np.array(tint, np.uint16) // 255).astype(np.uint8)

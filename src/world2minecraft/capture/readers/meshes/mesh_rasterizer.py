@@ -1,0 +1,217 @@
+"""Triangles seen by a pinhole camera: which face each pixel sees, how far, and in what colour.
+
+Each pixel's ray is met with each triangle exactly, by the inverse of the 3x3 matrix of its
+corners (Olano and Greer, "Triangle scan conversion using 2D homogeneous coordinates", 1997): so
+nothing is clipped, corners behind the camera do no harm, and neighbours leave no gap. Both sides
+of a triangle are seen.
+"""
+
+import numpy as np
+
+from world2minecraft.capture.readers.meshes.surface_model import Mesh
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
+
+NEAR_M = 0.01
+NO_FACE = -1
+GREY = 178  # What has no colour of its own.
+
+
+def see_triangles(
+    mesh: Mesh, camera: Camera, world_to_camera: np.ndarray, runs: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return what a camera sees of a mesh.
+
+    Args:
+        mesh: in metres of the world frame.
+        camera: without distortion.
+        world_to_camera: rigid float64 [4, 4].
+        runs: int64 [R, 2], from which to which triangle to look; None for all.
+
+    Returns:
+        z-depth float32 [H, W] in metres, 0 where nothing is; colour uint8 [H, W, 3], black there;
+        labels uint8 [H, W], 255 where the mesh says nothing.
+    """
+    depth, face = _drawn(mesh, camera, world_to_camera, runs)
+    colour = np.zeros((*depth.shape, 3), np.uint8)
+    pose = np.ascontiguousarray(world_to_camera, np.float64)
+    looks, pictures = _looks(mesh)
+    _shade(mesh.vertices, mesh.faces, pose, lens_of(camera), face, looks, pictures, colour)
+    labels = np.full(depth.shape, 255, np.uint8)
+    if mesh.labels is not None:
+        labels[face != NO_FACE] = mesh.labels[face[face != NO_FACE]]
+    return depth, colour, labels
+
+
+def faces_seen(mesh: Mesh, camera: Camera, world_to_camera: np.ndarray) -> np.ndarray:
+    """Return int32 [H, W]: the face that each pixel sees, -1 for none."""
+    return _drawn(mesh, camera, world_to_camera, None)[1]
+
+
+def lens_of(camera: Camera) -> tuple[float, float, float, float]:
+    """Return focal lengths and principal point as kernels take them."""
+    return camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px
+
+
+def _drawn(
+    mesh: Mesh, camera: Camera, world_to_camera: np.ndarray, runs: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray]:
+    depth = np.full((camera.height_px, camera.width_px), np.inf, np.float32)
+    face = np.full(depth.shape, NO_FACE, np.int32)
+    pose = np.ascontiguousarray(world_to_camera, np.float64)
+    runs = np.array([[0, len(mesh.faces)]], np.int64) if runs is None else runs
+    _draw(mesh.vertices, mesh.faces, pose, lens_of(camera), runs, depth, face)
+    depth[face == NO_FACE] = 0
+    return depth, face
+
+
+def _looks(mesh: Mesh) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
+    """Return colours, uv and pictures of faces, and the pictures' pixels, starts and sizes."""
+    colour = np.zeros((0, 3), np.uint8) if mesh.colour is None else mesh.colour
+    uv = np.zeros((0, 2), np.float32) if mesh.uv is None else mesh.uv
+    image = np.zeros(0, np.int16) if mesh.face_image is None else mesh.face_image
+    starts = np.concatenate([[0], np.cumsum(mesh.image_sizes.prod(axis=1))]).astype(np.int64)
+    return (colour, uv, image), (mesh.pixels, starts, mesh.image_sizes)
+
+
+@njit
+def _corners(vertices, face, pose, triangle):
+    """Carry a triangle's corners to the camera's frame; return the largest z."""
+    most = -np.inf
+    for k in range(3):
+        place = vertices[face[k]]
+        for a in range(3):
+            moved = pose[a, 0] * place[0] + pose[a, 1] * place[1] + pose[a, 2] * place[2]
+            triangle[k, a] = moved + pose[a, 3]
+        most = max(most, triangle[k, 2])
+    return most
+
+
+@njit
+def _window(triangle, lens, width, height):
+    """Return the pixels u0, u1, v0, v1 (ends not included) that a triangle may cover."""
+    low_u, high_u, low_v, high_v = np.inf, -np.inf, np.inf, -np.inf
+    for k in range(3):
+        one, other = triangle[k], triangle[(k + 1) % 3]
+        for step in range(2):
+            x, y, z = one[0], one[1], one[2]
+            if step == 1:  # Where the edge goes through the plane just before the camera.
+                far_z = other[2]
+                if (z >= NEAR_M) == (far_z >= NEAR_M):
+                    continue
+                share = (NEAR_M - z) / (far_z - z)
+                x += share * (other[0] - x)
+                y += share * (other[1] - y)
+                z = NEAR_M
+            if z < NEAR_M:
+                continue
+            u, v = x / z * lens[0] + lens[2], y / z * lens[1] + lens[3]
+            low_u, high_u = min(low_u, u), max(high_u, u)
+            low_v, high_v = min(low_v, v), max(high_v, v)
+    if not (high_u > 0 and high_v > 0 and low_u < width and low_v < height):
+        return 0, 0, 0, 0
+    u0, u1 = max(0.0, np.ceil(low_u - 0.5001)), min(width * 1.0, np.floor(high_u - 0.4999) + 1)
+    v0, v1 = max(0.0, np.ceil(low_v - 0.5001)), min(height * 1.0, np.floor(high_v - 0.4999) + 1)
+    return int(u0), int(u1), int(v0), int(v1)
+
+
+@njit
+def _edge(edges, k, one, other):
+    """Store the cross product of two corners; swapped corners give exactly its opposite."""
+    edges[k, 0] = one[1] * other[2] - one[2] * other[1]
+    edges[k, 1] = one[2] * other[0] - one[0] * other[2]
+    edges[k, 2] = one[0] * other[1] - one[1] * other[0]
+
+
+@njit
+def _edges_of(triangle, edges):
+    """Fill ``edges`` so that edge k over the result, met with a ray, is the share of corner k."""
+    _edge(edges, 0, triangle[1], triangle[2])
+    _edge(edges, 1, triangle[2], triangle[0])
+    _edge(edges, 2, triangle[0], triangle[1])
+    volume = 0.0
+    for axis in range(3):
+        volume += triangle[0, axis] * edges[0, axis]
+    return volume
+
+
+@njit
+def _draw(vertices, faces, pose, lens, runs, depth, seen):
+    """Put each triangle of the runs into ``depth`` and ``seen`` where it is the nearest."""
+    edges, triangle = np.empty((3, 3)), np.empty((3, 3))
+    for r in range(len(runs)):
+        for f in range(runs[r, 0], runs[r, 1]):
+            if _corners(vertices, faces[f], pose, triangle) >= NEAR_M:
+                _put(f, triangle, edges, lens, depth, seen)
+
+
+@njit
+def _put(f, triangle, edges, lens, depth, seen):
+    height, width = depth.shape
+    u0, u1, v0, v1 = _window(triangle, lens, width, height)
+    if u0 >= u1 or v0 >= v1:
+        return
+    volume = _edges_of(triangle, edges)
+    if volume == 0.0:
+        return
+    sign = 1.0 if volume > 0 else -1.0
+    for v in range(v0, v1):
+        y = (v + 0.5 - lens[3]) / lens[1]
+        for u in range(u0, u1):
+            x = (u + 0.5 - lens[2]) / lens[0]
+            a = sign * (edges[0, 0] * x + edges[0, 1] * y + edges[0, 2])
+            b = sign * (edges[1, 0] * x + edges[1, 1] * y + edges[1, 2])
+            c = sign * (edges[2, 0] * x + edges[2, 1] * y + edges[2, 2])
+            total = a + b + c
+            if a < 0 or b < 0 or c < 0 or total <= 0:
+                continue
+            z = sign * volume / total
+            if NEAR_M <= z < depth[v, u]:
+                depth[v, u] = z
+                seen[v, u] = f
+
+
+@njit
+def _shade(vertices, faces, pose, lens, seen, looks, pictures, picture):
+    """Give each pixel the colour of its place on the face that it sees."""
+    colour, uv, face_image = looks
+    pixels, starts, sizes = pictures
+    edges, triangle = np.empty((3, 3)), np.empty((3, 3))
+    share = np.empty(3)
+    for v in range(seen.shape[0]):
+        for u in range(seen.shape[1]):
+            f = seen[v, u]
+            if f < 0:
+                continue
+            face = faces[f]
+            _corners(vertices, face, pose, triangle)
+            _edges_of(triangle, edges)
+            x, y = (u + 0.5 - lens[2]) / lens[0], (v + 0.5 - lens[3]) / lens[1]
+            for k in range(3):
+                share[k] = edges[k, 0] * x + edges[k, 1] * y + edges[k, 2]
+            share /= share.sum()
+            if len(face_image) and face_image[f] >= 0:
+                m = face_image[f]
+                a = (
+                    share[0] * uv[face[0], 0]
+                    + share[1] * uv[face[1], 0]
+                    + share[2] * uv[face[2], 0]
+                )
+                b = (
+                    share[0] * uv[face[0], 1]
+                    + share[1] * uv[face[1], 1]
+                    + share[2] * uv[face[2], 1]
+                )
+                column = min(int((a - np.floor(a)) * sizes[m, 0]), sizes[m, 0] - 1)
+                row = min(int((b - np.floor(b)) * sizes[m, 1]), sizes[m, 1] - 1)
+                for c in range(3):
+                    picture[v, u, c] = pixels[starts[m] + row * sizes[m, 0] + column, c]
+            elif len(colour):
+                for c in range(3):
+                    mixed = 0.5
+                    for k in range(3):
+                        mixed += share[k] * colour[face[k], c]
+                    picture[v, u, c] = np.uint8(min(max(mixed, 0.0), 255.0))
+            else:
+                for c in range(3):
+                    picture[v, u, c] = GREY

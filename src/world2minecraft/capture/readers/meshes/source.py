@@ -1,0 +1,173 @@
+"""A mesh or a cloud becomes a capture: set upright, entered, looked at from within."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from world2minecraft.capture.frames import Capture, FrameFiles
+from world2minecraft.capture.options import ScanOptions
+from world2minecraft.capture.readers.meshes.facing import outward_share
+from world2minecraft.capture.readers.meshes.formats import find_solid, load_solid, stamp_of
+from world2minecraft.capture.readers.meshes.grid import grid_of
+from world2minecraft.capture.readers.meshes.interior import find_interior
+from world2minecraft.capture.readers.meshes.looks import Look, Looker, view_name
+from world2minecraft.capture.readers.meshes.samples import samples_of
+from world2minecraft.capture.readers.meshes.spatial_blocks import mesh_in_blocks, surfels_in_blocks
+from world2minecraft.capture.readers.meshes.surface_model import Loaded, Mesh, Solid
+from world2minecraft.capture.readers.meshes.surfels import surfels_of
+from world2minecraft.capture.readers.meshes.upright import stance_of, unit_of
+from world2minecraft.capture.readers.meshes.viewpoints import CAMERA, choose_views
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import CaptureError
+
+MARGIN_M = 0.3
+LEAST_SIDES_M = (1.0, 1.0, 1.2)
+MOST_SIDE_M = 200.0
+OUTWARD_SHARE = 0.9  # Of what is seen from inside; a room of any export has far less.
+TELL_UNIT = "if the unit is wrong say --set capture.unit=m|cm|mm|inch|foot"
+
+
+class SolidSource:
+    """Reads one mesh or point cloud of a room, alone or beside its textures."""
+
+    layout = "a mesh or a point cloud (.glb .gltf .obj .ply .stl .usdz .las .laz .e57 .xyz .pts ..)"
+
+    def recognise(self, folder: AnyPath) -> bool:
+        """Return whether the place is such a file, or a folder with one and no frames."""
+        return find_solid(folder) is not None
+
+    def read(self, folder: AnyPath) -> Capture:
+        """List virtual views of it. Raises what ``read_with`` raises."""
+        return self.read_with(folder, ScanOptions())
+
+    def read_with(self, folder: AnyPath, options: ScanOptions) -> Capture:
+        """List virtual views of it, placed with what the user says of unit, up and inside.
+
+        Raises:
+            CaptureError: it shows no inside of a room. DamagedFileError: it is not what its
+                format says. LimitError: it is too large. MissingExtraError: its library is absent.
+        """
+        place = find_solid(folder)
+        if place is None:
+            raise CaptureError(folder, "holds no mesh and no point cloud")
+        return _read_once(place, stamp_of(place), options)
+
+
+@lru_cache(maxsize=1)
+def _read_once(place: AnyPath, stamp: tuple[int, ...], options: ScanOptions) -> Capture:
+    """Read a file; the same file is asked for twice, to be judged and to be opened."""
+    loaded = load_solid(place)
+    if not len(loaded.solid.places) or (
+        isinstance(loaded.solid, Mesh) and not len(loaded.solid.faces)
+    ):
+        raise CaptureError(place, "holds no surface at all: no triangles and no points")
+    file_to_world, said = world_of(place, loaded, options)
+    inside_m = None
+    if options.inside is not None:
+        inside_m = apply(file_to_world, np.array(options.inside) - loaded.offset)
+    solid = loaded.solid.moved(file_to_world)
+    poses, spaces = _views(place, solid, inside_m)
+    if isinstance(solid, Mesh):
+        looked_at, blocks = mesh_in_blocks(solid)
+    else:
+        looked_at, blocks = surfels_in_blocks(surfels_of(solid))
+    by_class = solid.labels is not None and not solid.coloured
+    looker = Looker(place.name, looked_at, CAMERA, poses, blocks, by_class)
+    notes = (
+        f"{_counts(loaded)}; {said}",
+        f"looked at from {len(poses)} places in {spaces} closed space{'s' * (spaces > 1)}",
+        *loaded.notes,
+    )
+    return Capture(
+        place,
+        f"solid ({loaded.kind})",
+        tuple(_frame(looker, view, solid) for view in range(len(poses))),
+        depth_unit="m",
+        notes=notes,
+        depth_kind="exact",
+        world_up=np.array([0.0, 0.0, 1.0]),
+    )
+
+
+def world_of(place: AnyPath, loaded: Loaded, options: ScanOptions) -> tuple[np.ndarray, str]:
+    """Return the 4x4 from the solid's own frame to metres with z up, and what to tell of it."""
+    samples = samples_of(loaded.solid)
+    if not len(samples.points):
+        raise CaptureError(place, "holds no surface at all: its triangles have no area")
+    stance = stance_of(samples, loaded.usual_up, loaded.up_stated, options.up)
+    upright = samples.points @ stance.turn.T
+    low, high = np.quantile(upright, [0.002, 0.998], axis=0)
+    unit_m, unit_said = unit_of(high - low, loaded.unit_m, options.unit)
+    size = (high - low) * unit_m
+    if (size < LEAST_SIDES_M).any() or (size > MOST_SIDE_M).any():
+        raise CaptureError(
+            place,
+            f"is {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m ({unit_said}; {stance.told}), "
+            f"which is no room but an object or a landscape; {TELL_UNIT}",
+        )
+    file_to_world = np.eye(4)
+    file_to_world[:3, :3] = stance.turn * unit_m
+    middle = (low + high) / 2 * unit_m
+    file_to_world[:3, 3] = -np.array([middle[0], middle[1], low[2] * unit_m])
+    told = f"{size[0]:.1f} x {size[1]:.1f} m and {size[2]:.1f} m high; {unit_said}; {stance.told}"
+    return file_to_world, told
+
+
+def _views(place: AnyPath, solid: Solid, inside_m: np.ndarray | None) -> tuple[np.ndarray, int]:
+    """Return the poses of the views and how many spaces they look at."""
+    low, high = samples_of(solid).box()
+    try:
+        grid = grid_of(solid, low - MARGIN_M, high + MARGIN_M)
+    except ValueError as error:
+        raise CaptureError(place, str(error)) from error
+    interior = find_interior(grid, inside_m)
+    if interior is None:
+        raise CaptureError(place, _no_inside(inside_m))
+    poses = choose_views(grid, interior)
+    if isinstance(solid, Mesh) and inside_m is None:
+        share = outward_share(solid, CAMERA, poses)
+        if share > OUTWARD_SHARE:
+            raise CaptureError(
+                place,
+                "is seen from outside: all its faces look outward, as those of an object or of a "
+                "house's shell; if it is a room, name a point in it: --set capture.inside=x,y,z",
+            )
+    return poses, interior.spaces
+
+
+def _no_inside(inside_m: np.ndarray | None) -> str:
+    if inside_m is not None:
+        return (
+            "has no free space that surface surrounds within 1 m of the point named by inside; "
+            "name one in the middle of the room, in the file's own units and axes"
+        )
+    return (
+        "shows no inside of a room: nowhere could one stand with a floor below and walls at most "
+        "sides; it looks like an object, or a place seen from outside. If it is a room, name a "
+        "point in it (--set capture.inside=x,y,z) or its upward axis (--set capture.up=y)"
+    )
+
+
+def _frame(looker: Looker, view: int, solid: Solid) -> FrameFiles:
+    camera, coloured = looker.camera, solid.coloured or looker.by_class
+    return FrameFiles(
+        view_name(view),
+        looker.camera_to_world[view],
+        Look(looker, view, "colour") if coloured else None,
+        camera if coloured else None,
+        Look(looker, view, "depth"),
+        camera,
+        labels_path=Look(looker, view, "labels") if solid.labels is not None else None,
+    )
+
+
+def _counts(loaded: Loaded) -> str:
+    if isinstance(loaded.solid, Mesh):
+        return f"{loaded.kind} mesh of {len(loaded.solid.faces):,} triangles"
+    thinned = (
+        f", thinned to {len(loaded.solid.points):,}"
+        if loaded.read > len(loaded.solid.points)
+        else ""
+    )
+    return f"{loaded.kind} cloud of {max(loaded.read, len(loaded.solid.points)):,} points{thinned}"

@@ -1,0 +1,87 @@
+"""A solid in blocks of space, so that a view looks only at what may lie in it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from world2minecraft.capture.readers.meshes.surface_model import Cloud, Mesh
+from world2minecraft.capture.readers.meshes.surfels import Surfels, cells_of
+from world2minecraft.core.types import Camera
+
+BLOCK_M = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """Runs of triangles or points, block after block, and the ball around each block.
+
+    Block b holds those from ``starts[b]`` to ``starts[b + 1]`` (int64 [B + 1]); ``middles_m``
+    float64 [B, 3], ``radii_m`` float64 [B].
+    """
+
+    starts: np.ndarray
+    middles_m: np.ndarray
+    radii_m: np.ndarray
+
+    def runs(self, camera: Camera, world_to_camera: np.ndarray) -> np.ndarray:
+        """Return int64 [R, 2]: the runs of the blocks that a camera may see."""
+        middles = self.middles_m @ world_to_camera[:3, :3].T + world_to_camera[:3, 3]
+        seen = middles[:, 2] > -self.radii_m
+        left, right = camera.cx_px / camera.fx_px, (camera.width_px - camera.cx_px) / camera.fx_px
+        over, below = camera.cy_px / camera.fy_px, (camera.height_px - camera.cy_px) / camera.fy_px
+        for axis, sign, slope in ((0, -1, left), (0, 1, right), (1, -1, over), (1, 1, below)):
+            beyond = (sign * middles[:, axis] - slope * middles[:, 2]) / np.hypot(1, slope)
+            seen &= beyond < self.radii_m
+        return np.stack([self.starts[:-1][seen], self.starts[1:][seen]], axis=1)
+
+
+def whole(count: int) -> np.ndarray:
+    """Return the one run of all elements."""
+    return np.array([[0, count]], np.int64)
+
+
+def mesh_in_blocks(mesh: Mesh) -> tuple[Mesh, Blocks]:
+    """Return a mesh in metres with its triangles in the order of blocks, and these."""
+    middles = mesh.vertices[mesh.faces].mean(axis=1)
+    order, starts = _order(middles)
+    faces = mesh.faces[order]
+    sorted_mesh = replace(
+        mesh,
+        faces=faces,
+        face_image=None if mesh.face_image is None else mesh.face_image[order],
+        labels=None if mesh.labels is None else mesh.labels[order],
+    )
+    low = np.minimum.reduceat(mesh.vertices[faces].min(axis=1), starts[:-1])
+    high = np.maximum.reduceat(mesh.vertices[faces].max(axis=1), starts[:-1])
+    return sorted_mesh, _around(starts, low, high, np.zeros(len(low)))
+
+
+def surfels_in_blocks(surfels: Surfels) -> tuple[Surfels, Blocks]:
+    """Return the discs of a cloud in the order of blocks, and these."""
+    order, starts = _order(surfels.cloud.points)
+    cloud = surfels.cloud
+    points = cloud.points[order]
+    sorted_cloud = Cloud(
+        points,
+        None if cloud.colour is None else cloud.colour[order],
+        None if cloud.labels is None else cloud.labels[order],
+    )
+    radius = surfels.radius_m[order]
+    low = np.minimum.reduceat(points, starts[:-1])
+    high = np.maximum.reduceat(points, starts[:-1])
+    most = np.maximum.reduceat(radius, starts[:-1]).astype(np.float64)
+    found = Surfels(sorted_cloud, surfels.normals[order], radius)
+    return found, _around(starts, low, high, most)
+
+
+def _order(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the order that puts places of one block together, and where each block starts."""
+    own, count = cells_of(places, BLOCK_M)
+    order = np.argsort(own, kind="stable")
+    starts = np.concatenate([[0], np.cumsum(np.bincount(own, minlength=count))])
+    return order, starts.astype(np.int64)
+
+
+def _around(starts: np.ndarray, low: np.ndarray, high: np.ndarray, more: np.ndarray) -> Blocks:
+    low, high = low.astype(np.float64), high.astype(np.float64)
+    return Blocks(starts, (low + high) / 2, np.linalg.norm(high - low, axis=1) / 2 + more + 0.01)

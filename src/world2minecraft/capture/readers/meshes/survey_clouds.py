@@ -1,0 +1,143 @@
+"""LAS, LAZ and E57: surveyed clouds, in metres and upright by their formats' rules."""
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.capture.readers.meshes.optional_libraries import library
+from world2minecraft.capture.readers.meshes.surface_model import MAX_POINTS, Loaded
+from world2minecraft.capture.readers.meshes.thinning import Thinner
+from world2minecraft.capture.readers.meshes.tinting import as_colour
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, LimitError, reason_of
+
+CHUNK = 1_000_000
+MOST_IN_SCAN = 80_000_000  # An E57 scan lies in memory whole, 27 bytes a point.
+
+
+def load_las(place: AnyPath) -> Loaded:
+    """Read a LAS or LAZ file chunk by chunk.
+
+    Raises:
+        DamagedFileError: it cannot be read. LimitError: it is too large. MissingExtraError.
+    """
+    laspy = library("laspy", "reading LAS clouds")
+    thinner = Thinner(unit_m=1.0)
+    try:
+        with laspy.open(place.open("rb")) as reader:
+            _check_count(place, reader.header.point_count)
+            if reader.header.are_points_compressed:
+                _check_chunks(place, reader.header)
+            for chunk in reader.chunk_iterator(CHUNK):
+                points = np.stack([np.asarray(chunk[axis]) for axis in "xyz"], axis=1)
+                thinner.add(points.astype(np.float64), _las_colour(chunk))
+            if thinner.read < reader.header.point_count:
+                raise DamagedFileError(
+                    place,
+                    f"is cut short: {reader.header.point_count:,} points are due, "
+                    f"{thinner.read:,} there; copy it again",
+                )
+    except (DamagedFileError, LimitError):
+        raise
+    except (KeyboardInterrupt, SystemExit):
+        raise
+    except BaseException as error:  # laspy and lazrs share no root; lazrs even panics.
+        raise DamagedFileError(
+            place, f"cannot be read as LAS ({reason_of(error)}); export it again"
+        ) from error
+    return _loaded(thinner, "LAS")
+
+
+def _check_chunks(place: AnyPath, header: Any) -> None:
+    """Hold a LAZ file's table of chunks against its size: lazrs trusts it, and dies of it.
+
+    The points begin with the table's place; the table with a version and how many chunks there are.
+    """
+    size, start = place.stat().st_size, int(header.offset_to_point_data)
+    with place.open("rb") as stream:
+        stream.seek(min(start, size))
+        at = int.from_bytes(stream.read(8), "little", signed=True)
+        if at == -1 and size >= 8:  # Written as it came: the place stands at the end.
+            stream.seek(size - 8)
+            at = int.from_bytes(stream.read(8), "little", signed=True)
+        if not start + 8 <= at <= size - 8:
+            raise DamagedFileError(
+                place, "is cut short: its table of chunks is not there; copy it again"
+            )
+        stream.seek(at + 4)
+        chunks = int.from_bytes(stream.read(4), "little")
+    if chunks > min(header.point_count, 8 * (size - at)):
+        raise DamagedFileError(
+            place, f"says that it has {chunks:,} chunks, more than it holds; copy it again"
+        )
+
+
+def _las_colour(chunk: Any) -> np.ndarray | None:
+    if not {"red", "green", "blue"} <= set(chunk.point_format.dimension_names):
+        return None
+    values = np.stack([np.asarray(chunk[name]) for name in ("red", "green", "blue")], axis=1)
+    # The format asks for 16 bits; some writers leave 8. A chunk of black stays black.
+    found = as_colour(values)
+    return np.zeros(values.shape, np.uint8) if found is None else found
+
+
+def load_e57(place: AnyPath) -> Loaded:
+    """Read an E57 file scan by scan, each placed by its own pose. Raises as ``load_las``."""
+    pye57 = library("pye57", "reading E57 clouds")
+    thinner = Thinner(unit_m=1.0)
+    try:
+        with on_disk(place) as path, pye57.E57(str(path)) as file:
+            counts = [file.get_header(scan).point_count for scan in range(file.scan_count)]
+            _check_count(place, sum(counts))
+            if max(counts, default=0) > MOST_IN_SCAN:
+                raise LimitError(place, f"has a scan of {max(counts):,} points; export it thinned")
+            for scan in range(file.scan_count):
+                _add_scan(thinner, file, scan)
+    except (DamagedFileError, LimitError):
+        raise
+    except Exception as error:  # What the library's C++ raises has no root.
+        raise DamagedFileError(
+            place, f"cannot be read as E57 ({reason_of(error)}); export it again"
+        ) from error
+    return _loaded(thinner, "E57")
+
+
+def _add_scan(thinner: Thinner, file: Any, scan: int) -> None:
+    fields = set(file.get_header(scan).point_fields)
+    coloured = {"colorRed", "colorGreen", "colorBlue"} <= fields
+    read = file.read_scan(scan, colors=coloured, ignore_missing_fields=True)
+    points = np.stack([read[f"cartesian{axis}"] for axis in "XYZ"], axis=1)
+    colour = None
+    if coloured:
+        values = np.stack([read[f"color{name}"] for name in ("Red", "Green", "Blue")], axis=1)
+        found = as_colour(values)
+        colour = np.zeros(values.shape, np.uint8) if found is None else found
+    for start in range(0, len(points), CHUNK):
+        part = slice(start, start + CHUNK)
+        thinner.add(points[part], None if colour is None else colour[part])
+
+
+@contextmanager
+def on_disk(place: AnyPath) -> Iterator[Path]:
+    """Give a file's path, unpacked for a while where it lies in a zip."""
+    if isinstance(place, Path):
+        yield place
+        return
+    with tempfile.TemporaryDirectory(prefix="world2minecraft-") as folder:
+        path = Path(folder) / f"file{place.suffix}"
+        path.write_bytes(place.read_bytes())
+        yield path
+
+
+def _check_count(place: AnyPath, count: int) -> None:
+    if count > MAX_POINTS:
+        raise LimitError(place, f"has {count:,} points; at most {MAX_POINTS:,} are read: thin it")
+
+
+def _loaded(thinner: Thinner, kind: str) -> Loaded:
+    offset = np.zeros(3) if thinner.offset is None else thinner.offset
+    return Loaded(thinner.cloud(), kind, offset, 1.0, "z", up_stated=True, read=thinner.read)

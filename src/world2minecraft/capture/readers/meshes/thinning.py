@@ -1,0 +1,116 @@
+"""Clouds thinned as they are read: one point for each small cell, the mean of those in it.
+
+What is held never grows much beyond ``MOST_HELD`` points, however long the file is.
+"""
+
+import numpy as np
+
+from world2minecraft.capture.readers.meshes.surface_model import Cloud
+
+CELL_M = 0.015  # Under a fifth of a cell of the room; a scanner's noise is half of it.
+MOST_HELD = 4_000_000
+LONGEST = ((120.0, 1.0), (6000.0, 0.01))  # So many units at most, of so many metres.
+
+
+class Thinner:
+    """Takes chunks of points in any frame and gives one thinned cloud.
+
+    The first point's neighbourhood becomes the origin, so that float32 keeps millimetres of
+    surveyed coordinates: ``offset`` float64 [3] is what was taken off. ``unit_m`` is metres per
+    unit where the format states it; else it is told from how long the cloud is. ``cell`` is the
+    side of the cells that points were merged in, 0 before.
+    """
+
+    def __init__(self, unit_m: float | None = None) -> None:
+        self._unit_m = unit_m
+        self.offset: np.ndarray | None = None
+        self._points: list[np.ndarray] = []
+        self._colours: list[np.ndarray] = []
+        self._labels: list[np.ndarray] = []
+        self._held = 0
+        self.cell = 0.0
+        self.read = 0
+
+    def add(
+        self,
+        points: np.ndarray,
+        colour: np.ndarray | None = None,
+        labels: np.ndarray | None = None,
+    ) -> None:
+        """Take points float64 [N, 3] with colours uint8 [N, 3] and labels uint8 [N], if any."""
+        good = np.isfinite(points).all(axis=1)
+        if not good.any():
+            return
+        points = points[good]
+        self.read += len(points)
+        if self.offset is None:
+            self.offset = np.floor(np.median(points, axis=0))
+        self._points.append((points - self.offset).astype(np.float32))
+        if colour is not None:
+            self._colours.append(colour[good])
+        if labels is not None:
+            self._labels.append(labels[good])
+        self._held += len(points)
+        if self._held > MOST_HELD:
+            self._merge(self._fitting_cell())
+
+    def cloud(self) -> Cloud:
+        """Return all that came, one point a cell where there were too many."""
+        if not self._points:
+            return Cloud(np.zeros((0, 3), np.float32))
+        if self._held > MOST_HELD // 8:
+            self._merge(self._fitting_cell())
+        count = self._held
+        colour = np.concatenate(self._colours) if self._colours else None
+        labels = np.concatenate(self._labels) if self._labels else None
+        return Cloud(
+            np.concatenate(self._points),
+            colour if colour is not None and len(colour) == count else None,
+            labels if labels is not None and len(labels) == count else None,
+        )
+
+    def _fitting_cell(self) -> float:
+        """Return the cell's side in the file's unit, whatever that is: 1.5 cm of a room.
+
+        What is up to 120 units long is no room in centimetres, so that these are metres (or feet);
+        up to 6,000 they are centimetres, beyond millimetres.
+        """
+        if self._unit_m is not None:
+            return max(self.cell, CELL_M / self._unit_m)
+        spans = [np.quantile(part[::16], [0.01, 0.99], axis=0) for part in self._points]
+        low = np.min([span[0] for span in spans], axis=0)
+        high = np.max([span[1] for span in spans], axis=0)
+        longest = float((high - low).max())
+        unit_m = next((unit for most, unit in LONGEST if longest <= most), 0.001)
+        return max(self.cell, CELL_M / unit_m)
+
+    def _merge(self, cell: float) -> None:
+        """Join what is held into one point a cell; coarser cells where that is still too many."""
+        points = np.concatenate(self._points)
+        colours = np.concatenate(self._colours) if self._colours else None
+        labels = np.concatenate(self._labels) if self._labels else None
+        while True:
+            first, own, counts = _cells(points, cell)
+            if len(first) <= MOST_HELD // 2 or cell == 0:
+                break
+            cell *= 1.26
+        means = [np.bincount(own, points[:, a].astype(np.float64)) / counts for a in range(3)]
+        self._points = [np.stack(means, axis=1).astype(np.float32)]
+        if colours is not None and len(colours) == len(points):
+            mixed = [np.bincount(own, colours[:, c]) / counts + 0.5 for c in range(3)]
+            self._colours = [np.stack(mixed, axis=1).astype(np.uint8)]
+        if labels is not None and len(labels) == len(points):
+            self._labels = [labels[first]]
+        self._held, self.cell = len(first), cell
+
+
+def _cells(points: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the first point of each cell, each point's cell and how many points each has."""
+    cells = np.floor(points / np.float32(cell)).astype(np.int64)
+    cells -= cells.min(axis=0)
+    spans = cells.max(axis=0) + 1
+    code = (cells[:, 0] * spans[1] + cells[:, 1]) * spans[2] + cells[:, 2]
+    _, first, own, counts = np.unique(
+        code, return_index=True, return_inverse=True, return_counts=True
+    )
+    return first, own, counts

@@ -1,0 +1,249 @@
+"""glTF, OBJ, STL and their like, read by trimesh; nothing outside the file's folder is opened."""
+
+import io
+import json
+import struct
+from typing import Any
+from urllib.parse import unquote
+
+import numpy as np
+
+from world2minecraft.capture.readers.meshes.mesh_assembly import Part, check_sizes, joined
+from world2minecraft.capture.readers.meshes.naming import class_of_name
+from world2minecraft.capture.readers.meshes.optional_libraries import library
+from world2minecraft.capture.readers.meshes.surface_model import MAX_FACES, MAX_VERTICES, Loaded
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, reason_of
+from world2minecraft.core.files import read_bytes
+from world2minecraft.geometry.colour import srgb_of_linear
+
+MAX_BYTES = 2 << 30
+MAX_JSON_BYTES = 64 << 20
+MAX_NODES = 200_000
+NO_COLOUR = (102, 102, 102, 255)  # What trimesh gives to materials that state none,
+NO_PICTURE = (2, 2)  # and the picture's size.
+UNREAD = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu")
+KINDS = {".glb": "glTF", ".gltf": "glTF", ".obj": "OBJ", ".stl": "STL", ".off": "OFF"}
+
+
+def load_scene(place: AnyPath) -> Loaded:
+    """Read a mesh file with all that its scene places.
+
+    Raises:
+        DamagedFileError: it cannot be read. LimitError: it is too large. InputError: a file that it
+            needs is not there. MissingExtraError.
+    """
+    trimesh = library("trimesh", "reading meshes")
+    data = read_bytes(place, MAX_BYTES)
+    suffix = place.suffix.lower()
+    tree = _checked_gltf(place, data) if suffix in (".glb", ".gltf") else {}
+    if suffix == ".stl":
+        _check_stl(place, data)
+    options: dict[str, Any] = {"split_objects": True} if suffix == ".obj" else {}
+    try:
+        scene = trimesh.load_scene(
+            io.BytesIO(data),
+            file_type=suffix[1:],
+            resolver=_FolderResolver(place),
+            process=False,
+            **options,
+        )
+        parts = _parts(place, scene, str(tree.get("asset", {}).get("generator", "")))
+    except InputError:
+        raise
+    except Exception as error:  # What a hostile file makes trimesh raise has no common root.
+        said = reason_of(error)
+        reason = f"cannot be read as {KINDS.get(suffix, suffix)} ({said}); export it again"
+        raise DamagedFileError(place, reason) from error
+    mesh, offset = joined(place, parts)
+    notes = () if mesh.coloured else ("it has no colours: export it with its textures beside it",)
+    gltf = bool(tree)
+    return Loaded(
+        mesh,
+        KINDS.get(suffix, suffix[1:].upper()),
+        offset,
+        unit_m=1.0 if gltf else None,
+        usual_up="y" if gltf or suffix == ".obj" else "z",
+        notes=notes,
+    )
+
+
+class _FolderResolver:
+    """Gives trimesh the files that a mesh names, from its own folder and below alone."""
+
+    def __init__(self, place: AnyPath):
+        self.place = place
+
+    def get(self, key: str) -> bytes:
+        """Return a file's bytes.
+
+        It is sought as it is named, and by its last part beside the mesh: exporters leave paths of
+        their own machine before the name. glTF's names are escaped as addresses are, and options
+        stand before those of an MTL file.
+
+        Raises:
+            DamagedFileError: the name leaves the folder, and no such file lies beside the mesh.
+        """
+        name = key.strip().replace("\\", "/")
+        names = [name, unquote(name), *(name.split()[-1:] if name.startswith("-") else [])]
+        split = [[part for part in one.split("/") if part not in ("", ".")] for one in names]
+        inside = [p for p, one in zip(split, names, strict=True) if p and _stays(one, p)]
+        last = [parts[-1:] for parts in split if parts and _stays(parts[-1], parts[-1:])]
+        for parts in (*inside, *last):
+            found = self.place.parent
+            for part in parts:
+                found = found / part
+            if found.is_file():
+                return read_bytes(found, 1 << 30)
+        if not inside:
+            raise DamagedFileError(
+                self.place, f"names a file outside its folder, {key[:80]!r}: put it beside"
+            )
+        raise InputError(self.place, f"names {key[:80]!r}, which is not there: put it beside")
+
+    __getitem__ = get
+
+    def namespaced(self, namespace: str) -> "_FolderResolver":
+        """Return itself: names are checked one by one."""
+        return self
+
+    def keys(self) -> list[str]:
+        """Return the names of the files beside the mesh."""
+        return [entry.name for entry in self.place.parent.iterdir() if entry.is_file()]
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.keys()
+
+
+def _stays(name: str, parts: list[str]) -> bool:
+    """Return whether a file's name cannot leave the folder that it is sought in."""
+    return not name.startswith("/") and ".." not in parts and ":" not in parts[0]
+
+
+def _checked_gltf(place: AnyPath, data: bytes) -> dict[str, Any]:
+    """Return glTF's tree, its counts and extensions checked before anything is unpacked."""
+    text = data
+    if data[:4] == b"glTF":
+        if len(data) < 20 or struct.unpack("<I", data[8:12])[0] > len(data):
+            raise DamagedFileError(place, "is cut short; copy it again")
+        length = struct.unpack("<I", data[12:16])[0]
+        text = data[20 : 20 + length]
+    elif place.suffix.lower() == ".glb":
+        raise DamagedFileError(
+            place, "is no binary glTF (it does not begin with glTF): export it again"
+        )
+    if len(text) > MAX_JSON_BYTES:
+        raise LimitError(
+            place, f"has a tree of {len(text):,} bytes; at most {MAX_JSON_BYTES:,}: join it"
+        )
+    try:
+        tree = json.loads(text)
+        asked = tree.get("extensionsRequired", []) + tree.get("extensionsUsed", [])
+        counts = [int(row["count"]) for row in tree.get("accessors", [])]
+        nodes = len(tree.get("nodes", []))
+    except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
+        raise DamagedFileError(
+            place, "is no glTF: its tree cannot be read; export it again"
+        ) from error
+    for name in UNREAD:
+        if name in asked:
+            raise DamagedFileError(
+                place, f"is packed with {name}, which is not read; export it uncompressed"
+            )
+    most = 3 * max(MAX_FACES, MAX_VERTICES)
+    if any(not 0 <= count <= most for count in counts) or nodes > MAX_NODES:
+        raise LimitError(
+            place, f"says that it has {max([nodes, *counts]):,} values; that is no room"
+        )
+    return tree
+
+
+def _check_stl(place: AnyPath, data: bytes) -> None:
+    if len(data) < 15:
+        raise DamagedFileError(place, "is cut short; copy it again")
+    if data[:5].lower() == b"solid" and b"facet" in data[:2000]:
+        return
+    count = struct.unpack("<I", data[80:84])[0] if len(data) >= 84 else -1
+    if count < 0 or 84 + 50 * count > len(data):
+        raise DamagedFileError(
+            place, f"is no whole STL: {count:,} triangles are due; copy it again"
+        )
+
+
+def _parts(place: AnyPath, scene: Any, generator: str) -> list[Part]:
+    """Return the parts of a trimesh scene, each placed as its nodes say."""
+    nodes = list(scene.graph.nodes_geometry)
+    shapes = [(node, *scene.graph[node]) for node in nodes]
+    sizes = {name: _size(mesh) for name, mesh in scene.geometry.items()}
+    check_sizes(
+        place,
+        sum(sizes[name][0] for _, _, name in shapes),
+        sum(sizes[name][1] for _, _, name in shapes),
+    )
+    parts = []
+    for node, transform, name in shapes:
+        mesh = scene.geometry[name]
+        if not sizes[name][1]:
+            continue
+        moved = np.asarray(mesh.vertices, np.float64) @ transform[:3, :3].T + transform[:3, 3]
+        faces = np.asarray(mesh.faces, np.int64)
+        if np.linalg.det(transform[:3, :3]) < 0:
+            faces = faces[:, ::-1]  # A mirrored part turns its faces around.
+        label = class_of_name(str(node))
+        parts.append(
+            _part(mesh, moved, faces, generator, label if label != 255 else class_of_name(name))
+        )
+    return parts
+
+
+def _size(mesh: Any) -> tuple[int, int]:
+    faces = getattr(mesh, "faces", None)
+    return (0, 0) if faces is None else (len(mesh.vertices), len(faces))
+
+
+def _part(mesh: Any, vertices: np.ndarray, faces: np.ndarray, generator: str, label: int) -> Part:
+    visual = mesh.visual
+    kind = getattr(visual, "kind", None)
+    if kind == "face":
+        colour = np.repeat(np.asarray(visual.face_colors)[:, :3], 3, axis=0).astype(np.uint8)
+        own = np.arange(3 * len(faces)).reshape(-1, 3)
+        return Part(vertices[faces.reshape(-1)], own, colour, label=label)
+    if kind == "vertex":
+        colour = np.asarray(visual.vertex_colors)[:, :3].astype(np.uint8)
+        if "Blender" in generator:  # It stores light, as glTF asks; scanners' exporters do not.
+            colour = srgb_of_linear(colour / 255.0)
+        return Part(vertices, faces, colour, label=label)
+    if kind == "texture":
+        return _textured(visual, vertices, faces, generator, label)
+    return Part(vertices, faces, label=label)
+
+
+def _textured(
+    visual: Any, vertices: np.ndarray, faces: np.ndarray, generator: str, label: int
+) -> Part:
+    material = visual.material
+    picture = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
+    factor = getattr(material, "baseColorFactor", None)
+    linear = factor is not None and "trimesh" not in generator
+    if factor is None:
+        factor = getattr(material, "diffuse", None)
+        if factor is not None and tuple(factor) == NO_COLOUR:
+            factor = None
+            picture = None if picture is not None and picture.size == NO_PICTURE else picture
+    tint = np.array([255, 255, 255], np.uint8)
+    if factor is not None:
+        values = np.asarray(factor, np.float64)[:3]
+        values = values / 255.0 if np.asarray(factor).dtype.kind in "ui" else values
+        tint = (
+            srgb_of_linear(values) if linear else (values.clip(0, 1) * 255 + 0.5).astype(np.uint8)
+        )
+    uv = getattr(visual, "uv", None)
+    if picture is not None and uv is not None and len(uv) == len(vertices):
+        flipped = np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
+        shade = (int(tint[0]), int(tint[1]), int(tint[2]))
+        # OBJ files state a grey that viewers do not multiply on pictures.
+        shade = shade if hasattr(material, "baseColorFactor") else (255, 255, 255)
+        return Part(vertices, faces, None, picture, flipped, shade, label)
+    if factor is None:
+        return Part(vertices, faces, label=label)
+    return Part(vertices, faces, np.repeat(tint[None], len(vertices), axis=0), label=label)

@@ -1,0 +1,171 @@
+"""Which way is up in a solid, and what its unit is.
+
+Up: rooms are built of three directions at right angles; one of them is up. It is the one that
+more surface faces (floor, ceiling, tables) and along which the room is least long, and things
+stand on its lower end: between the outermost faces there is more below than above. The axis that
+the file's format is used to breaks what that leaves open.
+
+Unit: the one in which the room's height is that of rooms.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.capture.options import SOLID_UNITS_M
+from world2minecraft.capture.readers.meshes.samples import Samples
+
+AXES = {
+    "x": (1.0, 0.0, 0.0),
+    "y": (0.0, 1.0, 0.0),
+    "z": (0.0, 0.0, 1.0),
+    "-x": (-1.0, 0.0, 0.0),
+    "-y": (0.0, -1.0, 0.0),
+    "-z": (0.0, 0.0, -1.0),
+}
+ALIGNED = 0.985  # Cosine of 10 degrees: the file's own axis is meant.
+FACING = 0.94  # Cosine of 20 degrees.
+DIRECTIONS = 1500
+VOTERS = 4000
+OUTER = 0.08  # Of a length: the shell's share at each end.
+# What each sign is worth, in the natural logarithm of odds. Guesses, then held to the rooms of
+# the tests, turned to all six axes.
+USUAL, UPRIGHT_AXIS, DOWNWARD, SIDEWAYS = 2.2, 0.7, 0.2, -2.0
+FACED, SHORT, BELOW = 3.0, 1.5, 4.0
+HEIGHT_M, HEIGHT_SPREAD = 2.6, 0.35  # The middle and the spread of rooms' heights (logarithm).
+RARITY = {"m": 0.0, "cm": 1.0, "mm": 1.0, "foot": 3.0, "inch": 3.0}
+SIDES_M, HEIGHTS_M = (1.2, 40.0), (1.5, 12.0)
+STATED_MARGIN = 3.0  # A format's unit is doubted only where another fits so much better.
+
+
+@dataclass(frozen=True, eq=False)
+class Stance:
+    """``turn`` float64 [3, 3] carries the file's axes to z up; ``told`` names up in words."""
+
+    turn: np.ndarray
+    told: str
+
+
+def stance_of(samples: Samples, usual_up: str, stated: bool, chosen: str | None) -> Stance:
+    """Return how a solid stands.
+
+    Args:
+        samples: of the solid, in its file's axes.
+        usual_up: the axis that the format takes for up.
+        stated: whether the file itself says so.
+        chosen: the axis that the user says, or None.
+    """
+    if chosen is not None:
+        return Stance(turn_of(np.array(AXES[chosen])), f"up is {chosen}, as told")
+    if stated:
+        return Stance(turn_of(np.array(AXES[usual_up])), f"up is {usual_up}, as the file says")
+    frame = _frame(samples.normals)
+    ups = [sign * axis for axis in frame for sign in (1.0, -1.0)]
+    scores = [_score(samples, up, usual_up) for up in ups]
+    best = ups[int(np.argmax(scores))]
+    name = max(AXES, key=lambda axis: float(best @ AXES[axis]))
+    if best @ AXES[name] > ALIGNED:
+        return Stance(turn_of(np.array(AXES[name])), f"up is taken to be {name} (guessed)")
+    tilt = np.degrees(np.arccos(np.clip(best @ AXES[name], -1, 1)))
+    return Stance(turn_of(best), f"up is taken to be {tilt:.0f} degrees off {name} (guessed)")
+
+
+def turn_of(up: np.ndarray) -> np.ndarray:
+    """Return the rotation [3, 3] that carries ``up`` to +z along the shortest way.
+
+    Example:
+        >>> (turn_of(np.array([0.0, 1.0, 0.0])) @ [0, 0, 1]).tolist()
+        [0.0, -1.0, 0.0]
+    """
+    x, y, z = up
+    if z < -1 + 1e-9:
+        return np.diag([1.0, -1.0, -1.0])
+    return np.array(
+        [
+            [1 - x * x / (1 + z), -x * y / (1 + z), -x],
+            [-x * y / (1 + z), 1 - y * y / (1 + z), -y],
+            [x, y, z],
+        ]
+    )
+
+
+def _frame(normals: np.ndarray) -> np.ndarray:
+    """Return three directions at right angles that most surface faces, float64 [3, 3] rows."""
+    known = normals[np.abs(normals).sum(axis=1) > 0]
+    known = known[:: max(1, len(known) // VOTERS)]
+    if len(known) < 20:
+        return np.eye(3)
+    index = np.arange(DIRECTIONS) + 0.5
+    height = index / DIRECTIONS
+    angle, flat = index * np.pi * (1 + 5**0.5), np.sqrt(1 - height * height)
+    ways = np.stack([flat * np.cos(angle), flat * np.sin(angle), height], axis=1)
+    ways = np.concatenate([np.eye(3), ways])
+    votes = (np.abs(ways @ known.T) > np.cos(np.radians(6))).sum(axis=1)
+    first = _middle(known, ways[int(np.argmax(votes))])
+    across = np.abs(ways @ first) < np.sin(np.radians(5))
+    second = _middle(known, ways[int(np.argmax(np.where(across, votes, -1)))])
+    second -= first * (first @ second)
+    second /= np.linalg.norm(second)
+    return np.stack([first, second, np.cross(first, second)])
+
+
+def _middle(normals: np.ndarray, way: np.ndarray) -> np.ndarray:
+    """Move a direction to the middle of the normals around it."""
+    for within_deg in (8.0, 5.0, 4.0):
+        near = normals[np.abs(normals @ way) > np.cos(np.radians(within_deg))]
+        if len(near) < 5:
+            return way
+        _, vectors = np.linalg.eigh(near.T @ near)
+        way = vectors[:, -1] * (1.0 if vectors[:, -1] @ way > 0 else -1.0)
+    return way
+
+
+def _score(samples: Samples, up: np.ndarray, usual_up: str) -> float:
+    """Return how likely a direction is up."""
+    score = 0.0
+    if up @ AXES[usual_up] > FACING:
+        score += USUAL
+    elif max(up[1], up[2]) > FACING:
+        score += UPRIGHT_AXIS
+    elif min(up[1], up[2]) < -FACING:
+        score += DOWNWARD
+    elif abs(up[0]) > FACING:
+        score += SIDEWAYS
+    turned = samples.points @ turn_of(up).T
+    low, high = np.quantile(turned, [0.005, 0.995], axis=0)
+    length = np.maximum(high - low, 1e-9)
+    score -= SHORT * float(np.log(length[2] / length.min()))
+    facing = np.abs(samples.normals @ up) > FACING
+    score += FACED * float(facing.mean())
+    place = (turned - low) / length
+    within = ((place > OUTER) & (place < 1 - OUTER)).all(axis=1)
+    if within.sum() > 50:
+        score += BELOW * float((place[within, 2] < 0.5).mean() - 0.5) * 2
+    return score
+
+
+def unit_of(size: np.ndarray, stated_m: float | None, chosen: str | None) -> tuple[float, str]:
+    """Return metres per unit and the sentence that tells it.
+
+    Args:
+        size: float64 [3] of the upright box around the solid, in its own units.
+        stated_m: what the format or the file states.
+        chosen: the unit that the user says, or None.
+    """
+    if chosen is not None:
+        return SOLID_UNITS_M[chosen], f"one unit is 1 {chosen}, as told"
+    scores = {name: _plausible(size * SOLID_UNITS_M[name]) - RARITY[name] for name in RARITY}
+    best = max(scores, key=lambda name: scores[name])
+    if stated_m is not None and _plausible(size * stated_m) > scores[best] - STATED_MARGIN:
+        name = next((n for n in RARITY if SOLID_UNITS_M[n] == stated_m), f"{stated_m:g} m")
+        return stated_m, f"one unit is 1 {name}, as its format says"
+    return SOLID_UNITS_M[best], f"one unit is taken to be 1 {best} (guessed from the size)"
+
+
+def _plausible(size_m: np.ndarray) -> float:
+    """Return the logarithm of how likely a room has this size."""
+    off = (np.log(max(float(size_m[2]), 1e-9)) - np.log(HEIGHT_M)) / HEIGHT_SPREAD
+    score = -off * off / 2
+    for length, (least, most) in zip(size_m, (SIDES_M, SIDES_M, HEIGHTS_M), strict=True):
+        score -= 10.0 * (not least <= length <= most)
+    return score

@@ -1,0 +1,197 @@
+"""USD and USDZ, as iPhone apps write them, read by Pixar's library (the extra ``usd``)."""
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image, UnidentifiedImageError
+
+from world2minecraft.capture.readers.meshes.lists import fans
+from world2minecraft.capture.readers.meshes.mesh_assembly import Part, check_sizes, joined
+from world2minecraft.capture.readers.meshes.naming import class_of_name
+from world2minecraft.capture.readers.meshes.optional_libraries import library
+from world2minecraft.capture.readers.meshes.surface_model import Loaded
+from world2minecraft.capture.readers.meshes.survey_clouds import on_disk
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError, LimitError
+from world2minecraft.geometry.colour import srgb_of_linear
+
+MAX_BYTES = 2 << 30
+MAX_PRIMS = 200_000
+MAX_PICTURE_BYTES = 256 << 20
+
+
+def load_usd(place: AnyPath) -> Loaded:
+    """Read all meshes of a stage.
+
+    Raises:
+        DamagedFileError: it cannot be read, or refers to files elsewhere. LimitError: it is too
+            large. MissingExtraError: the library is absent.
+    """
+    library("pxr", "reading USD files", "usd")
+    tf, usd, geom = _pxr("Tf"), _pxr("Usd"), _pxr("UsdGeom")
+    if place.stat().st_size > MAX_BYTES:
+        raise LimitError(
+            place, f"has {place.stat().st_size:,} bytes; at most {MAX_BYTES:,}: make it smaller"
+        )
+    with on_disk(place) as path:
+        try:
+            stage = usd.Stage.Open(str(path))
+        except tf.ErrorException as error:
+            raise DamagedFileError(place, "cannot be read as USD; export it again") from error
+        if stage is None:
+            raise DamagedFileError(place, "cannot be read as USD; export it again")
+        folder = str(path.resolve().parent)
+        for layer in stage.GetUsedLayers():
+            if layer.realPath and not Path(layer.realPath).is_relative_to(folder):
+                raise DamagedFileError(
+                    place, f"refers to a file elsewhere: {layer.identifier[:80]}; export it as USDZ"
+                )
+        try:
+            parts = _parts(place, stage, folder)
+            mesh, offset = joined(place, parts)
+            unit_m = float(geom.GetStageMetersPerUnit(stage))
+            stated = bool(geom.StageHasAuthoredMetersPerUnit(stage))
+            up = str(geom.GetStageUpAxis(stage)).lower()
+            up_stated = bool(stage.HasAuthoredMetadata("upAxis"))
+        except (tf.ErrorException, RuntimeError) as error:
+            raise DamagedFileError(place, "cannot be read as USD; export it again") from error
+    # What states no unit is in centimetres by USD's rule, yet often in metres: it is told by size.
+    return Loaded(mesh, "USD", offset, unit_m if stated else None, up, up_stated)
+
+
+def _pxr(name: str) -> Any:
+    return library(f"pxr.{name}", "reading USD files", "usd")
+
+
+def _parts(place: AnyPath, stage: Any, folder: str) -> list[Part]:
+    places = _pxr("UsdGeom").XformCache()
+    pictures: dict[str, Image.Image | None] = {}
+    parts, vertices, faces = [], 0, 0
+    predicate = _pxr("Usd").TraverseInstanceProxies(_pxr("Usd").PrimDefaultPredicate)
+    for number, prim in enumerate(_pxr("Usd").PrimRange(stage.GetPseudoRoot(), predicate)):
+        if number > MAX_PRIMS:
+            raise LimitError(place, f"has over {MAX_PRIMS:,} prims; that is no room")
+        if not prim.IsA(_pxr("UsdGeom").Mesh):
+            continue
+        part = _part(place, prim, np.array(places.GetLocalToWorldTransform(prim)), pictures, folder)
+        if part is not None:
+            vertices, faces = vertices + len(part.vertices), faces + len(part.faces)
+            check_sizes(place, vertices, faces)
+            parts.append(part)
+    return parts
+
+
+def _part(
+    place: AnyPath,
+    prim: Any,
+    transform: np.ndarray,
+    pictures: dict[str, Image.Image | None],
+    folder: str,
+) -> Part | None:
+    shape = _pxr("UsdGeom").Mesh(prim)
+    points = np.array(shape.GetPointsAttr().Get() or [], np.float64).reshape(-1, 3)
+    counts = np.array(shape.GetFaceVertexCountsAttr().Get() or [], np.int64)
+    corners = np.array(shape.GetFaceVertexIndicesAttr().Get() or [], np.int64)
+    if not len(points) or not len(counts):
+        return None
+    if counts.min() < 0 or counts.sum() != len(corners) or corners.max() >= len(points):
+        raise DamagedFileError(
+            place, f"has a mesh whose faces are wrong: {prim.GetPath()}; export it again"
+        )
+    if corners.min() < 0:
+        raise DamagedFileError(
+            place, f"has a mesh whose faces are wrong: {prim.GetPath()}; export it again"
+        )
+    moved = points @ transform[:3, :3] + transform[3, :3]  # USD's vectors are rows.
+    # Every corner becomes a vertex of its own: colours and uv may differ from face to face.
+    order, owner = fans(counts, np.arange(len(corners)))
+    if shape.GetOrientationAttr().Get() == "leftHanded":
+        order = order[:, ::-1]
+    own = order.reshape(-1)
+    picture, plain = _material(prim, pictures, folder)
+    uv = _spread(_pxr("UsdGeom").PrimvarsAPI(prim), ("st", "UVMap", "st0"), corners, owner, own, 2)
+    colour = _spread(_pxr("UsdGeom").PrimvarsAPI(prim), ("displayColor",), corners, owner, own, 3)
+    if colour is not None:
+        colour = srgb_of_linear(colour)
+    elif plain is not None:
+        colour = np.repeat(srgb_of_linear(plain)[None], len(own), axis=0)
+    if uv is not None:
+        uv = np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
+    label = next(
+        (
+            found
+            for name in reversed(str(prim.GetPath()).split("/"))
+            if (found := class_of_name(name)) != 255
+        ),
+        255,
+    )
+    faces = np.arange(len(own)).reshape(-1, 3)
+    return Part(
+        moved[corners[own]], faces, colour, picture if uv is not None else None, uv, label=label
+    )
+
+
+def _spread(
+    primvars: Any,
+    names: tuple[str, ...],
+    corners: np.ndarray,
+    owner: np.ndarray,
+    own: np.ndarray,
+    width: int,
+) -> np.ndarray | None:
+    """Return a primvar's value at each corner of each triangle, float64 [3 T, width], or None."""
+    for name in names:
+        found = primvars.FindPrimvarWithInheritance(name)
+        if not found or not found.HasValue():
+            continue
+        values = np.array(found.ComputeFlattened(), np.float64).reshape(-1, width)
+        kind = found.GetInterpolation()
+        index = {
+            "constant": np.zeros(len(own), np.int64),
+            "uniform": np.repeat(owner, 3),
+            "vertex": corners[own],
+            "varying": corners[own],
+            "faceVarying": own,
+        }.get(kind)
+        if index is not None and len(values) and index.max() < len(values):
+            return values[index]
+    return None
+
+
+def _material(
+    prim: Any, pictures: dict[str, Image.Image | None], folder: str
+) -> tuple[Image.Image | None, np.ndarray | None]:
+    """Return the picture and the plain colour (linear float64 [3]) of a prim's material."""
+    material = _pxr("UsdShade").MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
+    surface = material.ComputeSurfaceSource()[0] if material else None
+    slot = surface.GetInput("diffuseColor") if surface else None
+    if not slot:
+        return None, None
+    source = slot.GetConnectedSource()
+    if not source:
+        value = slot.Get()
+        return None, None if value is None else np.array(value, np.float64)
+    shader = _pxr("UsdShade").Shader(source[0].GetPrim())
+    file = shader.GetInput("file") if shader else None
+    asset = file.Get() if file else None
+    if asset is None:
+        return None, None
+    where = asset.resolvedPath or asset.path
+    if where not in pictures:
+        pictures[where] = _opened(where, folder)
+    return pictures[where], None
+
+
+def _opened(where: str, folder: str) -> Image.Image | None:
+    """Return the picture of a stage's asset; None where it is absent, elsewhere or no picture."""
+    if not Path(where).is_relative_to(folder):
+        return None
+    asset = _pxr("Ar").GetResolver().OpenAsset(_pxr("Ar").ResolvedPath(where))
+    if asset is None or asset.GetSize() > MAX_PICTURE_BYTES:
+        return None
+    try:
+        return Image.open(io.BytesIO(bytes(asset.GetBuffer())))
+    except (UnidentifiedImageError, OSError):
+        return None

@@ -1,0 +1,123 @@
+"""A phone's photo, turned upright as its EXIF says, and what EXIF tells of lens and time.
+
+Only photos without poses are turned so: the intrinsics of posed captures speak of the pixels as
+they are stored.
+"""
+
+import math
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Any
+
+import numpy as np
+from PIL import Image, ImageOps
+
+from world2minecraft.capture.image_names import NamedByFile
+from world2minecraft.capture.images import ImageHeader, check_whole, opened_image
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import Camera
+
+DIAGONAL_MM = math.hypot(36.0, 24.0)  # Of the film that 35 mm equivalents speak of.
+ORIENTATION, MAKE, EXIF_IFD = 0x0112, 0x010F, 0x8769
+FOCAL_MM, FOCAL_35MM, TAKEN = 0x920A, 0xA405, 0x9003
+PLANE_RESOLUTION, PLANE_UNIT, PIXELS_ACROSS = 0xA20E, 0xA210, 0xA002
+UNIT_MM = {2: 25.4, 3: 10.0, 4: 1.0}
+SHARE_OF_DIAGONAL = (0.2, 15.0)  # From a fisheye to a long telephoto; else the tag is wrong.
+
+
+@dataclass(frozen=True)
+class PhotoFacts:
+    """What a photo says of itself: its upright size, its lens, when it was taken, by a camera."""
+
+    width_px: int
+    height_px: int
+    focal_px: float | None
+    time_s: float | None
+    by_camera: bool
+
+    @property
+    def camera(self) -> Camera | None:
+        """A first guess of the lens, None where nothing is said."""
+        if self.focal_px is None:
+            return None
+        middle = (self.width_px / 2, self.height_px / 2)
+        return Camera(self.width_px, self.height_px, self.focal_px, self.focal_px, *middle)
+
+
+@dataclass(frozen=True)
+class UprightPhoto(NamedByFile):
+    """An ``ImageSource``: a photo file, upright."""
+
+    path: AnyPath
+
+    def header(self) -> ImageHeader:
+        """Return the size after turning."""
+        with opened_image(self.path) as image:
+            return ImageHeader(*_upright_size(image), image.mode)
+
+    def check_whole(self) -> None:
+        """Check that the file is not cut short."""
+        check_whole(self.path)
+
+    def colour(self) -> np.ndarray:
+        """Return uint8 [H, W, 3] sRGB."""
+        with opened_image(self.path) as image:
+            return np.array(ImageOps.exif_transpose(image).convert("RGB"), np.uint8)
+
+    def raw(self) -> np.ndarray:
+        """Raise: a photo holds colours."""
+        raise DamagedFileError(self, "holds colours, not single values")
+
+
+def photo_facts(path: AnyPath) -> PhotoFacts:
+    """Read what a photo says of itself. Raises what ``read_header`` raises."""
+    with opened_image(path) as image:
+        width, height = _upright_size(image)
+        general, own = _tags(image)
+        focal = _focal_px(own, image.size)
+    return PhotoFacts(width, height, focal, _time_s(own), MAKE in general or FOCAL_MM in own)
+
+
+def _tags(image: Image.Image) -> tuple[dict[int, Any], dict[int, Any]]:
+    """Return the general and the camera's EXIF tags; damaged ones are none."""
+    try:
+        exif = image.getexif()
+        return dict(exif), dict(exif.get_ifd(EXIF_IFD))
+    except Exception:  # Pillow's EXIF reader raises whatever a damaged tag leads it to.
+        return {}, {}
+
+
+def _upright_size(image: Image.Image) -> tuple[int, int]:
+    turned = _tags(image)[0].get(ORIENTATION) in (5, 6, 7, 8)
+    return (image.height, image.width) if turned else image.size
+
+
+def _focal_px(tags: dict[int, Any], size: tuple[int, int]) -> float | None:
+    """Return the focal length in pixels by the diagonal rule, else by the pixels' pitch."""
+    diagonal_px = math.hypot(*size)
+    film = _number(tags.get(FOCAL_35MM))
+    focal = film / DIAGONAL_MM * diagonal_px
+    if focal <= 0:
+        unit_mm = UNIT_MM.get(int(_number(tags.get(PLANE_UNIT, 2))), 0.0)
+        per_mm = _number(tags.get(PLANE_RESOLUTION)) / unit_mm if unit_mm else 0.0
+        across = _number(tags.get(PIXELS_ACROSS)) or max(size)
+        focal = _number(tags.get(FOCAL_MM)) * per_mm * max(size) / across
+    low, high = (share * diagonal_px for share in SHARE_OF_DIAGONAL)
+    return focal if low < focal < high else None
+
+
+def _number(value: Any) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError, ZeroDivisionError, OverflowError):
+        return 0.0
+    return number if math.isfinite(number) and 0 < number < 1e9 else 0.0
+
+
+def _time_s(tags: dict[int, Any]) -> float | None:
+    try:
+        taken = datetime.strptime(str(tags.get(TAKEN)).strip("\0 "), "%Y:%m:%d %H:%M:%S")
+    except ValueError:
+        return None
+    return taken.replace(tzinfo=UTC).timestamp()

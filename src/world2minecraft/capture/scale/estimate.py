@@ -1,0 +1,158 @@
+"""The factor from a scan's unit to metres, how sure it is, and where it was taken from."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.capture.alignment.align import LEAST_POINTS, ImplausibleRoomError
+from world2minecraft.capture.scale import priors
+from world2minecraft.capture.scale.known_lengths import LEVELS, Known, candidates
+from world2minecraft.capture.scale.measures import Level, Measures, measure
+from world2minecraft.capture.scale.posterior import log_density, posterior_of, summed
+from world2minecraft.geometry.oriented_points import Surface
+
+WRONG_SHARE = 0.02  # Of the knowns: a slip of the tape, or another table was meant.
+DISAGREE = 0.05  # Two known lengths that differ by more are told.
+PRIOR_WEIGHT = 0.5  # A known length outweighs habits, but these say which table was meant.
+NAMED_LEVELS = 2  # More would make the sentence long.
+
+
+@dataclass(frozen=True)
+class ScaleEstimate:
+    """``scale`` multiplies the scan's lengths to give metres; ``sigma`` is relative.
+
+    ``told`` are sentences for the report, ``sources`` the names of what it was taken from.
+    """
+
+    scale: float
+    sigma: float
+    told: tuple[str, ...]
+    sources: tuple[str, ...]
+
+    def __post_init__(self):
+        if not (0 < self.scale < np.inf and 0 < self.sigma < np.inf):
+            raise ValueError(f"scale and sigma must be above 0, not {self.scale}, {self.sigma}")
+
+
+def estimate_scale(surface: Surface, knowns: Sequence[Known] = ()) -> ScaleEstimate:
+    """Return the scale of a scan whose unit is unknown.
+
+    Args:
+        surface: oriented points and cameras in the scan's unit and frame, any tilt; see
+            ``collect_unscaled``.
+        knowns: lengths that the user knows. Without them the scale rests on habits: how high
+            people hold cameras, and how high ceilings, tables, worktops, seats and beds are.
+
+    Raises:
+        ImplausibleRoomError: too little surface was seen.
+        UsageError: nothing was seen of what a known length speaks of.
+    """
+    if len(surface.points_m) < LEAST_POINTS:
+        raise ImplausibleRoomError(
+            f"only {len(surface.points_m)} places of the depth are smooth surface; at least "
+            f"{LEAST_POINTS} are needed to find the scale: take more photos of floor and walls"
+        )
+    measures = measure(surface)
+    return _by_knowns(measures, knowns) if knowns else _by_habits(measures)
+
+
+def _by_habits(measures: Measures) -> ScaleEstimate:
+    found = summed(posterior_of(measures))
+    sources = [("the cameras' height", measures.camera * found.scale)]
+    if measures.ceiling is not None:
+        sources.append(("the ceiling", measures.ceiling * found.scale))
+    sources += _named_levels(measures, found.scale)
+    told = [
+        f"scale estimated from {_listed(sources)}: {found.scale:.3g} +- {100 * found.sigma:.0f} %"
+    ]
+    if found.rival is not None:
+        told.append(
+            f"the scale may as well be {found.rival[0]:.3g} ({100 * found.rival[1]:.0f} %): "
+            "one known length, such as a table's height, would tell"
+        )
+    if not measures.floor_seen:
+        told.append("no floor was seen, so heights count from the lowest points")
+    return ScaleEstimate(found.scale, found.sigma, tuple(told), tuple(name for name, _ in sources))
+
+
+def _named_levels(measures: Measures, scale: float) -> list[tuple[str, float]]:
+    """Return the largest level faces that are of a usual height, by name."""
+    named: list[tuple[str, float]] = []
+    for level in sorted(measures.levels, key=lambda level: -level.area):
+        kind = priors.likeliest_level(level.height * scale)
+        name = None if kind is None else f"a {kind.name}"
+        if name is not None and name not in dict(named):
+            named.append((name, level.height * scale))
+    return named[:NAMED_LEVELS]
+
+
+def _listed(sources: list[tuple[str, float]]) -> str:
+    words = [f"{name} ({length_m:.2f} m)" for name, length_m in sources]
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _by_knowns(measures: Measures, knowns: Sequence[Known]) -> ScaleEstimate:
+    """Return the scale at which the known lengths and the room fit best."""
+    choices = [
+        [(known.length_m / length, weight) for length, weight in candidates(known, measures)]
+        for known in knowns
+    ]
+    tried = np.array([scale for each in choices for scale, _ in each])
+    fit = PRIOR_WEIGHT * log_density(measures, tried)
+    for known, each in zip(knowns, choices, strict=True):
+        fit = fit + _fit(known, each, tried)
+    best = float(tried[int(np.argmax(fit))])
+    nearest = [min((abs(np.log(s / best)), s) for s, _ in each)[1] for each in choices]
+    agreeing = [n for n, s in enumerate(nearest) if abs(np.log(s / best)) < DISAGREE]
+    trust = np.array([knowns[n].sigma ** -2.0 for n in agreeing])
+    logs = np.log([nearest[n] for n in agreeing])
+    scale = float(np.exp((trust * logs).sum() / trust.sum()))
+    sigma = max(float(trust.sum() ** -0.5), float(np.std(logs)))
+    told = [
+        f"scale taken from {_meant(known, known.length_m / near, measures, scale)}: "
+        f"{scale:.3g} +- {100 * sigma:.1f} %"
+        if n in agreeing
+        else f"{known.name} ({known.length_m:g} m) contradicts the other lengths by "
+        f"{100 * abs(near / scale - 1):.0f} % and was left out"
+        for n, (known, near) in enumerate(zip(knowns, nearest, strict=True))
+    ]
+    told += _doubts(measures, knowns, tried, fit, best)
+    return ScaleEstimate(scale, sigma, tuple(told), tuple(knowns[n].name for n in agreeing))
+
+
+def _fit(known: Known, choices: list[tuple[float, float]], tried: np.ndarray) -> np.ndarray:
+    """Return how well each tried scale explains a known length, as a log-likelihood."""
+    total = sum(weight for _, weight in choices)
+    parts = [
+        np.log(weight / total) - 0.5 * (np.log(tried / scale) / known.sigma) ** 2
+        for scale, weight in choices
+    ]
+    return np.logaddexp(np.logaddexp.reduce(parts, axis=0), np.log(WRONG_SHARE))
+
+
+def _meant(known: Known, length: float, measures: Measures, scale: float) -> str:
+    """Return a known length and the thing it was found to be, in words."""
+    words = f"the {known.name} given ({known.length_m:g} m)"
+    if known.name not in LEVELS:
+        return words
+    level: Level = min(measures.levels, key=lambda at: abs(at.height - length))
+    return f"{words}, a level face of {level.area * scale**2:.1f} m2"
+
+
+def _doubts(
+    measures: Measures, knowns: Sequence[Known], tried: np.ndarray, fit: np.ndarray, best: float
+) -> list[str]:
+    """Return what speaks for another reading of the known lengths, or against the whole."""
+    said = []
+    others = np.abs(np.log(tried / best)) > DISAGREE
+    if others.any() and fit[others].max() > fit.max() - 1.5:
+        other = float(tried[others][int(np.argmax(fit[others]))])
+        said.append(
+            f"with another face taken for the {knowns[0].name} the scale would be {other:.3g}: "
+            "one more known length would tell"
+        )
+    camera_m = best * measures.camera
+    if measures.floor_seen and not 0.8 <= camera_m <= 2.2:
+        said.append(f"by that, the cameras were held {camera_m:.2f} m over the floor")
+    return said

@@ -1,0 +1,144 @@
+"""Which photos share a lens, and lenses as pycolmap has them and as the program has them."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.capture.sfm.features import Features
+from world2minecraft.core.types import Camera
+
+GUESS = 0.8  # Focal length by the longer side: phones 0.7 to 0.9, webcams and Kinects 0.8 to 0.9.
+SAME = 0.02  # Focal lengths nearer than that are one lens that breathes with its focus.
+SHORTEST, LONGEST = 0.3, 2.0  # Focal lengths by the longer side that rooms are taken with.
+MOST_BENT = 0.6  # Terms of distortion; wide phones have 0.3.
+
+
+@dataclass(frozen=True)
+class Lens:
+    """A lens that several photos share: its camera, the photos' numbers, and how it is known.
+
+    ``known`` is "stated", "guessed" (EXIF), "unknown" (a usual lens is where the search begins) or
+    "assumed" (it stays as it is, for the photos cannot tell it).
+    """
+
+    camera: Camera
+    photos: tuple[int, ...]
+    known: str
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether nothing may move it."""
+        return self.known == "assumed"
+
+
+def each_camera(lenses: list[Lens]) -> dict[int, Camera]:
+    """Return the camera of each photo's lens."""
+    return {i: lens.camera for lens in lenses for i in lens.photos}
+
+
+def usual_camera(width_px: int, height_px: int, focal: float = GUESS) -> Camera:
+    """Return a camera without distortion whose focal length is usual for the longer side."""
+    focal_px = focal * max(width_px, height_px)
+    return Camera(width_px, height_px, focal_px, focal_px, width_px / 2, height_px / 2)
+
+
+def shared_lenses(photos: list[Features]) -> list[Lens]:
+    """Return the lenses of the photos: those of one size whose stated focal lengths are near.
+
+    Each lens takes the middle camera of its photos.
+    """
+    groups: list[list[int]] = []
+    for i, photo in enumerate(photos):
+        for group in groups:
+            if _same(photos[group[0]], photo):
+                group.append(i)
+                break
+        else:
+            groups.append([i])
+    return [_lens(photos, group) for group in groups]
+
+
+def _same(one: Features, other: Features) -> bool:
+    if one.size != other.size:
+        return False
+    if one.camera is None or other.camera is None:
+        return one.camera is other.camera
+    return abs(one.camera.fx_px / other.camera.fx_px - 1) < SAME
+
+
+def _lens(photos: list[Features], group: list[int]) -> Lens:
+    cameras = [camera for i in group if (camera := photos[i].camera) is not None]
+    if not cameras:
+        return Lens(usual_camera(*photos[group[0]].size), tuple(group), "unknown")
+    middle = sorted(cameras, key=lambda camera: camera.fx_px)[len(cameras) // 2]
+    guessed = any(photos[i].camera_guessed for i in group)
+    return Lens(middle, tuple(group), "guessed" if guessed else "stated")
+
+
+def to_colmap(pycolmap: Any, camera: Camera, number: int, simple: bool) -> Any:
+    """Return a pycolmap camera; ``simple`` has one focal length and one distortion term.
+
+    What a simple camera cannot hold is left out, so it suits lenses that are still to be found.
+    """
+    k1, k2, p1, p2, k3 = camera.distortion
+    focal = (camera.fx_px * camera.fy_px) ** 0.5
+    middle = [camera.cx_px, camera.cy_px]
+    if simple:
+        model, params = "SIMPLE_RADIAL", [focal, *middle, k1]
+    elif k3 == 0 and p1 == 0 and p2 == 0 and abs(camera.fx_px / camera.fy_px - 1) < 1e-3:
+        model, params = "RADIAL", [focal, *middle, k1, k2]
+    else:
+        both = [camera.fx_px, camera.fy_px, *middle, k1, k2, p1, p2]
+        model, params = ("OPENCV", both) if k3 == 0 else ("FULL_OPENCV", [*both, k3, 0, 0, 0])
+    made = pycolmap.Camera.create_from_model_name(
+        number, model, focal, camera.width_px, camera.height_px
+    )
+    made.params = params
+    made.has_prior_focal_length = True  # Verification then takes the lens for right within 4 px.
+    return made
+
+
+def from_colmap(made: Any) -> Camera:
+    """Return a camera of ours from pycolmap's, rounded to 1e-9."""
+    params = np.round(np.asarray(made.params, np.float64), 9).tolist()
+    if made.model_name in ("SIMPLE_RADIAL", "RADIAL"):
+        focal, cx, cy, *radial = params
+        both, terms = (focal, focal), (*radial, 0.0)[:2]
+        distortion = (*terms, 0.0, 0.0, 0.0)
+    else:
+        *both, cx, cy = params[:4]
+        k1, k2, p1, p2, *more = params[4:]
+        distortion = (k1, k2, p1, p2, more[0] if more else 0.0)
+    fx, fy = both
+    return Camera(made.width, made.height, fx, fy, cx, cy, distortion)
+
+
+def normalised(camera: Camera, pixels: np.ndarray) -> np.ndarray:
+    """Return where rays cross the plane z = 1, float64 [K, 2], for pixels [K, 2] of a lens."""
+    k1, k2, p1, p2, k3 = camera.distortion
+    bent = (pixels - [camera.cx_px, camera.cy_px]) / [camera.fx_px, camera.fy_px]
+    straight = bent.copy()
+    for _ in range(20):  # A fixed point; phones' lenses need four rounds to 1e-9.
+        x, y = straight.T
+        r2 = x * x + y * y
+        radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+        aside = np.stack(
+            [
+                2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+                p1 * (r2 + 2 * y * y) + 2 * p2 * x * y,
+            ],
+            axis=1,
+        )
+        straight = (bent - aside) / np.maximum(radial, 0.1)[:, None]
+    return straight
+
+
+def is_sane(camera: Camera) -> bool:
+    """Return whether a lens that was found is one that rooms are taken with.
+
+    Photos of one flat surface, or of few details, let it run away.
+    """
+    longer = max(camera.width_px, camera.height_px)
+    in_range = SHORTEST * longer < camera.fx_px < LONGEST * longer
+    return in_range and max(abs(term) for term in camera.distortion) < MOST_BENT

@@ -1,0 +1,120 @@
+"""What photos are known by: SIFT features, their colours, and how sharp each photo is."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.capture.sfm.colmap import PLACE, colmap
+from world2minecraft.capture.sfm.parameters import PosingParameters
+from world2minecraft.capture.sfm.progress import Steps
+from world2minecraft.core.errors import CaptureError, LimitError
+from world2minecraft.core.types import Camera
+from world2minecraft.core.types.photos import Photo, PhotoStream
+
+MOST_PHOTOS = 3000  # 1.5 GB of features at most would be too much; 3000 photos have 1.
+PEAK = 0.0067  # COLMAP's own threshold, for images of 0 to 1.
+
+
+@dataclass(frozen=True, eq=False)
+class Features:
+    """A photo without its pixels.
+
+    ``pixels`` float64 [K, 2] (centres at +0.5), ``descriptors`` uint8 [K, 128] of length 512 and
+    ``colours`` uint8 [K, 3], the largest features first. ``sharpness`` is 1 for crisp pictures.
+    """
+
+    name: str
+    width_px: int
+    height_px: int
+    camera: Camera | None
+    camera_guessed: bool
+    camera_to_scan: np.ndarray | None
+    pixels: np.ndarray
+    descriptors: np.ndarray
+    colours: np.ndarray
+    sharpness: float
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        return self.width_px, self.height_px
+
+
+def unit_px(photos: list[Features]) -> float:
+    """Return what a pixel of a picture of 640 is in these, 0.5 to 3: limits in pixels grow so."""
+    longer = float(np.median([max(photo.size) for photo in photos])) if photos else 640.0
+    return min(max(longer / 640, 0.5), 3.0)
+
+
+def gather(photos: PhotoStream, parameters: PosingParameters, steps: Steps) -> list[Features]:
+    """Return the features of all photos, in their order.
+
+    Raises:
+        CaptureError: two photos share a name.
+        LimitError: there are too many.
+    """
+    if len(photos) > MOST_PHOTOS:
+        raise LimitError(
+            PLACE, f"are {len(photos)}, over {MOST_PHOTOS}; take fewer: --set capture.every=10"
+        )
+    gathered: list[Features] = []
+    with colmap() as pycolmap:
+        extractor = _extractor(pycolmap, parameters)
+        for photo in photos:
+            gathered.append(_features(photo, extractor, pycolmap, parameters))
+            steps.done("features")
+    names = [photo.name for photo in gathered]
+    if len(set(names)) != len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise CaptureError(PLACE, f"two are named {twice!r}; give each a name of its own")
+    return gathered
+
+
+def _extractor(pycolmap: Any, parameters: PosingParameters) -> Any:
+    options = pycolmap.FeatureExtractionOptions()
+    options.num_threads = 1
+    options.use_gpu = False
+    options.sift.first_octave = 0  # The image is enlarged before.
+    options.sift.peak_threshold = PEAK
+    options.sift.max_num_features = 2 * parameters.most_features
+    return pycolmap.FeatureExtractor.create(options, pycolmap.Device.cpu)
+
+
+def _features(
+    photo: Photo, extractor: Any, pycolmap: Any, parameters: PosingParameters
+) -> Features:
+    height, width = photo.colour.shape[:2]
+    times = min(2.0, (parameters.working_px / (width * height)) ** 0.5)
+    size = max(1, round(width * times)), max(1, round(height * times))
+    grey = Image.fromarray(photo.colour).convert("L").resize(size, Image.Resampling.BICUBIC)
+    keypoints, descriptors = extractor.extract_from_uint8_array(np.asarray(grey))
+    found = np.asarray(pycolmap.keypoints_to_matrix(keypoints), np.float64).reshape(-1, 4)
+    order = np.argsort(-found[:, 2], kind="stable")[: parameters.most_features]
+    pixels = found[order, :2] * [width / size[0], height / size[1]]
+    at = np.clip(pixels.astype(np.intp), 0, [width - 1, height - 1])
+    return Features(
+        photo.name,
+        width,
+        height,
+        photo.camera,
+        photo.camera_guessed,
+        photo.camera_to_scan,
+        pixels,
+        np.asarray(descriptors.data, np.uint8).reshape(-1, 128)[order],
+        photo.colour[at[:, 1], at[:, 0]],
+        sharpness(np.asarray(grey)),
+    )
+
+
+def sharpness(grey: np.ndarray) -> float:
+    """Return how steep the steepest edges of a uint8 image [H, W] are, against how high they are.
+
+    A step seen sharply rises within about a pixel of the picture: then it is near 1.
+    """
+    values = grey[::4].astype(np.int16)  # Every fourth row tells as much.
+    near = np.abs(np.diff(values, axis=1))
+    far = np.abs(values[:, 8:] - values[:, :-8]) if values.shape[1] > 8 else near
+    high = float(np.percentile(far, 99)) if far.size else 0.0
+    return float(np.percentile(near, 99.5)) / high if high > 0 else 0.0

@@ -1,0 +1,118 @@
+"""Which features of two photos are the same thing, and which photos are worth comparing.
+
+Descriptors are bytes, so their products are whole numbers below 2^24 and float32 holds them
+exactly: no order of summing, and so no number of threads, can change a match.
+"""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from world2minecraft.capture.sfm.features import Features
+from world2minecraft.capture.sfm.parameters import PosingParameters
+from world2minecraft.capture.sfm.progress import Steps
+from world2minecraft.core.machine import usable_cores
+
+FULL = 512.0**2  # A descriptor times itself.
+RATIO = 0.8  # The next best must be so much farther (Lowe's).
+FARTHEST = 0.7  # rad between two descriptors; COLMAP's.
+WORDS = 512  # Descriptors of the photos themselves that tell alike ones, where there are many.
+MOST_THREADS = 4  # Matrix products fill the memory's bandwidth with more.
+
+Pair = tuple[int, int]
+
+
+def matches(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Return int64 [M, 2]: rows of the two descriptor arrays uint8 [K, 128] that are each other's.
+
+    A match is the best both ways, clearly better than the next one, and near.
+    """
+    if len(first) == 0 or len(second) < 2:
+        return np.zeros((0, 2), np.int64)
+    a, b = first.astype(np.float32), second.astype(np.float32)
+    products = a @ b.T
+    rows = np.arange(len(a))
+    best = products.argmax(axis=1)
+    angle = np.arccos(np.minimum(products[rows, best] / FULL, 1))
+    products[rows, best] = -1
+    next_angle = np.arccos(np.minimum(products.max(axis=1) / FULL, 1))
+    some = np.flatnonzero((angle < FARTHEST) & (angle < RATIO * next_angle))
+    back = (b[best[some]] @ a.T).argmax(axis=1)
+    some = some[back == some]
+    return np.stack([some, best[some]], axis=1)
+
+
+def likeness(photos: list[Features], parameters: PosingParameters, steps: Steps) -> np.ndarray:
+    """Return int [N, N]: how many of their largest features each two photos share.
+
+    Pairs that were not compared have 0.
+    """
+    strong = [photo.descriptors[: parameters.strong] for photo in photos]
+    pairs = _candidates(strong, parameters)
+    alike = np.zeros((len(photos), len(photos)), np.int64)
+    rows: dict[int, list[int]] = {}
+    for i, j in pairs:
+        rows.setdefault(i, []).append(j)
+
+    def row(i: int) -> list[int]:
+        return [len(matches(strong[i], strong[j])) for j in rows[i]]
+
+    with ThreadPoolExecutor(threads()) as pool:
+        for n, (i, counts) in enumerate(zip(rows, pool.map(row, rows), strict=True)):
+            alike[i, rows[i]] = alike[rows[i], i] = counts
+            steps.done("alike", n + 1, len(rows))
+    return alike
+
+
+def worth_matching(alike: np.ndarray, parameters: PosingParameters) -> list[Pair]:
+    """Return the pairs (i < j) that are matched in full: the most alike of each, and neighbours."""
+    pairs: set[Pair] = set()
+    count = len(alike)
+    for i in range(count):
+        for j in np.argsort(-alike[i], kind="stable")[: parameters.partners].tolist():
+            if alike[i, j] >= parameters.least_strong:
+                pairs.add((min(i, j), max(i, j)))
+        for j in range(i + 1, min(count, i + 1 + parameters.neighbours)):
+            if alike[i, j] >= parameters.least_strong // 2:
+                pairs.add((i, j))
+    return sorted(pairs)
+
+
+def threads() -> int:
+    """The number of threads that matching uses; it changes no result."""
+    return min(usable_cores(), MOST_THREADS)
+
+
+def _candidates(strong: list[np.ndarray], parameters: PosingParameters) -> list[Pair]:
+    count = len(strong)
+    if count <= parameters.exhaustive:
+        return [(i, j) for i in range(count) for j in range(i + 1, count)]
+    pairs = {(i, j) for i in range(count) for j in range(i + 1, min(count, i + 11))}
+    words = _words(strong)
+    shared = words @ words.T
+    np.fill_diagonal(shared, -1)
+    for i in range(count):
+        nearest = np.argsort(-shared[i], kind="stable")[: parameters.exhaustive // 3]
+        pairs |= {(min(i, j), max(i, j)) for j in nearest.tolist()}
+    return sorted(pairs)
+
+
+def _words(strong: list[np.ndarray]) -> np.ndarray:
+    """Return float64 [N, WORDS], of length 1: how often each photo holds each word, rare ones more.
+
+    The words are some of the photos' own descriptors, so none have to be brought along.
+    """
+    every = np.concatenate([photo[::4] for photo in strong])
+    if len(every) == 0:
+        return np.zeros((len(strong), 1))
+    some = np.linspace(0, len(every) - 1, min(WORDS, len(every))).astype(np.intp)
+    words = every[some].astype(np.float32)
+    counts = np.zeros((len(strong), len(words)))
+    for i, photo in enumerate(strong):
+        if len(photo):
+            nearest = (photo.astype(np.float32) @ words.T).argmax(axis=1)
+            counts[i] = np.bincount(nearest, minlength=len(words))
+    rare = np.log((1 + len(strong)) / (1 + (counts > 0).sum(axis=0)))
+    weighed = np.sqrt(counts) * rare
+    length = np.linalg.norm(weighed, axis=1, keepdims=True)
+    return np.round(weighed / np.maximum(length, 1e-12), 9)

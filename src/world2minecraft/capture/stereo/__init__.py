@@ -1,0 +1,15 @@
+"""Depth of photos from each other: a plane sweep, semi-global matching and mutual agreement."""
+
+from world2minecraft.capture.stereo.alone import network_maps
+from world2minecraft.capture.stereo.guide import DEPTH_MODELS, DepthModel, depth_model
+from world2minecraft.capture.stereo.maps import depth_maps
+from world2minecraft.capture.stereo.parameters import StereoParameters
+
+__all__ = [
+    "DEPTH_MODELS",
+    "DepthModel",
+    "StereoParameters",
+    "depth_maps",
+    "depth_model",
+    "network_maps",
+]

@@ -1,0 +1,52 @@
+"""Any depth network that the transformers library can run, by its name or from a folder."""
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.capture.stereo.guide import Kind
+from world2minecraft.core.errors import InputError, first_line
+from world2minecraft.core.types import Camera
+from world2minecraft.external_models import hub
+from world2minecraft.external_models.pictures import prepared
+from world2minecraft.external_models.single_thread import single_thread
+
+# Models that give metres without saying so in their config. DepthPro gives inverse depth.
+METRIC_TYPES = ("zoedepth", "glpn")
+
+
+class HuggingFaceDepth:
+    """A network of a model hub or a folder, on the processor, in whole single precision.
+
+    Raises:
+        MissingExtraError: torch or transformers is not installed.
+        InputError: the model cannot be had, is of another kind, or lacks weights.
+    """
+
+    kind: Kind
+
+    def __init__(self, model: str):
+        transformers = hub.library("a depth model")
+        self.name = hub.checked_name(model)
+        self._ready = hub.preparation(model, transformers)
+        self._network = hub.network(model, transformers.AutoModelForDepthEstimation)
+        config = self._network.config
+        states_metres = getattr(config, "depth_estimation_type", None) == "metric"
+        metric = states_metres or config.model_type in METRIC_TYPES
+        self.kind = "metric" if metric else "inverse"
+
+    def predict(self, colour: np.ndarray, camera: Camera) -> np.ndarray:
+        """Return float32 [H, W] for a picture uint8 [H, W, 3]; its camera is not needed.
+
+        Raises:
+            InputError: the network cannot work on a picture of this size.
+        """
+        with single_thread() as torch:
+            try:
+                pixels = torch.from_numpy(prepared(colour, self._ready))
+                found = self._network(pixel_values=pixels).predicted_depth
+            except RuntimeError as error:
+                reason = f"the network fails: {first_line(error)}"
+                raise InputError(self.name, reason) from None
+            values = found.reshape(found.shape[-2:]).to(torch.float32).numpy()
+        size = (colour.shape[1], colour.shape[0])
+        return np.array(Image.fromarray(values).resize(size, Image.Resampling.BILINEAR))

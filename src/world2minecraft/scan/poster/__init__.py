@@ -1,6 +1,0 @@
-"""What ``w2m scan`` found, on one page: plan, photos, directions of look and doubts."""
-
-from world2minecraft.scan.poster.page import poster, poster_png
-from world2minecraft.scan.poster_mark import is_poster
-
-__all__ = ["is_poster", "poster", "poster_png"]
