@@ -14,9 +14,9 @@ from benchmarks.check_tsdf import integrate
 from benchmarks.rows import Row
 from world2minecraft.construction import build_volume, write_build
 from world2minecraft.core.types import OccupancyGrid
-from world2minecraft.fuse import EvidenceMap
 from world2minecraft.minecraft.schematics.sponge import write_schem
-from world2minecraft.occupy.depth import DepthPredictor
+from world2minecraft.reconstruction.fusion import EvidenceMap
+from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
 from world2minecraft.rooms import generate_room, room_views, scan_room
 
 FRAMES = 40
@@ -83,8 +83,8 @@ def furnished_grid() -> OccupancyGrid:
 
 def building() -> Row:
     """From a fused grid to a finished world and schematic: find, furnish, build and write."""
-    from world2minecraft.find import FindParameters, find_objects
-    from world2minecraft.furnish import FurnishParameters, furnish
+    from world2minecraft.reconstruction.instances import FindParameters, find_objects
+    from world2minecraft.reconstruction.retrieval import FurnishParameters, furnish
 
     grid = furnished_grid()
 

@@ -25,8 +25,6 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN
 from world2minecraft.core.files import write_json
-from world2minecraft.label.channels import Sight
-from world2minecraft.label.completion_net import CompletionModel, likeliest
 from world2minecraft.learn.completion.samples import (
     Sample,
     make_samples,
@@ -38,12 +36,14 @@ from world2minecraft.metrics.occupancy import (
     count_occupancy,
     iou_of_precision_recall,
 )
+from world2minecraft.reconstruction.semantics.completion_channels import Sight
+from world2minecraft.reconstruction.semantics.completion_net import CompletionModel, likeliest
 
 FIRST_SEED, SEEDS_APART = 8_000, 100
 BANDS = ((0.0, 0.25), (0.25, 0.55), (0.55, 1.0))
 COLUMNS = ("all", "observed", "unseen", "observed, near")
 WHO = ("surface", "geometric", "votes", "completion", "ceiling")
-STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15  # Of ``label/votes.py``.
+STRUCTURE_PRIOR, OBJECT_PRIOR = 0.5, 0.15  # Of ``reconstruction/semantics/votes.py``.
 ROOT = Path(__file__).resolve().parents[1]
 
 

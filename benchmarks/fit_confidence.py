@@ -26,8 +26,10 @@ from world2minecraft.evaluate.frames import used_frames
 from world2minecraft.evaluate.score import TrueRoom, see_truth
 from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.formats.evidence import read_evidence
-from world2minecraft.fuse import CleanParameters, close_structure, read_out, remove_floaters
-from world2minecraft.fuse.confidence import (
+from world2minecraft.metrics.calibration import CalibrationCounts, count_calibration
+from world2minecraft.reconstruction.fusion import CleanParameters, close_structure, remove_floaters
+from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.fusion.confidence import (
     FREE_FEATURES,
     OCCUPIED_FEATURES,
     TABLES,
@@ -36,10 +38,9 @@ from world2minecraft.fuse.confidence import (
     free_features,
     occupied_features,
 )
-from world2minecraft.label import labeller
-from world2minecraft.metrics.calibration import CalibrationCounts, count_calibration
-from world2minecraft.parameters import Parameters
-from world2minecraft.pipeline import reconstruct
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.pipeline import reconstruct
+from world2minecraft.reconstruction.semantics import labeller
 from world2minecraft.rooms.trials import DIFFICULTIES, trials, write_trial
 
 # Whether their evidence keeps its votes. A network's own confidence counts beside the evidence.

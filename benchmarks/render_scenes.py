@@ -18,8 +18,8 @@ import numpy as np
 from world2minecraft.construction import build_volume
 from world2minecraft.core.coordinates import apply, block_to_room, look_at
 from world2minecraft.core.types import BlockVolume, Camera, OccupancyGrid
-from world2minecraft.find import FindParameters, find_objects
-from world2minecraft.furnish import FurnishParameters, furnish
+from world2minecraft.reconstruction.instances import FindParameters, find_objects
+from world2minecraft.reconstruction.retrieval import FurnishParameters, furnish
 from world2minecraft.rendering.block_elements import (
     BlockModel,
     Element,

@@ -9,8 +9,8 @@ from benchmarks.check_faithful import TARGETS, figures_of, name_of
 from benchmarks.check_fitting import Score
 from rich.console import Console
 
-from world2minecraft.label.channels import Sight
 from world2minecraft.learn.completion.samples import Sample
+from world2minecraft.reconstruction.semantics.completion_channels import Sight
 
 
 def row(difficulty="noise", labels="labels", iou=0.9, f1=0.9, outside=0):

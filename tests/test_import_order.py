@@ -71,7 +71,7 @@ TORCH_FOLDERS = ("learn",)
 TORCH_FILES = (
     "external_models/hub.py",
     "external_models/single_thread.py",
-    "occupy/hf_semantics.py",
+    "reconstruction/occupancy/hf_segmenter.py",
 )
 HEAVY_FOR_HELP = ("numpy", "numba", "scipy", "sklearn", "PIL", "rich", "jinja2", "pydantic")
 
@@ -146,7 +146,7 @@ def test_modules_do_not_import_in_circles():
 @pytest.mark.parametrize(
     ("importer", "name", "reason"),
     [
-        ("find", "world2minecraft.furnish.match", "beside"),
+        ("find", "world2minecraft.reconstruction.retrieval.match", "beside"),
         ("geometry", "world2minecraft.minecraft", "after"),
         ("types", "world2minecraft.geometry", "after"),
         ("report", "world2minecraft.cli", "after"),
@@ -178,7 +178,11 @@ def test_lazy_and_relative_imports_are_seen():
         "def f():\n    from ..furnish import match\n    from . import grids\n    import torch.nn\n"
     )
     found = sorted(imported(ast.parse(code), ("world2minecraft", "find")))
-    assert found == ["torch.nn", "world2minecraft.find.grids", "world2minecraft.furnish.match"]
+    assert found == [
+        "torch.nn",
+        "world2minecraft.reconstruction.instances.grids",
+        "world2minecraft.reconstruction.retrieval.match",
+    ]
 
 
 def test_help_loads_nothing_heavy():

@@ -9,11 +9,11 @@ from typing import Any
 
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.kept import kept_before
-from world2minecraft.parameters import Parameters
-from world2minecraft.pipeline import STAGES, reconstruct, registered_before
-from world2minecraft.plans import PlanWorld, build_plan
-from world2minecraft.prepare import open_prepared
+from world2minecraft.reconstruction.floorplans import PlanWorld, build_plan
+from world2minecraft.reconstruction.opening import open_prepared
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.pipeline import STAGES, reconstruct, registered_before
+from world2minecraft.reconstruction.resume import kept_before
 from world2minecraft.report import write_brief_report, write_report
 from world2minecraft.report.ahead import pictures_compiled_meanwhile
 

@@ -8,7 +8,7 @@ import pytest
 from world2minecraft.cli import run
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.minecraft.formats import read_blocks
-from world2minecraft.parameters import Parameters
+from world2minecraft.reconstruction.parameters import Parameters
 
 
 @pytest.fixture

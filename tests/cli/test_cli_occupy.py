@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from tests.exact_room import CAMERA, BoxRoom
-from tests.occupy.tiny_network import FACTS, sized, write_network
+from tests.reconstruction.occupancy.tiny_network import FACTS, sized, write_network
 
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.cli import run as w2m

@@ -12,7 +12,7 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Layout, Placement
 from world2minecraft.furniture import TEMPLATES, template
-from world2minecraft.plans.cells import cells_of_plan
+from world2minecraft.reconstruction.floorplans.cells import cells_of_plan
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.6)
 

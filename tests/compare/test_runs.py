@@ -17,8 +17,8 @@ from world2minecraft.core.types import Layout, Opening
 from world2minecraft.formats.layout import layout_row, write_layouts
 from world2minecraft.formats.objects import write_placements
 from world2minecraft.formats.room import write_room
-from world2minecraft.plans import layouts_of
-from world2minecraft.plans.cells import cells_of_plan
+from world2minecraft.reconstruction.floorplans import layouts_of
+from world2minecraft.reconstruction.floorplans.cells import cells_of_plan
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.6, (Opening("window", [1, 3], [2, 3], 0.9, 2),))
 THINGS = (

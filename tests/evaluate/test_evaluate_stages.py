@@ -10,9 +10,9 @@ from world2minecraft.evaluate.recorded import recorded_parameters
 from world2minecraft.evaluate.stages import AFTER, TrueViews, allowed_cells, open_case, stage_losses
 from world2minecraft.evaluate.true_evidence import true_evidence
 from world2minecraft.evaluate.truth import read_truth
-from world2minecraft.fuse import read_out
-from world2minecraft.parameters import Parameters, with_settings
-from world2minecraft.pipeline import reconstruct
+from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.parameters import Parameters, with_settings
+from world2minecraft.reconstruction.pipeline import reconstruct
 
 
 @pytest.fixture(scope="module")

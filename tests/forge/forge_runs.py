@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from world2minecraft.parameters import Parameters
-from world2minecraft.pipeline import reconstruct
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.pipeline import reconstruct
 from world2minecraft.rooms import generate_room, scan_room
 
 FRAMES = 12

@@ -20,7 +20,7 @@ from world2minecraft.formats.forms import form_names, read_form
 from world2minecraft.formats.paper_json import read_occ_json
 from world2minecraft.formats.room import read_room
 from world2minecraft.minecraft.worlds.world_writer import read_world
-from world2minecraft.steps import built_volume
+from world2minecraft.reconstruction.stages import built_volume
 
 
 @pytest.fixture(scope="module")
@@ -101,7 +101,7 @@ def test_a_schematic_is_read_by_another_program(apart, editor, tmp_path):
     (tmp_path / name).write_bytes(data)
     read = nbtlib.load(tmp_path / name)
     snapshot(editor, tmp_path / "snapshot")
-    from world2minecraft.parameters import Parameters
+    from world2minecraft.reconstruction.parameters import Parameters
 
     volume = built_volume(tmp_path / "snapshot", Parameters(blocks_per_metre=2))
     size = (int(read["Width"]), int(read["Height"]), int(read["Length"]))

@@ -13,8 +13,8 @@ from world2minecraft.forge import saving
 from world2minecraft.forge.editor import Editor
 from world2minecraft.formats.occupancy import read_occupancy
 from world2minecraft.formats.scene import read_scene
-from world2minecraft.parameters import Parameters
-from world2minecraft.steps import build_stage
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.stages import build_stage
 
 
 @pytest.fixture

@@ -7,14 +7,14 @@ import pytest
 import torch
 
 from world2minecraft.core.errors import InputError
-from world2minecraft.label.channels import CHANNELS, Sight
-from world2minecraft.label.completion_net import CompletionModel, spans
 from world2minecraft.learn.completion.export import export_completion, halved
 from world2minecraft.learn.completion.losses import completion_loss
 from world2minecraft.learn.completion.network import TINY, CompletionNet
 from world2minecraft.learn.completion.pool import SamplePool
 from world2minecraft.learn.completion.samples import Sample, write_samples
 from world2minecraft.learn.completion.training import CompletionRun, Trainer
+from world2minecraft.reconstruction.semantics.completion_channels import CHANNELS, Sight
+from world2minecraft.reconstruction.semantics.completion_net import CompletionModel, spans
 
 RUN = CompletionRun(steps=60, batch=2, warm_steps=5, crop=(16, 16, 16), size=TINY)
 

@@ -5,7 +5,6 @@ import pytest
 
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import write_npz
-from world2minecraft.label.channels import network_input
 from world2minecraft.learn.completion.augment import augmented, cropped, turned
 from world2minecraft.learn.completion.noise import draw_noise, lost_pixels, wrong_labels
 from world2minecraft.learn.completion.samples import (
@@ -14,6 +13,7 @@ from world2minecraft.learn.completion.samples import (
     read_samples,
     write_samples,
 )
+from world2minecraft.reconstruction.semantics.completion_channels import network_input
 
 SEED = 9_500  # Held out.
 

@@ -11,7 +11,7 @@ from world2minecraft import cli
 from world2minecraft.learn.checkpoints import write_weights
 from world2minecraft.learn.config import DataSource, RunConfig
 from world2minecraft.learn.training import network_of
-from world2minecraft.occupy.mono import MonoPredictor
+from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tests.learn import toy_network
 from tests.learn.toy_sets import toy_samples, toy_set, write_toy_store
-from tests.occupy.tiny_network import write_network
+from tests.reconstruction.occupancy.tiny_network import write_network
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError

@@ -8,7 +8,7 @@ from room_frames import SHAPE, VOXEL_M, room_batch
 from world2minecraft.core.errors import OutputError
 from world2minecraft.learn.export import MOST_DIFFERENCE, export_network
 from world2minecraft.learn.networks import NETWORKS, make_network
-from world2minecraft.occupy.network_file import NetworkFacts, OccupancyNetwork
+from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
 USING_DEPTH = ("iso", "symphonies", "embodied")
 CASES = [(name, name in USING_DEPTH) for name in NETWORKS.names()] + [("iso", False)]

@@ -16,7 +16,7 @@ from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.learn.export import _asked, _question, _traced, export_network
 from world2minecraft.learn.networks import make_network
 from world2minecraft.learn.weight_storage import rounded, with_stored_weights
-from world2minecraft.occupy.network_file import NetworkFacts, OccupancyNetwork
+from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
 FACTS = NetworkFacts("monoscene", SHAPE, VOXEL_M, (96, 72))
 

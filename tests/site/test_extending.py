@@ -14,11 +14,11 @@ from world2minecraft import cli
 from world2minecraft.capture import open_scan
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.label import LABELLERS
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.unlabelled_volume import unlabelled
-from world2minecraft.occupy import predictor
+from world2minecraft.reconstruction.occupancy import predictor
+from world2minecraft.reconstruction.semantics import LABELLERS
 from world2minecraft.vln.agents.choice import AGENTS
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "extending.md").read_text()

@@ -68,7 +68,7 @@ def test_shapes_are_no_links():
 
 def test_a_page_of_a_package_names_its_public_modules():
     page = modules._page("fuse", modules.SOURCE / "fuse")
-    assert "::: world2minecraft.fuse.read_out\n" in page
+    assert "::: world2minecraft.reconstruction.fusion.extract_grid\n" in page
     assert "fuse.__init__" not in page
 
 

@@ -19,7 +19,7 @@ from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import BlockVolume
-    from world2minecraft.parameters import Parameters
+    from world2minecraft.reconstruction.parameters import Parameters
 
 EXAMPLES = """\
 w2m build OUT --out second --blocks-per-metre 2     a finished run at another scale
@@ -107,7 +107,7 @@ def run(
     """
     check_targets(out, into, rcon, at, turns)
     check_how(into, rcon, air, new_chunks)
-    from world2minecraft.parameters import Parameters, with_settings
+    from world2minecraft.reconstruction.parameters import Parameters, with_settings
 
     chosen = Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version)
     chosen = with_settings(with_build_options(chosen, style, palette, formats), settings or [])
@@ -196,7 +196,7 @@ def into_folder(source: Path, out: Path, chosen: "Parameters") -> None:
     """Build a world of its own and its other forms under ``out``, and say how to play."""
     from world2minecraft.cli.outcome import compiling_note, say_how_to_play
     from world2minecraft.cli.progress import shown
-    from world2minecraft.rebuild import rebuild
+    from world2minecraft.reconstruction.rebuild import rebuild
 
     compiling_note()
     with shown() as progress:
@@ -207,7 +207,7 @@ def into_folder(source: Path, out: Path, chosen: "Parameters") -> None:
 
 def holds_room(source: Path) -> bool:
     """Whether ``source`` is a room, whose floor is known, and not blocks made elsewhere."""
-    from world2minecraft.rebuild import is_block_file
+    from world2minecraft.reconstruction.rebuild import is_block_file
 
     return not is_block_file(source)
 
@@ -216,7 +216,7 @@ def volume_of(source: Path, chosen: "Parameters") -> "BlockVolume":
     """Return the blocks of a room for a target that is no folder; nothing is written."""
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.rebuild import blocks_of
+    from world2minecraft.reconstruction.rebuild import blocks_of
 
     compiling_note()
     with shown() as progress:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.parameters import Parameters
+    from world2minecraft.reconstruction.parameters import Parameters
 
 SKETCHES_UNDER = 1.5  # Blocks per metre.
 
@@ -42,7 +42,7 @@ def with_build_options(
     Raises:
         UsageError: there is no such style, palette or form. InputError: the palette's file is none.
     """
-    from world2minecraft.parameters import with_settings
+    from world2minecraft.reconstruction.parameters import with_settings
 
     if palette is not None:
         from world2minecraft.construction.palettes import load_palette

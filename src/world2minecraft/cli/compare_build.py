@@ -53,7 +53,7 @@ def run(
     from world2minecraft.cli.progress import shown
     from world2minecraft.compare.building import build_scene
     from world2minecraft.compare.importers import How, read_layouts_of
-    from world2minecraft.parameters import Parameters
+    from world2minecraft.reconstruction.parameters import Parameters
 
     option.check_px(px_m)
     chosen = Parameters(blocks_per_metre=blocks_per_metre)

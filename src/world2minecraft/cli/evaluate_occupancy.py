@@ -152,7 +152,7 @@ class _Asked:
     def _of_onnx(self, progress: "Progress") -> dict[str, Any]:
         from world2minecraft.learn.config import Grid
         from world2minecraft.learn.scoring import said_by_onnx
-        from world2minecraft.occupy.network_file import OccupancyNetwork
+        from world2minecraft.reconstruction.occupancy.onnx_network import OccupancyNetwork
 
         facts = OccupancyNetwork(self.said).facts
         grid = Grid(facts.grid_shape, facts.voxel_m)

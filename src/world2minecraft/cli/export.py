@@ -31,7 +31,7 @@ def run(
     nothing gets faster, and what it says moves a little. Score it before you trust it.
     """
     from world2minecraft.cli.train_options import check_extra
-    from world2minecraft.occupy.network_file import NetworkFacts, OccupancyNetwork
+    from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
     check_extra()
     from world2minecraft.learn.checkpoints import load_weights, weights_config

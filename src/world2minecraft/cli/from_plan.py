@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from world2minecraft.plans import PlanWorld
+    from world2minecraft.reconstruction.floorplans import PlanWorld
 
 
 def say_plan(out: Path, built: "PlanWorld") -> None:

@@ -63,8 +63,8 @@ def run(
     """
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.joining import join
-    from world2minecraft.parameters import Parameters, with_settings
+    from world2minecraft.reconstruction.homes import join
+    from world2minecraft.reconstruction.parameters import Parameters, with_settings
     from world2minecraft.report import write_brief_report
 
     chosen = Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version)

@@ -152,7 +152,7 @@ class _Frame:
         from world2minecraft.capture.images import read_colour, read_header
         from world2minecraft.core.errors import CaptureError
         from world2minecraft.dataset.saved_cells import cells_by_network
-        from world2minecraft.occupy.mono import MonoPredictor
+        from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
 
         photo = self.colour or self.source
         if read_header(photo).mode.startswith(("I", "F")):
@@ -184,8 +184,8 @@ def _of_capture(
     from world2minecraft.cli.progress import shown
     from world2minecraft.dataset.saved_cells import cells_in_grid, cells_of_room, write_cells
     from world2minecraft.formats.room import read_room
-    from world2minecraft.parameters import Parameters, with_settings
-    from world2minecraft.pipeline import reconstruct
+    from world2minecraft.reconstruction.parameters import Parameters, with_settings
+    from world2minecraft.reconstruction.pipeline import reconstruct
 
     chosen = Parameters(predictor=predictor)
     chosen = with_settings(chosen, [] if fov is None else [f"capture.fov_deg={fov}"])

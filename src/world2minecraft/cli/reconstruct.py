@@ -18,7 +18,7 @@ from world2minecraft.cli.build_options import (
 
 if TYPE_CHECKING:
     from world2minecraft.core.progress import Progress
-    from world2minecraft.parameters import Parameters
+    from world2minecraft.reconstruction.parameters import Parameters
 
 EXAMPLES = """\
 w2m reconstruct my_scan --out OUT                         the whole way
@@ -127,7 +127,7 @@ def run(
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
     from world2minecraft.making import make_run
-    from world2minecraft.parameters import Parameters, with_method, with_settings
+    from world2minecraft.reconstruction.parameters import Parameters, with_method, with_settings
 
     chosen = Parameters(
         voxel,
@@ -158,7 +158,7 @@ def run(
 def check_stage(start: str | None, follow: bool) -> None:
     """Raise UsageError, before any work, where ``--from`` names no stage, or goes not with it."""
     from world2minecraft.core.errors import UnknownNameError, UsageError
-    from world2minecraft.pipeline import STAGES
+    from world2minecraft.reconstruction.pipeline import STAGES
 
     if follow and start is not None:
         raise UsageError("--follow reads a whole capture; leave out --from")
@@ -185,7 +185,7 @@ def built_from_plan(
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
     from world2minecraft.making import make_from_plan
-    from world2minecraft.prepare import scene_name
+    from world2minecraft.reconstruction.opening import scene_name
 
     drawn = plan_in(capture)
     if drawn is None:
@@ -209,6 +209,6 @@ def watch(
     progress: "Progress",
 ) -> None:
     """Follow a capture until it is complete."""
-    from world2minecraft.live import follow
+    from world2minecraft.reconstruction.online import follow
 
     follow(capture, out, chosen, labels=labels, idle_s=idle_s, progress=progress)

@@ -73,7 +73,7 @@ def _generate(
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.run_folder import check_writable
+    from world2minecraft.reconstruction.run_folder import check_writable
 
     check_writable(out)
     compiling_note()
@@ -101,7 +101,7 @@ def _check_worlds(
     storeys: int | None,
 ) -> None:
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.run_folder import check_writable
+    from world2minecraft.reconstruction.run_folder import check_writable
 
     if houses is None or worlds is None:
         raise UsageError("--houses says how many and --worlds where; give both")

@@ -112,7 +112,7 @@ def _check_figures(given: dict[str, Any]) -> None:
 def _check_empty(out: Path) -> None:
     """Refuse a folder that holds a capture or a room: two would mix."""
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.run_folder import check_writable
+    from world2minecraft.reconstruction.run_folder import check_writable
 
     check_writable(out)
     if (out / "layout.json").exists():

@@ -53,7 +53,7 @@ def run(
     from world2minecraft.capture.telling import as_data, plan_lines, summary_lines
     from world2minecraft.core.errors import UsageError
     from world2minecraft.formats.roomplan import read_roomplan
-    from world2minecraft.parameters import Parameters, with_settings
+    from world2minecraft.reconstruction.parameters import Parameters, with_settings
 
     if picture is not None and (no_picture or as_json):
         raise UsageError("--picture draws one; leave out --no-picture and --json")

@@ -123,7 +123,7 @@ def _built(
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.machine import usable_cores
-    from world2minecraft.run_folder import check_writable
+    from world2minecraft.reconstruction.run_folder import check_writable
     from world2minecraft.vln.data.building import build_set
     from world2minecraft.vln.data.made_scenes import make_scenes
     from world2minecraft.vln.records import SCENES_FOLDER

@@ -13,7 +13,11 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.files import read_json
 from world2minecraft.core.types import LayoutObject
 from world2minecraft.formats.roomplan import PlanObject
-from world2minecraft.plans.furniture import HUNG_FROM_M, OWN_CELLS, template_of
+from world2minecraft.reconstruction.floorplans.furniture_categories import (
+    HUNG_FROM_M,
+    OWN_CELLS,
+    template_of,
+)
 
 TABLE = Path(__file__).parent / "data" / "designs.json"
 # What stands for a class that no word tells more of, by RoomPlan's categories.

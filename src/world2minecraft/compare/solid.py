@@ -14,7 +14,7 @@ from world2minecraft.compare.values import ComparedScene
 from world2minecraft.core.types import LayoutObject
 from world2minecraft.furniture import template
 from world2minecraft.furniture.layout_checks import OVERLAP_M, overlap_depth_m, overlapping_boxes
-from world2minecraft.plans.furniture import OWN_CELLS
+from world2minecraft.reconstruction.floorplans.furniture_categories import OWN_CELLS
 
 
 def solid_collisions(scene: ComparedScene) -> int:

@@ -6,7 +6,7 @@ from typing import Any
 
 from world2minecraft.core.errors import DamagedFileError, UsageError
 from world2minecraft.core.files import read_json
-from world2minecraft.parameters import Parameters
+from world2minecraft.reconstruction.parameters import Parameters
 
 
 def recorded_parameters(out: Path) -> Parameters:

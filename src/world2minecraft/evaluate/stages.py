@@ -32,10 +32,10 @@ from world2minecraft.formats.evidence import write_evidence
 from world2minecraft.formats.layout import write_layouts
 from world2minecraft.formats.room import read_room
 from world2minecraft.formats.scan import write_scan
-from world2minecraft.fuse import fuse_views
-from world2minecraft.occupy import predictor
-from world2minecraft.parameters import Parameters
-from world2minecraft.steps import LATER_STEPS
+from world2minecraft.reconstruction.fusion import fuse_views
+from world2minecraft.reconstruction.occupancy import predictor
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.stages import LATER_STEPS
 
 AFTER = ("alignment", "fusion", "labels", "instances", "templates")
 

@@ -20,8 +20,8 @@ from world2minecraft.editing.scene import instances_of, placements_of
 from world2minecraft.forge.arrays import packed_arrays
 from world2minecraft.forge.editor import Editor
 from world2minecraft.minecraft.physics import BlockWorld, standing_place
+from world2minecraft.reconstruction.stages import corner_m
 from world2minecraft.rendering.mesh import BlockMesh, mesh_of
-from world2minecraft.steps import corner_m
 
 MAGIC = b"W2MB"
 MOST_CELLS = 12_000_000  # Of the box around a build; a page draws no more.

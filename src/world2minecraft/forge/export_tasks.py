@@ -29,9 +29,9 @@ from world2minecraft.minecraft.server.rcon import RconClient
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.installation import age_note, install_world
 from world2minecraft.minecraft.worlds.launchers import Game
-from world2minecraft.parameters import Parameters
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.stages import built_volume, scene_name
 from world2minecraft.rendering.preview import preview
-from world2minecraft.steps import built_volume, scene_name
 
 WORLD, PICTURE = "world", "png"
 

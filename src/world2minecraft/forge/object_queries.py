@@ -12,12 +12,16 @@ from world2minecraft.editing.scene.furniture_commands import ObjectClass
 from world2minecraft.editing.scene.object_boxes import object_named
 from world2minecraft.editing.scene.objects import Id
 from world2minecraft.editing.scene.objects_of import instance_of, placements_of
-from world2minecraft.find import FindParameters
-from world2minecraft.find.clusters import centroids, cluster_candidates
-from world2minecraft.find.density import candidate_cells, density_map, object_cells
 from world2minecraft.forge.query import QueriedScene, Query
-from world2minecraft.furnish import ranked_matches
 from world2minecraft.furniture.layout_checks import collisions, out_of_rooms
+from world2minecraft.reconstruction.instances import FindParameters
+from world2minecraft.reconstruction.instances.clusters import centroids, cluster_candidates
+from world2minecraft.reconstruction.instances.density import (
+    candidate_cells,
+    density_map,
+    object_cells,
+)
+from world2minecraft.reconstruction.retrieval import ranked_matches
 
 OFFERED = 5
 LEAST_DOUBT = 0.3  # Of what is surer than this nobody needs to be told.

@@ -18,14 +18,14 @@ import numpy as np
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, SceneObject
 from world2minecraft.editing.scene import objects_of
-from world2minecraft.find import find_objects
 from world2minecraft.forge.centred import instances_at
 from world2minecraft.formats.objects import read_objects, read_placements
 from world2minecraft.formats.occupancy import read_occupancy
 from world2minecraft.formats.paper_forms import Center, read_any_centers, read_any_occ
 from world2minecraft.formats.room import read_room
 from world2minecraft.formats.rooms import read_rooms
-from world2minecraft.furnish import furnish
+from world2minecraft.reconstruction.instances import find_objects
+from world2minecraft.reconstruction.retrieval import furnish
 
 RUN_FILES = ("room.npz", "objects.json", "placements.json")
 DEMO_FOLDER = Path(__file__).parent / "demo_room"

@@ -8,8 +8,8 @@ import numpy as np
 from world2minecraft.core.errors import UnknownNameError
 from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
 from world2minecraft.editing.scene import Tools
-from world2minecraft.find import FindParameters, find_objects, measured
-from world2minecraft.furnish import FurnishParameters, fit_template, furnish
+from world2minecraft.reconstruction.instances import FindParameters, find_objects, measured
+from world2minecraft.reconstruction.retrieval import FurnishParameters, fit_template, furnish
 
 
 def tools_of(rooms: Sequence[Layout] = ()) -> Tools:

@@ -20,7 +20,7 @@ from torch import Tensor, nn
 from world2minecraft.core.errors import MissingExtraError, OutputError
 from world2minecraft.core.files import write_bytes
 from world2minecraft.learn.batch import OccInput
-from world2minecraft.occupy.network_file import OUTPUT, NetworkFacts
+from world2minecraft.reconstruction.occupancy.onnx_network import OUTPUT, NetworkFacts
 
 OPSET = 17
 MOST_DIFFERENCE = 1e-3

@@ -156,7 +156,7 @@ def said_by_onnx(
     path: Path, frames: Frames, rows: Sequence[int], progress: Progress = silent
 ) -> Iterator[SaidOfFrame]:
     """Run an ONNX file over rows. Raises what ``OccupancyNetwork`` raises."""
-    from world2minecraft.occupy.network_file import OccupancyNetwork  # noqa: PLC0415
+    from world2minecraft.reconstruction.occupancy.onnx_network import OccupancyNetwork  # noqa: PLC0415
 
     network = OccupancyNetwork(path)
     for done, row in enumerate(rows, 1):

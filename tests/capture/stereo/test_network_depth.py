@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 from scipy import ndimage
 from tests.exact_room import CAMERA, BoxRoom
-from tests.prepare.test_prepare import scene_of
+from tests.reconstruction.opening.test_prepare import scene_of
 
 from world2minecraft.capture.stereo import network_maps
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import DepthMap, Photo, Scan
-from world2minecraft.fuse import FuseParameters, fuse_views, read_out
-from world2minecraft.occupy import predictor
-from world2minecraft.register import RegisterParameters, corrected, register
+from world2minecraft.reconstruction.fusion import FuseParameters, fuse_views
+from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.occupancy import predictor
+from world2minecraft.reconstruction.registration import RegisterParameters, register
+from world2minecraft.reconstruction.registration import corrected_scan as corrected
 
 ROOM = BoxRoom((7.0, 5.5, 2.7))  # So large that 5 % of a wall's distance is more than a voxel.
 OFF = 0.05  # Up to so much, as monocular networks are known for.

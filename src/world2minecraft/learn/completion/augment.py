@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.core.classes import UNKNOWN
-from world2minecraft.label.channels import Sight
 from world2minecraft.learn.completion.samples import Sample, cut
+from world2minecraft.reconstruction.semantics.completion_channels import Sight
 
 CROP = (48, 48, 40)
 # How often each is left out: a room may come without colour, a frame without known walls.

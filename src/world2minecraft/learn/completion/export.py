@@ -10,9 +10,9 @@ import torch
 from torch import nn
 
 from world2minecraft.core.files import write_bytes
-from world2minecraft.label.channels import CHANNELS
 from world2minecraft.learn.completion.network import CompletionNet
 from world2minecraft.learn.weight_storage import SMALL, with_stored_weights
+from world2minecraft.reconstruction.semantics.completion_channels import CHANNELS
 
 OPSET = 17
 TRIAL_SHAPE = (24, 16, 24)

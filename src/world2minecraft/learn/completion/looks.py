@@ -12,9 +12,9 @@ import numpy as np
 
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import Camera, FusedEvidence, View
-from world2minecraft.fuse import EvidenceMap, FuseParameters
 from world2minecraft.learn.completion.noise import ScanNoise, lost_pixels, wrong_labels
-from world2minecraft.occupy.depth import DepthPredictor
+from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
+from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
 from world2minecraft.rooms.photo import PhotoScene, take_photo
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.sensor import jittered_pose, scale_factor, sense_depth

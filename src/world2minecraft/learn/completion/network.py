@@ -10,7 +10,12 @@ import torch
 from torch import Tensor, nn
 
 from world2minecraft.core.classes import CLASS_COUNT
-from world2minecraft.label.channels import CHANNELS, HINT, KINDS, VOTES
+from world2minecraft.reconstruction.semantics.completion_channels import (
+    CHANNELS,
+    HINT,
+    KINDS,
+    VOTES,
+)
 
 TRUST = 2.0  # What a geometric label or a whole vote adds to its class before anything is learnt.
 MULTIPLE = 8  # Sides of what goes in are whole multiples of this.

@@ -7,9 +7,9 @@ import torch
 from torch import Tensor
 
 from world2minecraft.core.errors import InputError
-from world2minecraft.label.channels import network_input
 from world2minecraft.learn.completion.augment import augmented
 from world2minecraft.learn.completion.samples import Sample, read_samples
+from world2minecraft.reconstruction.semantics.completion_channels import network_input
 
 # A walk is what the program is mostly given, a single view the hardest.
 KIND_WEIGHTS = {"walk": 0.42, "few": 0.18, "single": 0.4}

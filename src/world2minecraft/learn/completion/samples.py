@@ -15,10 +15,6 @@ from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.errors import CaptureError, DamagedFileError
 from world2minecraft.core.files import array_names, read_npz, write_npz
 from world2minecraft.core.types import Camera, FusedEvidence
-from world2minecraft.fuse import CleanParameters, read_out, remove_floaters
-from world2minecraft.label.channels import Sight, sight_of
-from world2minecraft.label.completion import hint_of
-from world2minecraft.label.geometric import GeometricLabeller
 from world2minecraft.learn.completion.looks import (
     TOUR_VIEWS,
     Look,
@@ -29,6 +25,11 @@ from world2minecraft.learn.completion.looks import (
 from world2minecraft.learn.completion.noise import ScanNoise, draw_noise
 from world2minecraft.learn.completion.rooms import training_room
 from world2minecraft.metrics.truth import carry_truth
+from world2minecraft.reconstruction.fusion import CleanParameters, remove_floaters
+from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.semantics.completion import hint_of
+from world2minecraft.reconstruction.semantics.completion_channels import Sight, sight_of
+from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
 from world2minecraft.rooms.photo import prepare_photos
 from world2minecraft.rooms.room import Room
 from world2minecraft.rooms.tour import plan_tour

@@ -1,0 +1,34 @@
+"""Plans of rooms that an app has measured: Apple's RoomPlan, as a world or beside a scan.
+
+``build_plan`` makes a world of a plan alone. ``laid_plan`` finds where a plan lies in a scan;
+``plan_votes`` then lets it say what the scan's cells are, and ``with_plan_openings`` adds doors
+and windows that were not seen. ``find_roomplan`` tells whether a path holds a plan.
+"""
+
+from world2minecraft.formats.roomplan import find_roomplan, read_roomplan
+from world2minecraft.reconstruction.floorplans.beside import add_plan_openings, voted_by_plan
+from world2minecraft.reconstruction.floorplans.plan_run import PlanWorld, build_captured, build_plan
+from world2minecraft.reconstruction.floorplans.plan_to_scan import (
+    LaidPlan,
+    PlanMismatchError,
+    laid_plan,
+)
+from world2minecraft.reconstruction.floorplans.room_outlines import layouts_of, straightened
+from world2minecraft.reconstruction.floorplans.votes import plan_votes, with_plan_openings
+
+__all__ = [
+    "LaidPlan",
+    "PlanMismatchError",
+    "PlanWorld",
+    "add_plan_openings",
+    "build_captured",
+    "build_plan",
+    "find_roomplan",
+    "laid_plan",
+    "layouts_of",
+    "plan_votes",
+    "read_roomplan",
+    "straightened",
+    "voted_by_plan",
+    "with_plan_openings",
+]

@@ -1,0 +1,139 @@
+"""From a plan to a finished run: the files that a reconstruction would leave, and the world."""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft import __version__
+from world2minecraft.core.archives import AnyPath
+from world2minecraft.core.files import write_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Layout, Scan
+from world2minecraft.formats.layout import write_layouts
+from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
+from world2minecraft.formats.room import write_room
+from world2minecraft.formats.roomplan import CapturedPlan, read_roomplan
+from world2minecraft.formats.scan import write_scan
+from world2minecraft.reconstruction.floorplans.cells import PlanCells, cells_of_plan
+from world2minecraft.reconstruction.floorplans.room_outlines import (
+    layouts_of,
+    placed_rooms,
+    straightened,
+)
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.retrieval.settling import settle
+from world2minecraft.reconstruction.run_folder import check_writable
+from world2minecraft.reconstruction.stages import LATER_STEPS
+
+
+@dataclass(frozen=True, eq=False)
+class PlanWorld:
+    """What became of a plan: its scan (without views), its rooms and how many objects stand."""
+
+    scan: Scan
+    layouts: tuple[Layout, ...]
+    objects: int
+
+
+def build_plan(
+    place: AnyPath,
+    out: Path,
+    parameters: Parameters | None = None,
+    progress: Progress = silent,
+    name: str = "",
+) -> PlanWorld:
+    """Turn a RoomPlan capture into a run's folder with its world; no photo is needed.
+
+    Args:
+        place: the JSON, as ``find_roomplan`` finds it.
+        out: the folder of the results.
+        parameters: cells, scale, style and palette count.
+        progress: told of each step.
+        name: what the scene is called.
+
+    Raises:
+        InputError: the plan cannot be read. OutputError: ``out`` cannot be written.
+    """
+    chosen = parameters or Parameters()
+    progress("plan", 0, 1)
+    plan = straightened(read_roomplan(place))
+    source = {"plan": hashlib.sha256(place.read_bytes()).hexdigest()}
+    return build_captured(plan, out, chosen, source, progress=progress, name=name)
+
+
+def build_captured(
+    plan: CapturedPlan,
+    out: Path,
+    parameters: Parameters,
+    source: Mapping[str, Any],
+    *,
+    progress: Progress = silent,
+    name: str = "",
+    as_told: bool = False,
+) -> PlanWorld:
+    """Turn a straightened plan of any source into a run's folder with its world.
+
+    Args:
+        plan: its walls lie along x and y.
+        out: the folder of the results.
+        parameters: cells, scale, style and palette count.
+        source: what the manifest says of where the plan is from.
+        progress: told of each step.
+        name: what the scene is called.
+        as_told: leave furniture that meets other furniture where it is, cut by what is larger.
+
+    Raises:
+        UsageError: the plan is too large for such cells. OutputError: ``out`` cannot be written.
+    """
+    progress("plan", 0, 1)
+    held = cells_of_plan(plan, parameters.voxel_m)
+    layouts = layouts_of(plan)
+    if not as_told:
+        held = replace(held, placements=settle(held.placements, held.grid, layouts))
+    check_writable(out)
+    scan = scan_of_plan(plan, name)
+    _write_run(out, held, layouts, scan)
+    told = {"program": __version__, "parameters": parameters.as_json(), **source}
+    write_json(out / "manifest.json", told)
+    progress("plan", 1, 1)
+    progress("build", 0, 1)
+    LATER_STEPS["build"](out, parameters)
+    progress("build", 1, 1)
+    return PlanWorld(scan, layouts, len(held.instances))
+
+
+def scan_of_plan(plan: CapturedPlan, name: str = "") -> Scan:
+    """Return what a scan would say of a plan: its frame, its size, and no views."""
+    rooms = placed_rooms(plan)
+    high = np.max([room.outline_m.max(axis=0) for room in rooms], axis=0)
+    top = max(room.floor_z_m + room.height_m for room in rooms)
+    notes = list(plan.notes)
+    notes += [
+        f"the walls of {room.room.name} do not close; the box around them is taken"
+        for room in rooms
+        if not room.closed
+    ]
+    return Scan(
+        views=(),  # type: ignore[arg-type]
+        scan_to_room=np.linalg.inv(plan.plan_to_session),
+        room_size_m=np.round(np.array([*high, top]), 6),
+        frames_used=(),
+        source="roomplan",
+        notes=tuple(notes),
+        name=name,
+    )
+
+
+def _write_run(out: Path, held: PlanCells, layouts: tuple[Layout, ...], scan: Scan) -> None:
+    write_scan(out / "scan.json", scan)
+    write_room(out / "room.npz", held.grid, scan.scan_to_room)
+    write_layouts(out / "layout.json", layouts)
+    write_objects(out / "objects.json", held.instances)
+    write_placements(out / "placements.json", held.placements)
+    write_occ_json(out / "occ.json", held.grid)
+    write_centers_json(out / "centers.json", held.instances)

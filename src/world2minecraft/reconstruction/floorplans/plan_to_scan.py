@@ -1,0 +1,218 @@
+"""Where a plan lies in a scan: in the same session's frame, or laid on the scan's walls.
+
+Apps that export a scan and a plan of one walk use one frame for both. Elsewhere the plan's walls
+are laid on the upright surfaces of the scan, by four quarter turns and any shift of whole cells.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.types import FusedEvidence
+from world2minecraft.formats.roomplan import CapturedPlan
+from world2minecraft.furniture.layout_checks import inside_polygon
+from world2minecraft.geometry.morphology import grown
+from world2minecraft.reconstruction.floorplans.room_outlines import (
+    moved_plan,
+    placed_rooms,
+    straightened,
+)
+
+BAND_M = (0.4, 2.0)  # Of the heights at which walls are looked for.
+UPRIGHT_SHARE = 0.35  # Of a column's layers in that band: a wall half hidden, or seen through.
+THINGS_M = (0.15, 1.6)  # Of the heights at which furniture is looked for.
+STEP_M = 0.04
+SAME_FIT = 0.6  # Of the walls that were seen, so much meets surface: they are the same room.
+LAID_FIT = 0.6
+LEAST_LEAD = 0.05  # Over the next best place; a square room fits in four ways.
+APART_M = 0.4  # Nearer places are one.
+MOST_TILT_DEG = 3.0
+
+
+class PlanMismatchError(ValueError):
+    """A plan is of no room that the scan shows; the text says how well it fits."""
+
+
+@dataclass(frozen=True, eq=False)
+class LaidPlan:
+    """A plan in the room frame of a scan, how well its walls fit, and a sentence on that."""
+
+    plan: CapturedPlan
+    fit: float
+    told: str
+
+
+def laid_plan(plan: CapturedPlan, evidence: FusedEvidence) -> LaidPlan:
+    """Return a plan in the room frame of fused evidence.
+
+    Raises:
+        PlanMismatchError: it fits nowhere, or in several places about as well.
+    """
+    upright = upright_columns(evidence)
+    same = _same_session(plan, evidence)
+    if same is not None:
+        fit = fit_of(same, evidence, upright)
+        if fit >= SAME_FIT:
+            told = f"the plan shares the scan's frame; {fit:.0%} of its walls meet the scan"
+            return LaidPlan(same, fit, told)
+    return _laid_on_walls(straightened(plan), evidence, upright)
+
+
+def upright_columns(evidence: FusedEvidence) -> np.ndarray:
+    """Return bool [X, Y]: the columns in which surface stands upright, grown by a cell."""
+    low, high = (
+        int(np.clip(round((z - evidence.origin_m[2]) / evidence.voxel_m), 0, None)) for z in BAND_M
+    )
+    band = np.asarray(evidence.log_odds[:, :, low:high] > 0)
+    return grown(band.sum(axis=2) >= max(UPRIGHT_SHARE * band.shape[2], 1))
+
+
+def fit_of(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndarray) -> float:
+    """Return the share of a plan's walls, of those that lie where anything was seen, that fit.
+
+    0 where under a third of the walls lies there.
+    """
+    cells = np.floor((_wall_points(plan) - evidence.origin_m[:2]) / evidence.voxel_m).astype(int)
+    if not len(cells):
+        return 0.0
+    held = ((cells >= 0) & (cells < upright.shape)).all(axis=1)
+    x, y = cells[held].T
+    seen = grown((evidence.log_odds != 0).any(axis=2))[x, y]
+    if seen.sum() < len(cells) / 3:
+        return 0.0
+    return float(upright[x, y][seen].mean())
+
+
+def _wall_points(plan: CapturedPlan) -> np.ndarray:
+    """Return points on the feet of all walls but where they are open, float64 [N, 2]."""
+    points = [np.zeros((0, 2))]
+    for room in plan.rooms:
+        gaps = [one for one in room.openings if one.kind != "window"]
+        for wall in room.walls:
+            count = max(1, round(wall.length_m / STEP_M))
+            share = (np.arange(count) + 0.5)[:, None] / count
+            line = wall.start_m + share * (wall.end_m - wall.start_m)
+            free = np.ones(count, bool)
+            for gap in gaps:
+                middle, half = (gap.start_m + gap.end_m) / 2, gap.length_m / 2
+                free &= np.linalg.norm(line - middle, axis=1) > half
+            points.append(line[free])
+    return np.concatenate(points)
+
+
+def _same_session(plan: CapturedPlan, evidence: FusedEvidence) -> CapturedPlan | None:
+    """Return the plan carried by the scan's own alignment; None where it would stand askew."""
+    move = evidence.scan_to_room @ plan.plan_to_session
+    tilt = np.degrees(np.arccos(np.clip(move[2, 2], -1, 1)))
+    if tilt > MOST_TILT_DEG:
+        return None
+    yaw = float(np.degrees(np.arctan2(move[1, 0], move[0, 0])))
+    flat = rotation_about_z(yaw)
+    flat[:3, 3] = move[:3, 3]
+    return moved_plan(plan, flat)
+
+
+def _laid_on_walls(plan: CapturedPlan, evidence: FusedEvidence, upright: np.ndarray) -> LaidPlan:
+    places: list[tuple[float, int, np.ndarray]] = []
+    for turns in range(4):
+        turned = moved_plan(plan, rotation_about_z(90.0 * turns))
+        points = _wall_points(turned)
+        if len(points):
+            places += [(fit, turns, shift) for fit, shift in _shifts(points, evidence, upright)]
+    places.sort(key=lambda place: (-place[0], place[1], place[2].tolist()))
+    if not places or places[0][0] < LAID_FIT:
+        best = places[0][0] if places else 0.0
+        raise PlanMismatchError(
+            f"is no plan of this room: at best {best:.0%} of its walls meet walls of the scan, "
+            f"{LAID_FIT:.0%} are needed; leave out --plan, or give the plan of this room"
+        )
+    rivals = [places[0]]
+    for place in places[1:]:
+        if places[0][0] - place[0] < LEAST_LEAD and not any(_is_one(place, one) for one in rivals):
+            rivals.append(place)
+    laid = [moved_plan(plan, _move_of(turns, shift)) for _, turns, shift in rivals]
+    if len(laid) == 1:
+        told = f"the plan was laid on the scan's walls; {rivals[0][0]:.0%} of them meet"
+        return LaidPlan(laid[0], rivals[0][0], told)
+    inner = [furniture_fit(one, evidence) for one in laid]
+    order = sorted(range(len(laid)), key=lambda n: (-inner[n], n))
+    first, second = order[:2]
+    if inner[first] - inner[second] < LEAST_LEAD:
+        raise PlanMismatchError(
+            f"fits this scan in several ways ({rivals[first][0]:.0%} and {rivals[second][0]:.0%} "
+            "of its walls meet walls, and the furniture does not tell): export scan and plan "
+            "from one walk, so that they share one frame"
+        )
+    fit = rivals[first][0]
+    told = f"the plan was laid on the scan's walls and furniture; {fit:.0%} of its walls meet"
+    return LaidPlan(laid[first], fit, told)
+
+
+def furniture_fit(plan: CapturedPlan, evidence: FusedEvidence) -> float:
+    """Return how well the boxes of a plan's furniture cover what stands in the room, 0 to 1.
+
+    It is the overlap, from above, of boxes and of columns that hold surface at their height,
+    over what either has within the rooms.
+    """
+    low, high = (
+        int(np.clip(round((z - evidence.origin_m[2]) / evidence.voxel_m), 0, None))
+        for z in THINGS_M
+    )
+    stands = (evidence.log_odds[:, :, low:high] > 0).any(axis=2)
+    axes = [
+        evidence.origin_m[axis] + (np.arange(stands.shape[axis]) + 0.5) * evidence.voxel_m
+        for axis in (0, 1)
+    ]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    within = np.zeros(len(points), bool)
+    boxes = np.zeros(len(points), bool)
+    for room in placed_rooms(plan):
+        within |= inside_polygon(points, room.outline_m, 0.0)
+        for item in room.room.objects:
+            turn = np.radians(item.yaw_deg)
+            front = np.array([np.cos(turn), np.sin(turn)])
+            offset = points - item.center_m[:2]
+            deep, wide = offset @ front, offset @ np.array([-front[1], front[0]])
+            boxes |= (np.abs(deep) <= item.size_m[0] / 2) & (np.abs(wide) <= item.size_m[1] / 2)
+    held = stands.reshape(-1) & within
+    boxes &= within
+    return float((held & boxes).sum() / max(int((held | boxes).sum()), 1))
+
+
+def _move_of(turns: int, shift: np.ndarray) -> np.ndarray:
+    move = rotation_about_z(90.0 * turns)
+    move[:2, 3] = shift
+    return move
+
+
+def _is_one(place: tuple, other: tuple) -> bool:
+    return place[1] == other[1] and float(np.linalg.norm(place[2] - other[2])) <= APART_M
+
+
+def _shifts(
+    points: np.ndarray, evidence: FusedEvidence, upright: np.ndarray
+) -> list[tuple[float, np.ndarray]]:
+    """Return the best shifts of wall points onto upright columns, each with its share that meets.
+
+    All shifts by whole cells are tried at once, as a correlation; of near ones the best is kept.
+    """
+    # Imported late: it takes half a second, which a run without a plan need not pay.
+    from scipy.signal import fftconvolve  # noqa: PLC0415
+
+    low = points.min(axis=0)
+    cells = np.floor((points - low) / evidence.voxel_m).astype(int)
+    walls = np.zeros(cells.max(axis=0) + 1)
+    np.add.at(walls, tuple(cells.T), 1.0 / len(cells))
+    fits = fftconvolve(upright.astype(np.float64), walls[::-1, ::-1], mode="full")
+    fits = np.round(fits, 6)
+    reach = max(1, round(APART_M / evidence.voxel_m))
+    found = []
+    left = fits.copy()
+    for _ in range(4):
+        i, j = np.unravel_index(int(left.argmax()), left.shape)
+        first = np.array([i, j]) - (np.array(walls.shape) - 1)
+        shift = evidence.origin_m[:2] + first * evidence.voxel_m - low
+        found.append((float(left[i, j]), shift))
+        left[max(i - reach, 0) : i + reach + 1, max(j - reach, 0) : j + reach + 1] = -1.0
+    return found

@@ -1,0 +1,36 @@
+"""Stage 3: the evidence of all views becomes one map of the room.
+
+``fuse_views`` accumulates and settles what is solid, ``read_out`` says what each cell is, and
+``clean`` takes floaters away and closes holes. This stands in place of the paper's F_embodied (a
+memory of Gaussians). ``calibrate`` says of each labelled cell how surely it is right.
+"""
+
+from world2minecraft.reconstruction.fusion.accumulator import (
+    EvidenceMap,
+    FuseParameters,
+    fuse_views,
+)
+from world2minecraft.reconstruction.fusion.cleaning import (
+    CleanParameters,
+    close_structure,
+    remove_floaters,
+)
+from world2minecraft.reconstruction.fusion.confidence import (
+    ConfidenceTable,
+    calibrate,
+    confidence_table,
+)
+from world2minecraft.reconstruction.fusion.extract_grid import read_out
+
+__all__ = [
+    "CleanParameters",
+    "ConfidenceTable",
+    "EvidenceMap",
+    "FuseParameters",
+    "calibrate",
+    "close_structure",
+    "confidence_table",
+    "fuse_views",
+    "read_out",
+    "remove_floaters",
+]

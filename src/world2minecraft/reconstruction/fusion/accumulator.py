@@ -1,0 +1,242 @@
+"""Evidence in, one view after the other; at any time the map is there.
+
+In: PointEvidence or GridEvidence in the scan's frame. Out: FusedEvidence in the room frame. The
+map grows with what is seen, so that a capture is read once and nothing must be known of its size.
+A cell holds log-odds of being occupied: a view that sees a surface in it adds ``hit_log_odds``, a
+ray that crosses it adds ``free_log_odds``; what no ray reached stays 0, unknown. Where surfaces
+were met, their planes are kept too, and ``settle`` decides by them what is solid.
+"""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import FusedEvidence, GridEvidence, PointEvidence, Scan
+from world2minecraft.reconstruction.fusion.kernels import (
+    add_colours,
+    add_hits,
+    add_labels,
+    add_votes,
+    face_normals,
+    number_cells,
+    places_of,
+    sum_cells,
+    to_cells,
+)
+from world2minecraft.reconstruction.fusion.network_grids import grid_gains
+from world2minecraft.reconstruction.fusion.parameters import FuseParameters
+from world2minecraft.reconstruction.fusion.rays import free_rays
+from world2minecraft.reconstruction.fusion.surface_decision import inherit, settle
+from world2minecraft.reconstruction.fusion.voxel_blocks import BLOCK_CELLS, MAX_DENSE, SIDE, Blocks
+
+REACH_CELLS = 2  # A nudged point may leave its cell by one.
+ALL_SUB_CELLS = 64
+
+
+class EvidenceMap:
+    """The growing map. ``add`` takes evidence, ``fused`` gives the value of the moment."""
+
+    def __init__(self, scan_to_room: np.ndarray, parameters: FuseParameters | None = None):
+        self.parameters = parameters or FuseParameters()
+        self.scan_to_room = np.asarray(scan_to_room, np.float64)
+        self.blocks = Blocks()
+        self._base = 1  # The next view's number in the cells' marks.
+
+    def add(self, evidence: PointEvidence | GridEvidence) -> None:
+        """Add what one view says.
+
+        Raises:
+            CaptureError: the capture spans more than the map may hold.
+        """
+        if isinstance(evidence, PointEvidence):
+            self._add_points(evidence)
+        else:
+            self._add_grid(evidence)
+
+    def fused(self) -> FusedEvidence:
+        """Return the map, settled and cut to the cells that were seen.
+
+        Raises:
+            CaptureError: nothing was seen yet, or what was seen lies too far apart for one grid.
+        """
+        values, blocks = self.parameters, self.blocks
+        log_odds, record, low = self._dense()
+        log_odds = np.clip(log_odds, -values.limit_log_odds, values.limit_log_odds)
+        sums = [
+            array[: int(blocks.used[1]) + 1].copy()
+            for array in (blocks.votes, blocks.colour_sum, blocks.offset_sum, blocks.hits)
+        ]
+        log_odds, heir = settle(log_odds, record, blocks.faces, values.voxel_m, self._settle_rules)
+        inherit(record, heir, values.voxel_m, *sums)
+        seen = np.argwhere(log_odds != 0)
+        if not len(seen):
+            raise CaptureError(
+                "capture", "no view gave any evidence; is there depth in it? w2m scan tells"
+            )
+        first, last = seen.min(axis=0), seen.max(axis=0) + 1
+        box = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
+        return self._as_evidence(log_odds[box], record[box], low + first, *sums)
+
+    @property
+    def memory_mb(self) -> float:
+        """What the map's arrays take, in megabytes."""
+        arrays = (value for value in vars(self.blocks).values() if isinstance(value, np.ndarray))
+        return sum(array.nbytes for array in arrays) / (1 << 20)
+
+    def _as_evidence(self, log_odds, record, low, votes, colour_sum, offset_sum, hits):
+        """Return dense evidence from dense cells and the sums of their records."""
+        scale = np.maximum(hits / 65535, 1)[:, None]
+        votes[0], colour_sum[0], offset_sum[0], hits[0] = 0, 0, 0, 0
+        return FusedEvidence(
+            log_odds=log_odds.astype(np.float16),
+            votes=np.minimum(votes, 60_000).astype(np.float16)[record],
+            colour_sum=(colour_sum / scale).astype(np.float32)[record],
+            offset_sum=(offset_sum / scale).astype(np.float32)[record],
+            hits=np.minimum(hits, 65535).astype(np.uint16)[record],
+            voxel_m=self.parameters.voxel_m,
+            origin_m=low * self.parameters.voxel_m,
+            scan_to_room=self.scan_to_room,
+        )
+
+    def _dense(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return log-odds and record numbers of the box of all blocks, and its lowest cell."""
+        numbers, first = self.blocks.cells_of_blocks()
+        if not len(numbers):
+            return np.zeros((1, 1, 1), np.float32), np.zeros((1, 1, 1), np.int32), np.zeros(3)
+        low = first.min(axis=0)
+        shape = tuple((first.max(axis=0) + SIDE - low).tolist())
+        if math.prod(shape) > MAX_DENSE:
+            extent = " x ".join(f"{side * self.parameters.voxel_m:.0f}" for side in shape)
+            raise CaptureError(
+                "capture",
+                f"spans {extent} m, with little seen of that: a frame may have a wrong pose; w2m "
+                "scan shows where frames are, and a larger --voxel makes it fit",
+            )
+        log_odds, record = np.zeros(shape, np.float32), np.zeros(shape, np.int32)
+        for number, start in zip(numbers, first - low, strict=True):
+            box = tuple(slice(a, a + SIDE) for a in start)
+            cells = slice(number * BLOCK_CELLS, (number + 1) * BLOCK_CELLS)
+            log_odds[box] = self.blocks.log_odds[cells].reshape(SIDE, SIDE, SIDE)
+            record[box] = self.blocks.record[cells].reshape(SIDE, SIDE, SIDE)
+        return log_odds, record, low
+
+    def _add_points(self, evidence: PointEvidence) -> None:
+        if not len(evidence.points_m):
+            return
+        voxel_m, blocks, rules = self.parameters.voxel_m, self.blocks, self._rules
+        points, low, high = to_cells(evidence.points_m, self.scan_to_room[:3] / voxel_m)
+        camera = apply(self.scan_to_room, evidence.camera_m) / voxel_m
+        blocks.reserve_box(
+            np.floor(np.minimum(low, camera)).astype(np.int64) - REACH_CELLS,
+            np.floor(np.maximum(high, camera)).astype(np.int64) + 1 + REACH_CELLS,
+            voxel_m,
+        )
+        given = _NO_NORMALS if evidence.normals is None else evidence.normals
+        normals = face_normals(points, given, camera, self.scan_to_room[:3, :3])
+        where = (blocks.low, blocks.table, blocks.used)
+        nudge = self.parameters.nudge_m / voxel_m
+        owner, cells, places = number_cells(
+            points, normals, nudge, *where, blocks.mark, self._base
+        )  # fmt: skip
+        trust = _NO_TRUST if evidence.trust is None else evidence.trust
+        count, area, target, faces, sure = sum_cells(
+            points, normals, evidence.weight, trust, camera, owner, cells, voxel_m
+        )
+        blocks.reserve_records(len(cells))
+        taken = add_hits(
+            places, count, area, faces, sure, rules, blocks.log_odds, blocks.record, blocks.used,
+            blocks.hits, blocks.offset_sum, blocks.faces,
+        )  # fmt: skip
+        self._add_attributes(evidence, owner, taken, places)
+        free_rays(
+            camera, target, count, sure, rules, *where, blocks.log_odds, blocks.mark, self._base
+        )  # fmt: skip
+        self._base += len(cells) + 1
+
+    def _add_attributes(self, evidence: PointEvidence, owner, taken, places) -> None:
+        blocks = self.blocks
+        at = (owner, taken, places, blocks.record)
+        if evidence.colour is not None:
+            add_colours(evidence.colour, *at, blocks.colour_sum)
+        if evidence.labels is not None:
+            add_labels(evidence.labels, *at, blocks.votes)
+        if evidence.votes is not None:
+            add_votes(evidence.votes.astype(np.float32), *at, blocks.votes)
+
+    def _add_grid(self, evidence: GridEvidence) -> None:
+        found = grid_gains(evidence, self.scan_to_room, self.parameters)
+        if not len(found.cells):
+            return
+        blocks = self.blocks
+        low, high = found.cells.min(axis=0), found.cells.max(axis=0) + 1
+        blocks.reserve_box(low, high, self.parameters.voxel_m)
+        at = places_of(found.cells, blocks.low, blocks.table, blocks.used)
+        blocks.log_odds[at] += found.gains
+        said = found.votes.any(axis=1)
+        at = at[said]
+        blocks.reserve_records(len(at))
+        fresh = at[blocks.record[at] == 0]
+        blocks.record[fresh] = blocks.used[1] + 1 + np.arange(len(fresh), dtype=np.int32)
+        blocks.used[1] += len(fresh)
+        record = blocks.record[at]
+        blocks.votes[record] += found.votes[said]
+        blocks.colour_sum[record] += found.colour[said]
+        blocks.hits[record] += found.coloured[said]
+
+    @property
+    def _rules(self) -> np.ndarray:
+        """What the kernels of a view need: lengths along rays in cells, the rest in metres."""
+        values = self.parameters
+        face_m2 = values.voxel_m**2
+        return np.array(
+            [
+                values.hit_log_odds,
+                values.free_log_odds,
+                values.limit_log_odds,
+                values.min_share * face_m2,
+                values.min_points,
+                face_m2,
+                values.sigma_m,
+                values.sigma_growth,
+                values.pose_m,
+                values.pose_growth,
+                values.clear_m / values.voxel_m,
+                values.clear_growth,
+            ]
+        )
+
+    @property
+    def _settle_rules(self) -> np.ndarray:
+        values = self.parameters
+        least = min(max(math.ceil(values.solid_share * ALL_SUB_CELLS - 1e-9), 1), ALL_SUB_CELLS)
+        return np.array([least, values.merge_m, values.merge_sigmas, values.sure_m])
+
+
+def fuse_views(
+    evidence: Iterable[PointEvidence | GridEvidence],
+    scan: Scan,
+    parameters: FuseParameters | None = None,
+    progress: Progress = silent,
+) -> FusedEvidence:
+    """Fuse the evidence of all views, streamed: the paper's F_embodied, equation 2.
+
+    Raises:
+        CaptureError: no view gave evidence, or the capture is larger than the map may be.
+    """
+    map_ = EvidenceMap(scan.scan_to_room, parameters)
+    total, done = len(scan.views), 0
+    for item in evidence:
+        map_.add(item)
+        done = min(done + 1, total)
+        progress("fuse", done, total, item.view)
+    if done < total:  # Some views gave nothing.
+        progress("fuse", total, total)
+    return map_.fused()
+
+
+_NO_NORMALS = np.zeros((0, 3), np.float32)
+_NO_TRUST = np.zeros(0, np.float32)

@@ -1,0 +1,251 @@
+"""Which cells the surface leaves solid: the read-out of the map by the rule that truth is made by.
+
+Noise spreads the points of one surface over two or three cells along its normal. So the planes of
+a cell and of its neighbours along the axis that they face are joined where they may be one
+surface; the joined plane then leaves so many of the cell's 64 sub-cells behind it. At least 4, and
+the cell is solid. Fewer, and the points in it were spill from the cell behind: it is free. All of
+them, with the plane in the cell before it, and the points were spill to the back: nothing is known.
+"""
+
+import math
+
+import numpy as np
+
+from world2minecraft.core.jit import njit
+from world2minecraft.reconstruction.fusion.voxel_blocks import FACES
+
+PER_SIDE = 4  # Sub-cells along a cell's edge, as in SSCNet's rule.
+# More than the noise alone explains is let go as spill, because views err together; and never more
+# than a fifth: then there is a second surface. docs/fusion.md has the figures.
+SPILL_MORE, SPILL_MOST = 0.05, 0.2
+SOLID, SPILL_BEFORE, SPILL_BEHIND = 1, 2, 3
+
+
+@njit
+def settle(log_odds, record, faces, voxel_m, rules):
+    """Decide every cell that holds a record, by its planes.
+
+    Args:
+        log_odds: float32 [X, Y, Z], as hits and rays left them.
+        record: int32 [X, Y, Z], 0 where no surface was met.
+        faces: float32 [R, 6, 8].
+        voxel_m: the cell.
+        rules: float64 [4]: sub-cells that make a cell solid, distance and sigmas within which
+            planes are one, and the metres of margin that give one log-odd.
+
+    Returns:
+        ``settled`` float32 [X, Y, Z], log-odds of the decision; ``heir`` int32 [X, Y, Z], the
+        record that takes over what was summed in each cell's own: of its neighbour for spill.
+    """
+    settled = log_odds.copy()
+    heir = record.copy()
+    verdict = np.zeros(log_odds.shape, np.uint8)
+    facing = np.zeros(log_odds.shape, np.int8)
+    size = log_odds.shape
+    for i in range(size[0]):
+        for j in range(size[1]):
+            for k in range(size[2]):
+                if record[i, j, k] == 0 or log_odds[i, j, k] <= 0:
+                    continue
+                said, margin_m, face = _judge(i, j, k, record, faces, voxel_m, rules)
+                verdict[i, j, k], facing[i, j, k] = said, face
+                if said == SOLID:
+                    settled[i, j, k] = min(log_odds[i, j, k], margin_m / rules[3])
+                elif said == SPILL_BEFORE:
+                    settled[i, j, k] = max(-log_odds[i, j, k], margin_m / rules[3])
+                elif said == SPILL_BEHIND:
+                    settled[i, j, k] = 0
+    for i in range(size[0]):
+        for j in range(size[1]):
+            for k in range(size[2]):
+                if verdict[i, j, k] == SPILL_BEFORE or verdict[i, j, k] == SPILL_BEHIND:
+                    heir[i, j, k] = _heir(i, j, k, facing[i, j, k], record, verdict)
+    return settled, heir
+
+
+@njit
+def _judge(i, j, k, record, faces, voxel_m, rules):
+    """Return the verdict on a cell, its margin in metres and the face that told it.
+
+    Any face that leaves the cell solid decides; else the weightiest. Without any plane, as from a
+    network's grid, there is no verdict (0).
+    """
+    best, best_face, heaviest = -np.inf, -1, 0.0
+    said, margin_m, face = 0, 0.0, 0
+    plane = np.zeros(7)
+    for f in range(FACES):
+        weight = faces[record[i, j, k], f, 0]
+        if weight <= 0:
+            continue
+        _joined_plane(i, j, k, f, record, faces, voxel_m, rules, plane)
+        depth, whole = _depth_of_solid(plane, voxel_m, int(rules[0]))
+        # The same plane leaves the neighbour before this cell solid too, and this one whole.
+        before = depth - abs(plane[3 + f // 2]) * voxel_m
+        behind = False
+        if whole and before > 0:
+            front = _weight_before(i, j, k, f, record, faces)
+            sigma = faces[record[i, j, k], f, 7] / weight
+            behind = weight < (weight + front) * _spill_share(before, sigma)
+        if depth > 0 and not behind and depth > best:
+            best, best_face = depth, f
+        if weight > heaviest:
+            heaviest, face, margin_m = weight, f, depth
+            said = SPILL_BEHIND if behind else SPILL_BEFORE
+    if best_face >= 0:
+        return SOLID, best, best_face
+    return said, margin_m, face
+
+
+@njit
+def _spill_share(depth, sigma):
+    """Return the largest part of a surface's points that noise may put behind a cell's back.
+
+    ``depth`` is the way in metres from where the surface lies to where its points would fall over
+    the edge, ``sigma`` the standard deviation of a point along its ray.
+    """
+    tail = 0.5 * math.erfc(depth / (math.sqrt(2) * max(sigma, 1e-6)))
+    return min(tail + SPILL_MORE, SPILL_MOST)
+
+
+@njit
+def _weight_before(i, j, k, f, record, faces):
+    """Return the weight of the same face in the cell before, 0 where there is none."""
+    towards = 1 if f % 2 else -1
+    if f < 2:
+        i += towards
+    elif f < 4:
+        j += towards
+    else:
+        k += towards
+    if min(i, j, k) < 0 or i >= record.shape[0] or j >= record.shape[1] or k >= record.shape[2]:
+        return 0.0
+    return faces[record[i, j, k], f, 0]
+
+
+@njit
+def _joined_plane(i, j, k, f, record, faces, voxel_m, rules, plane):
+    """Fill ``plane`` with a point (metres from the cell's centre) and unit normal of a face.
+
+    Neighbours along the face's axis join in by their weight where they may be of one surface.
+    """
+    own = faces[record[i, j, k], f]
+    axis = f // 2
+    weight = own[0]
+    for m in range(6):
+        plane[m] = own[1 + m]
+    for step in (-1, 1):
+        a, b, c = i, j, k
+        if axis == 0:
+            a += step
+        elif axis == 1:
+            b += step
+        else:
+            c += step
+        if min(a, b, c) < 0 or a >= record.shape[0] or b >= record.shape[1]:
+            continue
+        if c >= record.shape[2] or record[a, b, c] == 0:
+            continue
+        other = faces[record[a, b, c], f]
+        if other[0] <= 0:
+            continue
+        apart, length = 0.0, 0.0
+        for m in range(3):
+            shift = step * voxel_m if m == axis else 0.0
+            normal = own[4 + m] + other[4 + m]
+            apart += (other[1 + m] / other[0] + shift - own[1 + m] / own[0]) * normal
+            length += normal * normal
+        sigma = max(own[7] / own[0], other[7] / other[0])
+        if abs(apart) < (rules[1] + rules[2] * sigma) * np.sqrt(length):
+            weight += other[0]
+            for m in range(6):
+                plane[m] += other[1 + m]
+            plane[axis] += step * voxel_m * other[0]
+    length = np.sqrt(plane[3] ** 2 + plane[4] ** 2 + plane[5] ** 2)
+    for m in range(3):
+        plane[m] /= weight
+        plane[3 + m] /= length
+
+
+@njit
+def _depth_of_solid(plane, voxel_m, least):
+    """Return how deep the ``least``-deepest sub-cell's centre lies, and whether all are behind.
+
+    A positive depth, in metres, means that the plane leaves at least so many sub-cells solid.
+    """
+    deepest = np.full(least, -np.inf)
+    whole = True
+    step = voxel_m / PER_SIDE
+    middle = (PER_SIDE - 1) / 2
+    for x in range(PER_SIDE):
+        for y in range(PER_SIDE):
+            for z in range(PER_SIDE):
+                depth = (plane[0] - (x - middle) * step) * plane[3]
+                depth += (plane[1] - (y - middle) * step) * plane[4]
+                depth += (plane[2] - (z - middle) * step) * plane[5]
+                whole = whole and depth > 0
+                if depth <= deepest[least - 1]:
+                    continue
+                m = least - 1
+                while m > 0 and deepest[m - 1] < depth:
+                    deepest[m] = deepest[m - 1]
+                    m -= 1
+                deepest[m] = depth
+    return deepest[least - 1], whole
+
+
+@njit
+def _heir(i, j, k, face, record, verdict):
+    """Return the record of the solid neighbour behind, or before, a cell of spill; 0 for none."""
+    axis, towards = face // 2, 1 if face % 2 else -1
+    for step in (-towards, towards):
+        a, b, c = i, j, k
+        if axis == 0:
+            a += step
+        elif axis == 1:
+            b += step
+        else:
+            c += step
+        if min(a, b, c) < 0 or a >= record.shape[0] or b >= record.shape[1]:
+            continue
+        if c < record.shape[2] and verdict[a, b, c] == SOLID:
+            return record[a, b, c]
+    return 0
+
+
+@njit
+def inherit(record, heir, voxel_m, votes, colour_sum, offset_sum, hits):
+    """Hand what was summed in cells of spill to their heirs, in place.
+
+    Args:
+        record: int32 [X, Y, Z].
+        heir: int32 [X, Y, Z] from ``settle``.
+        voxel_m: the cell; offsets are carried to the heir's centre.
+        votes: float32 [R, 12].
+        colour_sum: float32 [R, 3].
+        offset_sum: float32 [R, 3].
+        hits: int64 [R].
+    """
+    size = record.shape
+    place = np.zeros((len(hits), 3), np.int32)
+    for i in range(size[0]):
+        for j in range(size[1]):
+            for k in range(size[2]):
+                place[record[i, j, k]] = i, j, k
+    for i in range(size[0]):
+        for j in range(size[1]):
+            for k in range(size[2]):
+                row, to = record[i, j, k], heir[i, j, k]
+                if row == to:
+                    continue
+                if to != 0:
+                    for label in range(votes.shape[1]):
+                        votes[to, label] += votes[row, label]
+                    hits[to] += hits[row]
+                    shift = (i - place[to, 0], j - place[to, 1], k - place[to, 2])
+                    for m in range(3):
+                        colour_sum[to, m] += colour_sum[row, m]
+                        offset_sum[to, m] += offset_sum[row, m] + hits[row] * shift[m] * voxel_m
+                votes[row] = 0
+                colour_sum[row] = 0
+                offset_sum[row] = 0
+                hits[row] = 0

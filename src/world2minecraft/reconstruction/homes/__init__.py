@@ -1,0 +1,22 @@
+"""Several finished runs become one home: rooms set beside each other by their doors.
+
+``join`` reads, places, merges, writes and builds; ``place_runs`` and ``merged`` are its pure parts.
+"""
+
+from world2minecraft.reconstruction.homes.join_runs import join, read_runs
+from world2minecraft.reconstruction.homes.merged_run import Home, merged
+from world2minecraft.reconstruction.homes.moved_run import Move, Run, moved
+from world2minecraft.reconstruction.homes.placing import Placed, parse_place, place_runs
+
+__all__ = [
+    "Home",
+    "Move",
+    "Placed",
+    "Run",
+    "join",
+    "merged",
+    "moved",
+    "parse_place",
+    "place_runs",
+    "read_runs",
+]

@@ -1,0 +1,236 @@
+"""Where one room may stand beside others: its doors against theirs.
+
+Two runs have a door in common where openings of about one width and height meet from both sides of
+a wall. Turns are quarter turns and shifts whole cells. Scans look through open doors: what one saw
+there must agree with what the other saw of the same place, and tells the place to the cell.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import Layout
+from world2minecraft.furniture.layout_checks import inside_polygon
+from world2minecraft.geometry.morphology import grown
+from world2minecraft.reconstruction.homes.doors import Doorway, doorways_of, shifted_door
+from world2minecraft.reconstruction.homes.moved_run import Move, Run, moved, moved_layout
+
+SAME_WIDTH_M, SAME_HEAD_M = 0.3, 0.3
+WALL_CELLS = 2  # Between two rooms: the wall's face in each.
+ALONG_CELLS, THINNER, THICKER = 4, 1, 3  # How far a door's place may be off.
+OVERLAP_M2 = 0.25  # Of floor that both would have: outlines are off by a cell.
+LEAST_COMMON = 150  # Solid cells of one that the other knows, before their agreement counts.
+# Right places of three generated houses, scanned room by room, agree by 0.99, wrong ones by 0.45 to
+# 0.87: what is below counts against a place.
+AGREE_WEIGHT, AGREE_NEUTRAL = 4.0, 0.75
+AGREEING = 0.9  # Where rooms overlap, both scans saw the same things there.
+BESIDE_CELLS = 4  # Around the wall between two rooms.
+NEAR_CELLS = 7  # Places nearer than that are one.
+MORE_DOORS = 0.3  # What each further door that meets adds.
+UNSURE_COST = 0.1
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A place for a run: how it is moved there, how well it fits, and by which door of which run.
+
+    ``doors`` are that of the other run and its own, in the common frame.
+    """
+
+    move: Move
+    score: float
+    beside: str
+    doors: tuple[Doorway, Doorway]
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """What a run knows of its cells: bool [X, Y, Z] each, and the index of the first cell.
+
+    ``thick`` are the solid cells and their neighbours.
+    """
+
+    solid: np.ndarray
+    thick: np.ndarray
+    known: np.ndarray
+    first: np.ndarray
+
+
+def known_of(run: Run) -> Known:
+    """Return the solid and known cells of a run; floor and ceiling fit everywhere, and are none."""
+    level = np.isin(run.grid.labels, (SemanticClass.FLOOR, SemanticClass.CEILING))
+    solid = run.grid.occupied & ~level
+    first = np.rint(run.grid.origin_m / run.grid.voxel_m).astype(int)
+    return Known(solid, grown(solid), run.grid.labels != 255, first)
+
+
+def fits(run: Run, placed: Sequence[Run]) -> list[Fit]:
+    """Return the places where a run may stand beside those that stand already, best first.
+
+    Places that are one and the same, found by several doors, are one.
+    """
+    voxel_m = run.grid.voxel_m
+    own_doors = doorways_of(run)
+    others = [(other, known_of(other), doorways_of(other)) for other in placed]
+    turned = {turns: known_of(moved(run, Move(turns))) for turns in range(4)}
+    found: list[Fit] = []
+    for other, there, doors in others:
+        for theirs, own in product(doors, own_doors):
+            if not _alike(own, theirs):
+                continue
+            move = _meeting(own, theirs, voxel_m)
+            wall = _wall_of(theirs, voxel_m)
+            move = _refined(turned[move.quarter_turns], move, theirs.outward, there, wall)
+            here = _shifted(turned[move.quarter_turns], move)
+            score = _score(run, move, here, (own, theirs, other.name), others)
+            if score is not None:
+                shift = np.array(move.cells) * voxel_m
+                pair = (theirs, shifted_door(own, shift, move.quarter_turns))
+                found.append(Fit(move, round(score, 6), other.name, pair))
+    found.sort(key=lambda fit: (-fit.score, fit.move.quarter_turns, fit.move.cells))
+    best: list[Fit] = []
+    for fit in found:
+        if not any(_is_near(fit.move, other.move) for other in best):
+            best.append(fit)
+    return best
+
+
+def _is_near(one: Move, other: Move) -> bool:
+    apart = np.abs(np.array(one.cells) - other.cells).max()
+    return one.quarter_turns == other.quarter_turns and apart < NEAR_CELLS
+
+
+def _alike(own: Doorway, theirs: Doorway) -> bool:
+    sure = own.sure and theirs.sure
+    return abs(own.width_m - theirs.width_m) <= SAME_WIDTH_M and (
+        not sure or abs(own.head_m - theirs.head_m) <= SAME_HEAD_M
+    )
+
+
+def _meeting(own: Doorway, theirs: Doorway, voxel_m: float) -> Move:
+    """Return the move that sets a door against another one, a wall's thickness away."""
+    turns = (theirs.outward + 2 - own.outward) % 4
+    turn = Move(turns).transform(voxel_m)[:2, :2]
+    ahead = Move(theirs.outward).transform(voxel_m)[:2, 0]
+    target = np.array(theirs.middle_m) + ahead * WALL_CELLS * voxel_m
+    shift = np.rint((target - turn @ np.array(own.middle_m)) / voxel_m).astype(int)
+    up = round((theirs.floor_z_m - own.floor_z_m) / voxel_m)
+    return Move(turns, (int(shift[0]), int(shift[1]), int(up)))
+
+
+def _wall_of(door: Doorway, voxel_m: float) -> tuple[int, int]:
+    """Return the axis that a door's wall is square to, and the cell just behind its face."""
+    axis = door.outward % 2
+    return axis, int(np.floor(door.middle_m[axis] / voxel_m))
+
+
+def _refined(turned: Known, move: Move, outward: int, there: Known, wall: tuple[int, int]) -> Move:
+    """Return the move that agrees best with the other scan, a few cells from where doors meet.
+
+    Without enough that both know, it stays.
+    """
+    ahead = np.rint(Move(outward).transform(1.0)[:3, 0]).astype(int)
+    aside = np.array([-ahead[1], ahead[0], 0])
+    best, most = move, -1.0
+    steps = product(range(-ALONG_CELLS, ALONG_CELLS + 1), range(-THINNER, THICKER + 1))
+    for along, across in sorted(steps, key=lambda step: (abs(step[0]) + abs(step[1]), step)):
+        cells = np.array(move.cells) + along * aside + across * ahead
+        tried = Move(move.quarter_turns, tuple(cells.tolist()))
+        common, agreed = agreement(_shifted(turned, tried), there, wall)
+        if common >= LEAST_COMMON and agreed > most + 1e-9:
+            best, most = tried, agreed
+    return best
+
+
+def _shifted(turned: Known, move: Move) -> Known:
+    return Known(turned.solid, turned.thick, turned.known, turned.first + np.array(move.cells))
+
+
+def _score(
+    run: Run, move: Move, here: Known, by: tuple[Doorway, Doorway, str], others: list
+) -> float | None:
+    """Return how well a run fits at a place, None where it would stand in another room.
+
+    ``by`` are its own door, the one that it meets, and the name of the run that has that.
+    """
+    own, theirs, beside = by
+    voxel_m = run.grid.voxel_m
+    to_new = move.transform(voxel_m)
+    layouts = tuple(moved_layout(layout, to_new) for layout in run.layouts)
+    score = 1 - abs(own.width_m - theirs.width_m) - UNSURE_COST * (not own.sure or not theirs.sure)
+    if own.sure and theirs.sure:
+        score -= abs(own.head_m - theirs.head_m)
+    for other, there, _ in others:
+        is_next = other.name == beside
+        common, agreed = agreement(here, there, _wall_of(theirs, voxel_m) if is_next else None)
+        counts = common >= LEAST_COMMON
+        if overlap_m2(layouts, other.layouts) > OVERLAP_M2 and not (counts and agreed > AGREEING):
+            return None
+        if counts:
+            score += AGREE_WEIGHT * min(agreed - AGREE_NEUTRAL, 1.0 if is_next else 0.0)
+    shift = np.array(move.cells) * voxel_m
+    doors = [shifted_door(one, shift, move.quarter_turns) for one in doorways_of(run) if one.sure]
+    met = sum(any(_meet(door, far) for _, _, doors_ in others for far in doors_) for door in doors)
+    return score + MORE_DOORS * max(met - 1, 0)
+
+
+def _meet(door: Doorway, other: Doorway) -> bool:
+    apart = np.abs(np.array(door.middle_m) - other.middle_m).max()
+    opposite = (door.outward - other.outward) % 4 == 2
+    return bool(other.sure and opposite and apart <= 0.4 and _alike(door, other))
+
+
+def agreement(one: Known, other: Known, wall: tuple[int, int] | None = None) -> tuple[int, float]:
+    """Return how many solid cells of either run the other knows, and the share that agrees.
+
+    They agree where the other run has a solid cell there or beside it.
+
+    Args:
+        one: cells of one frame.
+        other: those of another run in that frame.
+        wall: the axis and the cell of a wall between the rooms, which is left out: that one wall
+            lies on another says nothing.
+    """
+    low = np.maximum(one.first, other.first)
+    high = np.minimum(one.first + one.solid.shape, other.first + other.solid.shape)
+    if (high <= low).any():
+        return 0, 0.0
+    mine, theirs = (
+        tuple(slice(a, b) for a, b in zip(low - run.first, high - run.first, strict=True))
+        for run in (one, other)
+    )
+    common = agreed = 0
+    for left, a, right, b in ((one, mine, other, theirs), (other, theirs, one, mine)):
+        judged = left.solid[a] & right.known[b]
+        if wall is not None:
+            near = slice(
+                *np.clip(np.array([-1, 2]) * BESIDE_CELLS + wall[1] - low[wall[0]], 0, None)
+            )
+            np.moveaxis(judged, wall[0], 0)[near] = False
+        common += int(judged.sum())
+        agreed += int((judged & right.thick[b]).sum())
+    return common, agreed / max(common, 1)
+
+
+def overlap_m2(
+    layouts: tuple[Layout, ...], others: tuple[Layout, ...], step_m: float = 0.1
+) -> float:
+    """Return how much floor two sets of rooms would share, storey by storey."""
+    shared = 0.0
+    for one, other in product(layouts, others):
+        top = min(one.floor_z_m + one.wall_height_m, other.floor_z_m + other.wall_height_m)
+        if top - max(one.floor_z_m, other.floor_z_m) < 0.5:
+            continue
+        low = np.maximum(one.floor_polygon_m.min(axis=0), other.floor_polygon_m.min(axis=0))
+        high = np.minimum(one.floor_polygon_m.max(axis=0), other.floor_polygon_m.max(axis=0))
+        if (high - low <= step_m).any():
+            continue
+        axes = [np.arange(a + step_m / 2, b, step_m) for a, b in zip(low, high, strict=True)]
+        points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+        both = inside_polygon(points, one.floor_polygon_m, 0.0)
+        both &= inside_polygon(points, other.floor_polygon_m, 0.0)
+        shared += float(both.sum()) * step_m**2
+    return shared

@@ -1,0 +1,147 @@
+"""Finished runs from disk, joined, and written as one run with its world."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft import __version__
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.files import write_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Scan
+from world2minecraft.formats.layout import write_layouts
+from world2minecraft.formats.objects import (
+    read_objects,
+    read_placements,
+    write_objects,
+    write_placements,
+)
+from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
+from world2minecraft.formats.room import read_room, write_room
+from world2minecraft.formats.rooms import read_rooms
+from world2minecraft.formats.scan import write_scan
+from world2minecraft.reconstruction.homes.merged_run import Home, merged
+from world2minecraft.reconstruction.homes.moved_run import Run
+from world2minecraft.reconstruction.homes.placing import Placed, parse_place, place_runs, stated
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.run_folder import check_finished, check_writable
+from world2minecraft.reconstruction.stages import LATER_STEPS
+
+MOST_RUNS = 50
+
+
+def read_runs(folders: Sequence[Path]) -> tuple[Run, ...]:
+    """Read finished runs; each is called as its folder, a second of that name with a number.
+
+    Raises:
+        InputError: a folder holds no finished run. UsageError: cells of different sizes.
+    """
+    if not 2 <= len(folders) <= MOST_RUNS:
+        raise UsageError(f"give 2 to {MOST_RUNS} finished runs to join, not {len(folders)}")
+    runs: list[Run] = []
+    for folder in folders:
+        check_finished(folder)
+        grid, _ = read_room(folder / "room.npz")
+        layouts = read_rooms(folder, grid)
+        if not layouts:
+            raise InputError(
+                folder, "tells no room: layout.json is missing or empty; reconstruct it anew"
+            )
+        name = _name(folder, [run.name for run in runs])
+        objects = read_objects(folder / "objects.json", grid)
+        placed = read_placements(folder / "placements.json")
+        runs.append(Run(name, grid, objects, placed, layouts))
+    sizes = sorted({run.grid.voxel_m for run in runs})
+    if len(sizes) > 1:
+        raise UsageError(
+            f"the runs have cells of {sizes[0]:g} and {sizes[-1]:g} m; reconstruct them anew with "
+            f"one --voxel"
+        )
+    return tuple(runs)
+
+
+def _name(folder: Path, taken: Sequence[str]) -> str:
+    plain = (
+        "".join(c if c.isalnum() or c in "_-." else "_" for c in folder.resolve().name) or "room"
+    )
+    name, number = plain, 2
+    while name in taken:
+        name, number = f"{plain}-{number}", number + 1
+    return name
+
+
+def join(
+    folders: Sequence[Path],
+    out: Path,
+    parameters: Parameters | None = None,
+    places: Sequence[str] = (),
+    progress: Progress = silent,
+) -> Scan:
+    """Join finished runs into one run's folder with its world.
+
+    Args:
+        folders: the runs; the first keeps its place.
+        out: the folder of the results.
+        parameters: how the world is built.
+        places: where runs stand, each ``NAME=X,Y,TURNS``; the others find their doors.
+        progress: told of each step.
+
+    Returns:
+        what a scan would say of the whole; it has no views.
+
+    Raises:
+        InputError: a run cannot be read. UsageError: a run fits nowhere, or in several ways.
+        OutputError: ``out`` cannot be written.
+    """
+    chosen = parameters or Parameters()
+    if any(out.exists() and folder.exists() and out.samefile(folder) for folder in folders):
+        raise UsageError(f"{out} is one of the runs; give another folder to --out")
+    progress("join", 0, 1)
+    runs = read_runs(folders)
+    voxel_m = runs[0].grid.voxel_m
+    names = [run.name for run in runs]
+    by_hand = dict(parse_place(text, names, voxel_m) for text in places)
+    placed = place_runs(runs, by_hand)
+    home = merged(placed, out.resolve().name)
+    check_writable(out)
+    scan = _scan_of(home, placed)
+    _write(out, home, scan)
+    write_json(out / "manifest.json", _manifest(folders, placed, voxel_m, chosen))
+    progress("join", 1, 1)
+    progress("build", 0, 1)
+    LATER_STEPS["build"](out, chosen)
+    progress("build", 1, 1)
+    return scan
+
+
+def _scan_of(home: Home, placed: Placed) -> Scan:
+    return Scan(
+        views=(),  # type: ignore[arg-type]
+        scan_to_room=np.eye(4),
+        room_size_m=home.size_m,
+        frames_used=(),
+        source="joined",
+        notes=(*placed.told, *home.told),
+        name=home.run.name.replace("_", " "),
+    )
+
+
+def _write(out: Path, home: Home, scan: Scan) -> None:
+    run = home.run
+    write_scan(out / "scan.json", scan)
+    write_room(out / "room.npz", run.grid, np.eye(4))
+    write_layouts(out / "layout.json", run.layouts)
+    write_objects(out / "objects.json", run.instances)
+    write_placements(out / "placements.json", run.placements)
+    write_occ_json(out / "occ.json", run.grid)
+    write_centers_json(out / "centers.json", run.instances)
+
+
+def _manifest(folders: Sequence[Path], placed: Placed, voxel_m: float, chosen: Parameters) -> dict:
+    pairs = zip(placed.runs, placed.moves, strict=True)
+    return {
+        "program": __version__,
+        "joined": [stated(run.name, move, voxel_m) for run, move in pairs],
+        "parameters": chosen.as_json(),
+    }

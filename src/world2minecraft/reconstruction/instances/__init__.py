@@ -1,0 +1,15 @@
+"""Stage 5, OccupancyGrid -> objects: density map, threshold, clusters per class, centres, cells.
+
+This is the paper's Algorithm 1 from ``density`` (D) to the centres (C'), and then the cells of
+each object (O_k).
+"""
+
+from world2minecraft.reconstruction.instances.objects import (
+    CenterMap,
+    Found,
+    find_objects,
+    measured,
+)
+from world2minecraft.reconstruction.instances.parameters import FindParameters
+
+__all__ = ["CenterMap", "FindParameters", "Found", "find_objects", "measured"]

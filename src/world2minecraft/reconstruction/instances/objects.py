@@ -1,0 +1,174 @@
+"""Stage 5, the heart of Algorithm 1: the objects of a room, from its semantic occupancy."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.coordinates import cell_centers_m
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import OBSERVED, UNSEEN, ObjectInstance, OccupancyGrid
+from world2minecraft.furniture.facing import Surroundings, facing, surroundings
+from world2minecraft.reconstruction.instances.askew import askew_rectangle
+from world2minecraft.reconstruction.instances.clusters import cluster_candidates
+from world2minecraft.reconstruction.instances.denoise import without_specks
+from world2minecraft.reconstruction.instances.density import (
+    candidate_cells,
+    density_map,
+    object_cells,
+)
+from world2minecraft.reconstruction.instances.growth import grow
+from world2minecraft.reconstruction.instances.hosts import part_by_hosts
+from world2minecraft.reconstruction.instances.parameters import FindParameters
+from world2minecraft.reconstruction.instances.posts import join_posts
+from world2minecraft.reconstruction.instances.reach import layers_reached
+from world2minecraft.reconstruction.instances.rejoin import rejoin
+from world2minecraft.reconstruction.instances.rows import part_rows
+from world2minecraft.reconstruction.instances.split_by_colour import part_by_paint
+from world2minecraft.reconstruction.instances.stacks import join_stacked
+from world2minecraft.reconstruction.instances.touching_chairs import join_backs, part_chairs
+
+MAX_OBJECTS = 65535
+
+
+@dataclass(frozen=True, eq=False)
+class CenterMap:
+    """The paper's D, C and the cluster of each candidate: what ``centers.npz`` holds."""
+
+    density: np.ndarray  # float32 [X, Y, Z], 0 to 1
+    candidates: np.ndarray  # int32 [M, 3]
+    cluster: np.ndarray  # int32 [M], -1 for none
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The grid with its instance ids, the objects, the map of centres, and what is left.
+
+    ``leftover`` counts the object cells that belong to no object; their instance is 0.
+    """
+
+    grid: OccupancyGrid
+    instances: tuple[ObjectInstance, ...]
+    centers: CenterMap
+    leftover: int
+
+
+def find_objects(grid: OccupancyGrid, parameters: FindParameters | None = None) -> Found:
+    """Find the objects of a room.
+
+    Objects are ordered by class, then by the middle of their cells (x, y, z), and numbered from 1.
+    Labels stay as they are, also those of specks that are taken for a part of another object.
+
+    Raises:
+        UsageError: there are more objects than ids; ``min_cells`` must be raised.
+    """
+    chosen = parameters or FindParameters()
+    given = grid
+    if not chosen.paper_compat:
+        grid = replace(grid, labels=without_specks(grid.labels))
+    binary = object_cells(grid.labels)
+    density = density_map(binary, chosen.density_kernel)
+    candidates = candidate_cells(binary, density, chosen.density_threshold)
+    classes = grid.labels[tuple(candidates.T)]
+    cluster = cluster_candidates(candidates, classes, chosen.cluster_radius, chosen.min_samples)
+    owners = grow(grid.labels, binary, candidates, cluster)
+    if not chosen.paper_compat:
+        owners = rejoin(
+            grid.labels,
+            join_stacked(owners, grid.labels),
+            min_cells=chosen.min_cells,
+            join_radius=chosen.join_radius,
+        )
+        owners = join_backs(part_chairs(owners, grid), grid)
+        owners = part_rows(owners, grid)
+        owners = part_by_paint(part_by_hosts(owners, grid), grid)
+        owners = join_posts(owners, grid)
+    instances = _instances(grid, owners, reach=not chosen.paper_compat)
+    marked = np.zeros(grid.shape, np.uint16)
+    for instance in instances:
+        marked[tuple(instance.cells.T)] = instance.id
+    leftover = int(np.count_nonzero(binary & (marked == 0)))
+    centers = CenterMap(density, candidates, cluster)
+    return Found(replace(given, instance=marked), instances, centers, leftover)
+
+
+def _instances(
+    grid: OccupancyGrid, owners: np.ndarray, *, reach: bool
+) -> tuple[ObjectInstance, ...]:
+    cells = np.argwhere(owners).astype(np.int32)
+    numbers = owners[tuple(cells.T)]
+    order = np.argsort(numbers, kind="stable")
+    starts = np.unique(numbers[order], return_index=True)[1][1:]
+    groups = np.split(cells[order], starts) if len(cells) else []
+    if len(groups) > MAX_OBJECTS:
+        raise UsageError(
+            f"{len(groups):,} objects are too many, {MAX_OBJECTS:,} at most; "
+            "leave out small ones, such as by --set find.min_cells=20"
+        )
+    around = surroundings(grid.labels)
+    return tuple(
+        _instance(number, grid, group, around, reach)
+        for number, group in enumerate(sorted(groups, key=lambda g: _rank(grid, g)), start=1)
+    )
+
+
+def measured(grid: OccupancyGrid, number: int, class_id: int, cells: np.ndarray) -> ObjectInstance:
+    """Return the object that cells, int32 [N, 3], of a grid are: its box and its front.
+
+    Args:
+        grid: what is around it; the labels of its own cells may be of other classes.
+        number: its id.
+        class_id: its class, 5 to 11.
+        cells: one at least.
+    """
+    labels = grid.labels.copy()
+    labels[tuple(cells.T)] = class_id
+    source = np.where(labels == UNKNOWN, UNSEEN, OBSERVED).astype(np.uint8)
+    grid = replace(grid, labels=labels, source=source)
+    return _instance(number, grid, cells, surroundings(labels), True)
+
+
+def _rank(grid: OccupancyGrid, cells: np.ndarray) -> tuple[int, ...]:
+    first = tuple(int(value) for value in cells[0])
+    middle = cells.min(axis=0) + cells.max(axis=0)
+    return (int(grid.labels[first]), *(int(value) for value in middle), *first)
+
+
+def _box_m(
+    grid: OccupancyGrid, cells: np.ndarray, class_id: int, reach: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the low corner and the size, both float64 [3], of an object's box in metres."""
+    first, last = cells.min(axis=0), cells.max(axis=0) + 1
+    if reach:
+        first[2], last[2] = layers_reached(cells, grid, class_id)
+    low = cell_centers_m(first, grid.origin_m, grid.voxel_m) - grid.voxel_m / 2
+    return low, (last - first) * grid.voxel_m
+
+
+def _instance(
+    number: int,
+    grid: OccupancyGrid,
+    cells: np.ndarray,
+    around: Surroundings,
+    reach: bool,
+) -> ObjectInstance:
+    class_id = int(grid.labels[tuple(cells[0])])
+    front = facing(cells, class_id, around)
+    low, size = _box_m(grid, cells, class_id, reach)
+    center = low + size / 2
+    askew = askew_rectangle(cells, class_id, grid.voxel_m) if reach else None
+    if askew is not None:
+        center[:2] = grid.origin_m[:2] + askew.middle * grid.voxel_m
+        size[:2] = askew.sides * grid.voxel_m
+    own_axes = size[[1, 0, 2]] if front.quarter_turns % 2 else size
+    yaw = 90.0 * front.quarter_turns + (askew.angle_deg if askew else 0.0)
+    votes = float(grid.confidence[tuple(cells.T)].astype(np.float64).mean())
+    return ObjectInstance(
+        id=number,
+        class_id=class_id,
+        center_m=np.round(center, 9),
+        size_m=np.round(own_axes, 9),
+        yaw_deg=yaw % 360.0,
+        cells=cells,
+        confidence=round(min(votes, 1.0), 6),
+    )

@@ -1,0 +1,99 @@
+"""Small things side by side on one host, told apart by their colours: a ball beside bricks.
+
+What lies over or under another colour is part of the same thing: a lamp's foot and shade, a pot
+and its leaves, the books of a pile.
+"""
+
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.types import OccupancyGrid
+from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.reconstruction.instances.growth import grow
+from world2minecraft.reconstruction.instances.owned import cells_by_owner
+
+ALIKE = 0.12  # Neighbouring cells of one paint differ by less, in Oklab.
+LEAST_CELLS = 5  # Of a patch that is a thing of its own.
+WIDE_M = 0.4  # What is narrower in plan is one thing.
+OVER_SHARE = 0.34  # The share of the smaller plan that lies over or under the other.
+STEPS = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1)])
+
+
+def part_by_paint(owners: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+    """Return owners, int32 [X, Y, Z], in which small things of other colours have own numbers."""
+    result = owners.copy()
+    fresh = int(owners.max(initial=0))
+    for _, cells in cells_by_owner(owners, grid.labels, SemanticClass.OBJS):
+        if (np.ptp(cells[:, :2], axis=0).max() + 1) * grid.voxel_m <= WIDE_M:
+            continue
+        parts = _parts(cells, grid)
+        moved = parts > 1
+        result[tuple(cells[moved].T)] = fresh + parts[moved] - 1
+        fresh += max(int(parts.max()) - 1, 0)
+    return result
+
+
+def _parts(cells: np.ndarray, grid: OccupancyGrid) -> np.ndarray:
+    """Return the part, int32 [N] from 1, of each cell."""
+    low = cells.min(axis=0)
+    shape = cells.max(axis=0) + 1 - low
+    own = np.zeros(shape, np.bool_)
+    at = tuple((cells - low).T)
+    own[at] = True
+    colour = np.zeros((*shape, 3))
+    colour[at] = oklab_of_srgb(grid.colour[tuple(cells.T)])
+    patches = _patches(own, colour)
+    joined = _over_one_another(patches)
+    if joined.max(initial=0) < 2:
+        return np.ones(len(cells), np.int32)
+    seeds = np.argwhere(joined).astype(np.int32)
+    labels = own.astype(np.uint8)
+    grown = grow(labels, own, seeds, joined[tuple(seeds.T)] - 1)[at]
+    return np.maximum(grown, 1).astype(np.int32)
+
+
+def _patches(own: np.ndarray, colour: np.ndarray) -> np.ndarray:
+    """Number the patches, int32 [X, Y, Z] from 1, of neighbours that look alike and are many."""
+    from scipy.sparse import coo_matrix  # noqa: PLC0415
+    from scipy.sparse.csgraph import connected_components  # noqa: PLC0415
+
+    index = np.arange(own.size).reshape(own.shape)
+    pairs = []
+    for step in STEPS:
+        near = tuple(slice(None, -1) if s else slice(None) for s in step)
+        far = tuple(slice(1, None) if s else slice(None) for s in step)
+        alike = np.linalg.norm(colour[near] - colour[far], axis=-1) < ALIKE
+        alike &= own[near] & own[far]
+        pairs.append(np.stack([index[near][alike], index[far][alike]]))
+    first, second = np.concatenate(pairs, axis=1)
+    graph = coo_matrix((np.ones(len(first)), (first, second)), shape=(own.size, own.size))
+    _, number = connected_components(graph, directed=False)
+    number = number.reshape(own.shape)
+    counts = np.bincount(number[own], minlength=int(number.max()) + 1)
+    kept = np.flatnonzero(counts >= LEAST_CELLS)
+    place = np.zeros(len(counts), np.int32)
+    place[kept] = np.arange(1, len(kept) + 1)
+    return np.where(own, place[number], 0).astype(np.int32)
+
+
+def _over_one_another(patches: np.ndarray) -> np.ndarray:
+    """Return patches, numbered anew, of which those that share a good part of a plan are one."""
+    result = patches.copy()
+    while True:
+        count = int(result.max(initial=0))
+        plans = [(result == n).any(axis=2) for n in range(1, count + 1)]
+        pair = _first_pair(plans)
+        if pair is None:
+            return result
+        low, high = pair
+        result[result == high] = low
+        result[result > high] -= 1
+
+
+def _first_pair(plans: list[np.ndarray]) -> tuple[int, int] | None:
+    for high in range(1, len(plans)):
+        for low in range(high):
+            shared = np.count_nonzero(plans[low] & plans[high])
+            if shared >= OVER_SHARE * min(plans[low].sum(), plans[high].sum()):
+                return low + 1, high + 1
+    return None

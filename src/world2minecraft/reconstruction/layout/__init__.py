@@ -1,0 +1,1 @@
+"""The structure of a room: floor, ceiling, walls, openings, outlines and storeys."""

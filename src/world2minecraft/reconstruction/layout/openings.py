@@ -1,0 +1,221 @@
+"""Windows, doors and doorways: what is cut into a wall.
+
+Glass gives depth seldom, and then lies some centimetres behind the wall; a door leaf lies as deep.
+What stands back so and begins above the floor is a window; what reaches down to the floor is a
+door leaf, class objs. Where rays went through the wall there is an opening too: a window without
+glass, or a doorway down to the floor.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.geometry.morphology import grown, opened
+from world2minecraft.reconstruction.layout.parameters import StructureParameters, within
+from world2minecraft.reconstruction.layout.plane_residuals import Relief
+from world2minecraft.reconstruction.layout.surface_cells import Surface
+
+Kind = Literal["window", "door", "doorway"]
+BEND_M = 0.32  # Bends are wider than this to both sides.
+MOST_BEND_M = 0.1
+STRAIGHT_M = 0.03  # A wall that bends by less is straight.
+BAR_M = 0.02  # The bars of a window lie before its glass.
+STEP_M = 0.012  # What hangs on a wall and what is let into it has an edge; a bend has none.
+CLASS_OF_KIND = {"window": SemanticClass.WINDOW, "door": SemanticClass.OBJS}
+
+
+@dataclass(frozen=True)
+class Gap:
+    """An opening of a wall, in metres along the wall and up from the floor."""
+
+    kind: Kind
+    along_m: tuple[float, float]
+    height_m: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class WallFace:
+    """What each place of a wall is, seen face on."""
+
+    classes: np.ndarray  # uint8 [A, B]: wall, window, or objs for the leaf of a door
+    depth_m: np.ndarray  # float [A, B]: how deep it lies, along the relief's axis 0
+    cells: np.ndarray  # bool [N, A, B]: those of the relief's cells that lie there
+    gaps: tuple[Gap, ...]
+
+
+def read_wall(surface: Surface, relief: Relief, parameters: StructureParameters) -> WallFace:
+    """Return what the places of a wall are, and the openings in it."""
+    face = _Face(surface, relief, parameters)
+    low, high = parameters.opening_depth_m
+    face.cut(relief.seen & _between(relief.gap_m, low, high))
+    face.cut_leaves()
+    face.hang(relief.seen & _between(relief.gap_m, *parameters.hung_m))
+    face.pass_through(_passed(surface, relief))
+    outward_m = relief.sign * relief.of(surface.points_m[..., relief.axis])
+    near = np.abs(outward_m - face.depth_m) <= parameters.noise_m
+    near |= np.abs(outward_m - relief.plane_m - face.bend_m) <= parameters.noise_m
+    return WallFace(face.classes, face.depth_m, relief.cells & near, tuple(face.gaps))
+
+
+def _bend(surface: Surface, relief: Relief) -> np.ndarray:
+    """Return how far the wall around each place stands off its plane, float [A, B].
+
+    Lens and sensor bend a long wall by some centimetres; a median follows them, and neither the
+    edge of a curtain nor a shelf board.
+    """
+    gap_m = np.where(relief.seen, relief.gap_m, 0.0)
+    bend = ndimage.median_filter(gap_m, 2 * surface.cells_of(BEND_M) + 1, mode="nearest")
+    return np.clip(bend, -MOST_BEND_M, MOST_BEND_M)
+
+
+class _Face:
+    """A wall that is being read: each step looks at the places that none before has claimed."""
+
+    def __init__(self, surface: Surface, relief: Relief, parameters: StructureParameters):
+        self.surface, self.relief, self.parameters = surface, relief, parameters
+        self.classes = np.full(relief.weight.shape, SemanticClass.WALL, np.uint8)
+        self.bend_m = _bend(surface, relief)
+        strong = np.abs(self.bend_m) >= STRAIGHT_M
+        self.depth_m = relief.plane_m + np.where(strong, self.bend_m, 0.0)
+        self.plane = relief.seen & (np.abs(relief.gap_m) < parameters.opening_depth_m[0])
+        self.gaps: list[Gap] = []
+
+    def cut(self, recessed: np.ndarray) -> None:
+        """Claim the windows and the leaves of doors that lie well behind the face."""
+        for part in _parts(opened(_bridged(recessed) & self.relief.seen)):
+            kind = _kind(part, self._metres(part), self.surface.voxel_m, self.parameters)
+            if kind is None or _framed(part, self.plane) < self.parameters.frame_share:
+                continue
+            depth = float(np.median(self.relief.gap_m[part]))
+            # The rim of an opening is a mean of both depths.
+            whole = part | (grown(part) & self.relief.seen & (self.relief.gap_m >= depth / 2))
+            self._claim(whole, CLASS_OF_KIND[kind], depth)
+            self._add_gap(kind, whole)
+
+    def cut_leaves(self) -> None:
+        """Claim the leaves of doors that lie hardly behind the face, and differ in colour."""
+        relief, parameters = self.relief, self.parameters
+        gap = ndimage.median_filter(relief.gap_m, 3)
+        inside = relief.seen & (self.classes == SemanticClass.WALL)
+        leaf = inside & (gap >= parameters.leaf_depth_m) & (gap < parameters.opening_depth_m[0])
+        for part in _parts(opened(leaf)):
+            along, height = self._metres(part)
+            wide = within(along[1] - along[0], parameters.leaf_width_m)
+            high = within(height[1], parameters.leaf_height_m) and height[0] <= 0.4
+            flat = part.sum() >= 0.6 * _box_cells(part)
+            if wide and high and flat and self._has_edge(part):
+                self._claim(part, SemanticClass.OBJS, float(np.median(relief.gap_m[part])))
+                self._add_gap("door", part)
+
+    def hang(self, raised: np.ndarray) -> None:
+        """Claim what hangs flat on the wall: pictures, boards, mirrors."""
+        for part in _parts(opened(raised & (self.classes == SemanticClass.WALL))):
+            large = part.sum() * self.surface.voxel_m**2 >= self.parameters.hung_area_m2
+            flat = part.sum() >= 0.6 * _box_cells(part)
+            if large and flat and self._has_edge(part):
+                depth = float(np.median(self.relief.gap_m[part]))
+                rim = grown(part) & self.relief.seen & (self.relief.gap_m <= depth / 2)
+                self._claim(part | rim, SemanticClass.OBJS, depth)
+
+    def pass_through(self, passed: np.ndarray) -> None:
+        """Note the openings that rays went through."""
+        for part in _parts(opened(passed)):
+            kind = _kind(part, self._metres(part), self.surface.voxel_m, self.parameters)
+            if kind is not None and _framed(part, self.plane) >= self.parameters.frame_share:
+                self._add_gap("doorway" if kind == "door" else kind, part)
+
+    def _has_edge(self, part: np.ndarray) -> bool:
+        """Return whether the depth steps around most of a part, where it was seen."""
+        gap_m = self.relief.gap_m
+        ring = grown(part, 2) & ~grown(part) & self.relief.seen
+        depth = np.median(gap_m[part])
+        step = np.sign(depth) * (depth - gap_m[ring]) >= STEP_M
+        return bool(ring.sum() >= 0.4 * part.sum() ** 0.5 and step.mean() >= 0.6)
+
+    def _claim(self, places: np.ndarray, kind: SemanticClass, gap_m: float) -> None:
+        """Say what places are: all as deep, but for the bars of a window."""
+        relief = self.relief
+        depth_m = np.where(np.abs(relief.gap_m - gap_m) <= BAR_M, gap_m, relief.gap_m)
+        self.classes[places] = kind
+        self.depth_m[places] = (relief.plane_m + depth_m)[places]
+
+    def _add_gap(self, kind: Kind, part: np.ndarray) -> None:
+        along, height = self._metres(part)
+        low = 0.0 if kind != "window" else height[0]
+        self.gaps.append(Gap(kind, along, (low, height[1])))
+
+    def _metres(self, part: np.ndarray) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Return where a part begins and ends along the wall, and above the floor."""
+        relief, voxel_m = self.relief, self.surface.voxel_m
+        corner = self.surface.origin_m[1 - relief.axis] + relief.box[1].start * voxel_m
+        bottom = self.surface.origin_m[2] + relief.box[2].start * voxel_m
+        a, b = np.nonzero(part)
+        along = (float(corner + a.min() * voxel_m), float(corner + (a.max() + 1) * voxel_m))
+        low, high = bottom + b.min() * voxel_m, bottom + (b.max() + 1) * voxel_m
+        return along, (float(max(low, 0.0)), float(high))
+
+
+def _parts(mask: np.ndarray) -> list[np.ndarray]:
+    parts, count = connected_parts(mask)
+    return [parts == number for number in range(1, count + 1)]
+
+
+def _bridged(mask: np.ndarray) -> np.ndarray:
+    """Return a mask with what the bars of a window part joined."""
+    result = mask
+    for shape in ((4, 1), (1, 4)):
+        padded = np.pad(mask, 4)
+        closed = np.asarray(ndimage.binary_closing(padded, np.ones(shape, bool)), bool)
+        result = result | closed[4:-4, 4:-4]
+    return result
+
+
+def _box_cells(part: np.ndarray) -> int:
+    """Return how many places the box around a part has."""
+    a, b = np.nonzero(part)
+    return int((np.ptp(a) + 1) * (np.ptp(b) + 1))
+
+
+def _between(values: np.ndarray, low: float, high: float) -> np.ndarray:
+    """Return where values lie within bounds, both included."""
+    return (values >= low) & (values <= high)
+
+
+def _passed(surface: Surface, relief: Relief) -> np.ndarray:
+    """Return bool [A, B]: rays went through the wall here, and it was not seen."""
+    free = relief.of(surface.free)
+    edge_m = relief.edge_m(surface)
+    layer = np.floor((relief.plane_m - edge_m) / surface.voxel_m).astype(int)
+    layers = np.arange(free.shape[0])[:, None, None]
+    through = [(free & (layers == layer + step)).any(axis=0) for step in (0, 1)]
+    return through[0] & through[1] & ~relief.seen
+
+
+def _kind(
+    part: np.ndarray,
+    metres: tuple[tuple[float, float], tuple[float, float]],
+    voxel_m: float,
+    parameters: StructureParameters,
+) -> Literal["window", "door"] | None:
+    """Return what a part, seen face on, is; None where it is too small or ragged."""
+    (left, right), (bottom, top) = metres
+    width, height = right - left, top - bottom
+    if part.sum() * voxel_m**2 < parameters.opening_area_m2:
+        return None
+    if part.sum() < 0.5 * _box_cells(part):
+        return None
+    sized = within(width, parameters.window_size_m) and height >= parameters.window_size_m[0]
+    if sized and bottom >= parameters.window_sill_m:
+        return "window"
+    leaf = within(width, parameters.door_width_m) and height >= parameters.door_height_m
+    return "door" if leaf else None
+
+
+def _framed(part: np.ndarray, plane: np.ndarray) -> float:
+    """Return the share of the ring around a part that lies on the wall's plane."""
+    ring = grown(part, 3) & ~grown(part)
+    return float(plane[ring].mean()) if ring.any() else 0.0

@@ -1,0 +1,94 @@
+"""The relief of a plane: how far before or behind it each place of its face lies.
+
+Noise scatters the points of a plane over two layers of cells. Seen face on, the mean of all points
+of a place tells its depth to millimetres, and so the one layer that holds the plane's matter.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.geometry.histogram_peaks import highest_peak
+from world2minecraft.reconstruction.layout.surface_cells import Surface, turned
+
+SOLID_M = 0.008  # SSCNet's 4 of 64: about this much matter makes a cell of 8 cm solid.
+FIT_GATES_M = (0.012, 0.012, 0.01, 0.01)  # Doors, pictures and boards do not tell where it lies.
+MAX_SLOPE = 0.01  # 0.6 degrees: twice what a frame may be off.
+MANY_POINTS = 300  # More points of one place do not make it surer: what is left is the lens.
+FIT_PLACES = 60  # Fewer places, half a square metre, tell no slope.
+
+
+@dataclass(frozen=True, eq=False)
+class Relief:
+    """A part of one plane, turned so that axis 0 leads into its matter, [N, A, B]."""
+
+    axis: int
+    sign: int
+    box: tuple[slice, slice, slice]  # Of the turned grid.
+    cells: np.ndarray  # bool [N, A, B]: the cells of the plane and of what noise made of it.
+    weight: np.ndarray  # float [A, B], points seen at each place
+    depth_m: np.ndarray  # float [A, B], their mean along axis 0; that of the plane where none
+    plane_m: np.ndarray  # float [A, B], the fitted plane
+
+    @property
+    def seen(self) -> np.ndarray:
+        """Where the plane was seen, bool [A, B]."""
+        return self.weight > 0
+
+    @property
+    def gap_m(self) -> np.ndarray:
+        """How far behind the fitted plane each place lies, float [A, B]."""
+        return self.depth_m - self.plane_m
+
+    def edge_m(self, surface: Surface) -> float:
+        """Return where along axis 0 the first layer of the box begins."""
+        cells = np.array([0, surface.occupied.shape[self.axis]])
+        ends = surface.origin_m[self.axis] + cells * surface.voxel_m
+        return float(min(self.sign * ends)) + self.box[0].start * surface.voxel_m
+
+    def of(self, values: np.ndarray) -> np.ndarray:
+        """Return the view [N, A, B] of an array [X, Y, Z] that this relief is about."""
+        return turned(values, self.axis, self.sign)[self.box]
+
+
+def relief_of(
+    surface: Surface, cells: np.ndarray, axis: int, sign: int, box: tuple[slice, slice, slice]
+) -> Relief:
+    """Return the relief of a plane.
+
+    Args:
+        surface: the room.
+        cells: bool [N, A, B], the cells of the plane within ``box``.
+        axis: the axis that the plane is square to.
+        sign: 1 where matter lies towards larger coordinates, else -1.
+        box: the part of the turned grid.
+    """
+    weight = np.where(cells, turned(surface.hits, axis, sign)[box], 0).astype(np.float64)
+    outward = sign * turned(surface.points_m[..., axis], axis, sign)[box]
+    total = weight.sum(axis=0)
+    mean = (weight * outward).sum(axis=0) / np.maximum(total, 1)
+    plane = _fitted(mean, total, surface.voxel_m)
+    depth = np.where(total > 0, mean, plane)
+    return Relief(axis, sign, box, cells, total, depth, plane)
+
+
+def _fitted(depth_m: np.ndarray, weight: np.ndarray, voxel_m: float) -> np.ndarray:
+    """Return the plane through the places seen, float [A, B], without what lies off it."""
+    a, b = np.nonzero(weight)
+    if not len(a):
+        return np.zeros(depth_m.shape)
+    values = depth_m[a, b]
+    strength = np.sqrt(np.minimum(weight[a, b], MANY_POINTS))
+    columns = np.stack([np.ones(len(a)), a - a.mean(), b - b.mean()], axis=1)
+    fit = np.array([highest_peak(values, FIT_GATES_M[0] / 2)[0], 0.0, 0.0])
+    for gate_m in FIT_GATES_M:
+        near = np.abs(values - columns @ fit) <= gate_m
+        if near.sum() < FIT_PLACES:
+            break
+        rows = columns[near] * strength[near, None]
+        found = np.linalg.lstsq(rows, values[near] * strength[near], rcond=None)[0].round(9)
+        if np.abs(found[1:]).max() > MAX_SLOPE * voxel_m:
+            break
+        fit = found
+    rows, columns = np.indices(depth_m.shape)
+    return fit[0] + fit[1] * (rows - a.mean()) + fit[2] * (columns - b.mean())

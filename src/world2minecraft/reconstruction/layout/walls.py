@@ -1,0 +1,277 @@
+"""Walls: large upright planes with nothing behind them, or up to the ceiling.
+
+A wall and the front of a cupboard are both upright planes. What tells them apart is what was seen
+behind: over a counter, and under a hung cupboard, rays pass the front on their way to the wall;
+behind a wall no ray ever passes. Each of the four directions is looked at in arrays turned so that
+axis 0 leads outward.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.geometry.histogram_peaks import highest_peak
+from world2minecraft.reconstruction.layout.parameters import StructureParameters
+from world2minecraft.reconstruction.layout.plane_residuals import Relief, relief_of
+from world2minecraft.reconstruction.layout.surface_cells import Surface, turned
+
+DIRECTIONS = ((0, 1), (0, -1), (1, 1), (1, -1))  # The axis a wall is square to, the way out.
+HIGH_M = 100.0  # Over everything.
+OPEN_SHARE = 0.5  # No wall is passed over by rays along half of its length.
+MAX_PLANES = 24  # For each direction: a bound on the search, well above any room's walls.
+
+
+@dataclass(frozen=True, eq=False)
+class WallRun:
+    """One straight piece of wall. ``outward_m`` grows along its direction out of the room."""
+
+    axis: int
+    sign: int
+    outward_m: float
+    span: tuple[int, int]  # First and last cell along the wall.
+    top_m: float
+    area_m2: float
+
+
+def find_walls(
+    surface: Surface,
+    level: np.ndarray,
+    slopes: np.ndarray,
+    ceiling_m: float | None,
+    parameters: StructureParameters,
+) -> list[tuple[WallRun, Relief]]:
+    """Return the runs of wall, each with its relief.
+
+    Args:
+        surface: the room.
+        level: bool [X, Y, Z], the cells of floor and ceiling, slopes among them.
+        slopes: bool [X, Y, Z], the cells of sloped ceilings.
+        ceiling_m: the ceiling's height, None where it was not seen.
+        parameters: the thresholds.
+    """
+    found: list[tuple[WallRun, Relief]] = []
+    for axis, sign in DIRECTIONS:
+        view = _Turned(surface, level, slopes, axis, sign)
+        runs = list(_runs(view, ceiling_m, parameters))
+        runs = [run for run in runs if not _is_shadow(run, runs, parameters)]
+        runs = [run for run in runs if not _is_open_above(run, view, ceiling_m)]
+        runs = [run for run in runs if not _is_furniture(run, runs, ceiling_m, view, parameters)]
+        for run in runs:
+            box, on = _marked(view, run, parameters)
+            found.append((run, relief_of(surface, on, axis, sign, box)))
+    return found
+
+
+class _Turned:
+    """A room's arrays turned so that axis 0 leads outward, axis 1 along the wall, axis 2 up."""
+
+    def __init__(
+        self, surface: Surface, level: np.ndarray, slopes: np.ndarray, axis: int, sign: int
+    ):
+        self.axis, self.sign, self.voxel_m = axis, sign, surface.voxel_m
+        self.above_floor = max(surface.floor_layer + 1, 0)
+        self.occupied = self.turn(surface.occupied & ~level)
+        self.free = self.turn(surface.free)
+        self.slopes = self.turn(slopes)
+        self.layers_below = surface.layers_below
+        self.outward_m = sign * self.turn(surface.points_m[..., axis])
+        self.height_m = self.turn(surface.points_m[..., 2])
+        ends = surface.origin_m[axis] + np.array([0, surface.occupied.shape[axis]]) * self.voxel_m
+        self.edge_m = float(min(sign * ends))  # Where layer 0 begins.
+
+    def turn(self, values: np.ndarray) -> np.ndarray:
+        return turned(values, self.axis, self.sign)
+
+
+def _runs(
+    view: _Turned, ceiling_m: float | None, parameters: StructureParameters
+) -> Iterator[WallRun]:
+    """Yield the planes that may be walls, split where they stop for long."""
+    fronts = view.occupied & _facing(view.free)
+    fronts[:, :, : view.above_floor] = False
+    hidden = fronts & ~_passed_behind(view, parameters)
+    least = parameters.roof_bottom_m if view.slopes.any() else parameters.wall_top_m
+    for run in _peeled(view, hidden, parameters, least):
+        if run.top_m >= parameters.wall_top_m or _under_slope(run, view):
+            yield run
+    if ceiling_m is not None:
+        full = ceiling_m - parameters.full_gap_m
+        for run in _peeled(view, fronts & ~hidden, parameters, full):
+            width = (run.span[1] - run.span[0] + 1) * view.voxel_m
+            if run.area_m2 >= parameters.full_share * width * ceiling_m:
+                yield run
+
+
+def _under_slope(run: WallRun, view: _Turned) -> bool:
+    """Return whether a sloped ceiling begins at a run: then it is a wall, however low."""
+    layer = int(np.floor((run.outward_m - view.edge_m) / view.voxel_m))
+    near = view.slopes[max(layer - 3, 0) : layer + 2, run.span[0] : run.span[1] + 1]
+    return bool(near.any(axis=(0, 2)).mean() >= 0.5)
+
+
+def _facing(free: np.ndarray) -> np.ndarray:
+    """Return where a surface would face the room: one of the two cells before it is free.
+
+    The second counts only where nothing behind is free: else it is the far face of a thin wall.
+    """
+    next_, second = np.zeros((2, *free.shape), bool)
+    next_[1:] = free[:-1]
+    second[2:] = free[:-2]
+    return next_ | (second & ~_free_before(free[::-1])[::-1])
+
+
+def _free_before(free: np.ndarray) -> np.ndarray:
+    """Return where one of the two cells on the room's side is free."""
+    before = np.zeros_like(free)
+    before[1:] = free[:-1]
+    before[2:] |= free[:-2]
+    return before
+
+
+def _passed_behind(view: _Turned, parameters: StructureParameters) -> np.ndarray:
+    """Return bool [A, B, 1]: in the columns behind, rays passed at some height."""
+    free = view.free[:, :, view.above_floor :].sum(axis=2) >= parameters.passed_cells
+    behind = np.zeros_like(free)
+    for step in range(1, 1 + round(parameters.hidden_m / view.voxel_m)):
+        behind[:-step] |= free[step:]
+    return behind[:, :, None]
+
+
+def _peeled(
+    view: _Turned, fronts: np.ndarray, parameters: StructureParameters, top_m: float
+) -> Iterator[WallRun]:
+    """Yield runs, the plane with most cells first, until none is large enough."""
+    along = np.nonzero(fronts)[1]
+    outward, height = view.outward_m[fronts], view.height_m[fronts]
+    needed = parameters.wall_area_m2 / view.voxel_m**2
+    for _ in range(MAX_PLANES):
+        if len(outward) < needed:
+            return
+        peak, count = highest_peak(outward, parameters.plane_gate_m)
+        if count < needed:
+            return
+        near = np.abs(outward - peak) <= parameters.plane_gate_m
+        for first, last in _spans(along[near], round(parameters.wall_gap_m / view.voxel_m)):
+            inside = near & (along >= first) & (along <= last)
+            top = float(np.quantile(height[inside], 0.98))
+            if inside.sum() >= needed and top >= top_m:
+                area = float(inside.sum()) * view.voxel_m**2
+                middle = float(np.median(outward[inside]))
+                yield WallRun(view.axis, view.sign, middle, (first, last), top, area)
+        outward, height, along = outward[~near], height[~near], along[~near]
+
+
+def _spans(along: np.ndarray, gap_cells: int) -> list[tuple[int, int]]:
+    """Split positions along a wall where more than ``gap_cells`` lie between two."""
+    present = np.unique(along)
+    breaks = np.flatnonzero(np.diff(present) > gap_cells + 1)
+    firsts = present[np.concatenate([[0], breaks + 1])]
+    lasts = present[np.concatenate([breaks, [len(present) - 1]])]
+    return [(int(a), int(b)) for a, b in zip(firsts, lasts, strict=True)]
+
+
+def _is_shadow(run: WallRun, runs: list[WallRun], parameters: StructureParameters) -> bool:
+    """Return whether a run only follows a larger one within little more than a cell.
+
+    Noise, windows, door leaves and curtains make such runs; a pillar stands where the wall does
+    not.
+    """
+    for wall in runs:
+        near = abs(wall.outward_m - run.outward_m) <= parameters.shadow_m
+        shared = min(wall.span[1], run.span[1]) - max(wall.span[0], run.span[0]) + 1
+        inside = shared >= 0.7 * (run.span[1] - run.span[0] + 1)
+        if near and inside and wall.area_m2 > 1.5 * run.area_m2:
+            return True
+    return False
+
+
+def _is_open_above(run: WallRun, view: _Turned, ceiling_m: float | None) -> bool:
+    """Return whether rays passed over a run: a door that stands open, a wardrobe, a balustrade."""
+    layer = int(np.floor((run.outward_m - view.edge_m) / view.voxel_m))
+    low = view.layers_below(run.top_m + 2 * view.voxel_m)
+    high = view.layers_below(HIGH_M if ceiling_m is None else ceiling_m - view.voxel_m)
+    over = view.free[layer + 1 : layer + 3, run.span[0] : run.span[1] + 1, low:high]
+    if not over.size:  # The wall is the last that was seen.
+        return False
+    passed = over.all(axis=0).sum(axis=1) >= 2
+    return bool(passed.mean() >= OPEN_SHARE)
+
+
+def _is_furniture(
+    run: WallRun,
+    runs: list[WallRun],
+    ceiling_m: float | None,
+    view: _Turned,
+    parameters: StructureParameters,
+) -> bool:
+    """Return whether a run is the front of a tall piece of furniture before a wider wall."""
+    width = (run.span[1] - run.span[0] + 1) * view.voxel_m
+    low, high = parameters.recess_m if ceiling_m is None else (0.05, parameters.recess_m[1])
+    for wall in runs:
+        before = low <= wall.outward_m - run.outward_m <= high
+        reach = round(high / view.voxel_m)
+        beside = wall.span[0] - reach <= run.span[0] and run.span[1] <= wall.span[1] + reach
+        narrow = ceiling_m is not None or width <= parameters.recess_width_m
+        full = wall.top_m if ceiling_m is None else ceiling_m
+        short = run.top_m < full - parameters.ceiling_gap_m
+        if before and beside and narrow and short and wall.area_m2 > run.area_m2:
+            return True
+    return False
+
+
+def _marked(
+    view: _Turned, run: WallRun, parameters: StructureParameters
+) -> tuple[tuple[slice, slice, slice], np.ndarray]:
+    """Return a box of the turned room and the cells of a run in it, bool [N, A, B].
+
+    They are those on its plane, and those that noise put before or behind it. A cell before the
+    plane is noise where the cell behind it was seen too; a picture, a curtain or a screen hides
+    what is behind.
+    """
+    box = _box(view, run, parameters)
+    occupied, free = view.occupied[box], view.free[box]
+    gap = view.outward_m[box] - run.outward_m
+    gap = gap - _bend(view, occupied, gap, parameters)[None]
+    on = occupied & (gap >= -parameters.before_m) & (gap <= parameters.behind_m)
+    on &= ~(_free_beyond(free) & (gap > parameters.before_m))  # The other face of a thin wall.
+    before = occupied & ~on & (gap >= -view.voxel_m) & (gap < 0)
+    before[1:] &= ~occupied[:-1]  # Noise stands alone; a shelf goes on into the room.
+    on[:-1] |= before[:-1] & on[1:]
+    return box, on
+
+
+def _box(
+    view: _Turned, run: WallRun, parameters: StructureParameters
+) -> tuple[slice, slice, slice]:
+    """Return the part of the turned room in which a run's cells lie."""
+    x, y, z = view.occupied.shape
+    layer = (run.outward_m - view.edge_m) / view.voxel_m
+    first = int(np.floor(layer)) - 3
+    last = int(np.ceil(layer + parameters.behind_m / view.voxel_m)) + 2
+    return (
+        slice(max(first, 0), min(last + 1, x)),
+        slice(max(run.span[0] - 1, 0), min(run.span[1] + 2, y)),
+        slice(view.above_floor, z),
+    )
+
+
+def _free_beyond(free: np.ndarray) -> np.ndarray:
+    """Return where one of the two cells on the far side is free."""
+    return _free_before(free[::-1])[::-1]
+
+
+def _bend(
+    view: _Turned, occupied: np.ndarray, gap: np.ndarray, parameters: StructureParameters
+) -> np.ndarray:
+    """Return how far a wall stands off its plane around each place, float [A, B], metres.
+
+    Lens and sensor bend a long wall by some centimetres; the mean over about half a metre follows
+    them, and is drawn to 0 where little of the wall was seen.
+    """
+    near = occupied & (np.abs(gap) <= parameters.plane_gate_m)
+    sigma = parameters.bend_m / view.voxel_m
+    total = ndimage.gaussian_filter(np.where(near, gap, 0.0).sum(axis=0), sigma, mode="constant")
+    count = ndimage.gaussian_filter(near.sum(axis=0).astype(float), sigma, mode="constant")
+    return total / (count + 0.1)

@@ -1,0 +1,69 @@
+"""Stage 2: a scan becomes evidence, one item a view.
+
+A predictor is any callable object with ``predict(scan)``; the built-in ones are in
+``PREDICTORS``, others join through the entry point group ``world2minecraft.predictor``. ``depth``
+may be helped by networks that vote for classes (``OccupyParameters``).
+"""
+
+from collections.abc import Iterator
+from typing import Protocol
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.registry import Registry
+from world2minecraft.core.types import GridEvidence, PointEvidence, Scan
+from world2minecraft.reconstruction.occupancy.parameters import OccupyParameters
+
+__all__ = ["PREDICTORS", "OccupyParameters", "Predictor", "notes_of", "predictor"]
+
+PREDICTORS = Registry(
+    "predictor",
+    {
+        "depth": "world2minecraft.reconstruction.occupancy.depth:DepthPredictor",
+        "mono": "world2minecraft.reconstruction.occupancy.monocular:MonoPredictor",
+    },
+)
+
+
+class Predictor(Protocol):
+    """Turns a scan into evidence, streamed: no two views need lie in memory together."""
+
+    def predict(self, scan: Scan) -> Iterator[PointEvidence | GridEvidence]:
+        """Yield one item a view, in the scan's frame and order."""
+        ...
+
+
+def predictor(name: str, parameters: OccupyParameters | None = None) -> Predictor:
+    """Return a new predictor by name.
+
+    Args:
+        name: such as ``depth``, or with a file of its own, ``mono:FILE.onnx``.
+        parameters: networks that vote on what ``depth`` sees.
+
+    Raises:
+        UnknownNameError: none has this name; the message suggests the nearest.
+        UsageError: networks are to vote on what another predictor than ``depth`` gives, or
+            ``depth`` is given a file.
+        InputError: a network's file cannot be used.
+    """
+    family, _, file = name.partition(":")
+    make = PREDICTORS.load(family)
+    chosen = parameters or OccupyParameters()
+    if chosen.network and not chosen.mono_votes:
+        raise UsageError("occupy.network votes by occupy.mono_votes=true; set that too")
+    if file and family == "depth":
+        raise UsageError(f"--predictor depth takes no file, not {name!r}; mono:FILE.onnx does")
+    if not (chosen.semantics or chosen.mono_votes):
+        return make(file) if file else make()
+    if family != "depth":
+        raise UsageError(
+            f"--semantics and occupy.mono_votes vote on what depth sees, not on {family!r}; "
+            "leave out --predictor"
+        )
+    from world2minecraft.reconstruction.occupancy.voters import voters_of  # noqa: PLC0415  # Few runs have any.
+
+    return make(voters=voters_of(chosen))
+
+
+def notes_of(used: Predictor) -> tuple[str, ...]:
+    """Return what a predictor has to tell once its evidence was read: sentences for the report."""
+    return tuple(getattr(used, "notes", ()))

@@ -1,0 +1,206 @@
+"""The paper's F_mono: what a network says of the cells before the camera, from one picture.
+
+Each view's box of cells is the one by whose rule the labels of training pictures were cut
+(``geometry/view_region.py``), on the cells of the room and from its floor on. The network speaks for
+the cells that fall into the picture, up to the first wall; what it says of hidden ones is a guess
+as all of it, and fusion takes it softly.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+from scipy import ndimage
+
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.coordinates import apply, invert_rigid
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera, GridEvidence, Scan, View
+from world2minecraft.geometry.undistort import pinhole_of, undistorted
+from world2minecraft.geometry.unprojection import lift_depth, project
+from world2minecraft.geometry.view_region import (
+    USUAL_VOXEL_M,
+    LabelRegion,
+    RegionRule,
+    region_of,
+)
+from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
+
+SHIPPED = Path(__file__).parents[2] / "weights" / "mono.onnx"
+NEAREST_M = 0.1  # Cells nearer to the camera's plane are not in the picture.
+WALLS = [CLASS_NAMES.index(name) for name in ("wall", "window")]
+WALL_CELLS = 3.0  # So far behind its first cell a wall ends; along one seen aslant cells lie apart.
+HIDDEN_CELLS = 1.5  # A cell farther behind the first surface of its pixels is hidden by it.
+
+
+class MonoPredictor:
+    """Gives one GridEvidence for each view that has colour.
+
+    Args:
+        network: the path of an ONNX file; that which is shipped with the program where empty.
+
+    Raises:
+        InputError: the file cannot be used.
+    """
+
+    def __init__(self, network: str | Path = ""):
+        self.network = OccupancyNetwork(network or SHIPPED)
+
+    def predict(self, scan: Scan) -> Iterator[GridEvidence]:
+        """Yield what the network says of each view, in the scan's order.
+
+        Raises:
+            CaptureError: no view has colour.
+        """
+        none = True
+        for view in scan.views:
+            if view.colour is not None:
+                none = False
+                yield self.look(view, scan.scan_to_room)
+        if none:
+            raise CaptureError(
+                "capture", "has no colour pictures; --predictor mono needs them, depth does not"
+            )
+
+    def look(self, view: View, scan_to_room: np.ndarray) -> GridEvidence:
+        """Return what the network says of one view with colour."""
+        facts = self.network.facts
+        picture, camera = fitted(view, facts.image_size_px)
+        camera_to_room = scan_to_room @ view.camera_to_scan
+        region = region_before(camera_to_room, facts)
+        camera_to_grid = invert_rigid(region.region_to_room) @ camera_to_room
+        found = self.network.probabilities(
+            np.moveaxis(picture, 2, 0).astype(np.float32) / np.float32(255),
+            camera.matrix,
+            camera_to_grid,
+            depth_of(view, camera) if facts.wants_depth else None,
+        )
+        return GridEvidence(
+            view.name,
+            found.astype(np.float16),
+            before_walls(found.argmax(axis=-1), region, camera_to_grid, camera),
+            facts.voxel_m,
+            invert_rigid(scan_to_room) @ region.region_to_room,
+            cell_colours(found[..., 0] < 0.5, region, camera_to_grid, camera, picture),
+        )
+
+
+def region_before(camera_to_room: np.ndarray, facts: NetworkFacts) -> LabelRegion:
+    """Return the network's box of cells before a camera: where its training labels' box lay.
+
+    The rule counts in cells of the usual size; a network of coarser cells has the same box.
+    """
+    usual = tuple(max(1, round(n * facts.voxel_m / USUAL_VOXEL_M)) for n in facts.grid_shape)
+    rule = RegionRule(facts.region, (usual[0], usual[1], usual[2]))
+    place = region_of(camera_to_room, rule).region_to_room
+    return LabelRegion(facts.grid_shape, facts.voxel_m, place, facts.region)
+
+
+def fitted(view: View, size_px: tuple[int, int]) -> tuple[np.ndarray, Camera]:
+    """Return a view's picture as a network wants it, and the camera of that.
+
+    Distortion is undone, what is beyond the network's proportions is cut off evenly on both
+    sides, and the rest is resized.
+
+    Returns:
+        uint8 [H, W, 3] and its camera.
+    """
+    colour, camera = view.colour, view.colour_camera
+    if colour is None or camera is None:
+        raise ValueError(f"view {view.name} has no colour")
+    if any(camera.distortion):
+        flat = pinhole_of(camera, camera.width_px)
+        colour, camera = undistorted(colour, camera, flat), flat
+    wide, high = size_px
+    side = min(camera.width_px / wide, camera.height_px / high)
+    left, top = (camera.width_px - side * wide) / 2, (camera.height_px - side * high) / 2
+    box = (left, top, left + side * wide, top + side * high)
+    picture = Image.fromarray(colour).resize(size_px, Image.Resampling.BILINEAR, box=box)
+    fx, fy = camera.fx_px / side, camera.fy_px / side
+    cx, cy = (camera.cx_px - left) / side, (camera.cy_px - top) / side
+    return np.array(picture), Camera(wide, high, fx, fy, cx, cy)
+
+
+def depth_of(view: View, camera: Camera) -> np.ndarray | None:
+    """Return float32 [H, W], a view's depth as ``camera`` in the place of its colour sees it.
+
+    Each depth pixel falls on one pixel, the nearest wins; None where the view has no depth.
+    """
+    if view.depth_m is None or view.depth_camera is None:
+        return None
+    points, _ = lift_depth(view.depth_m, view.depth_camera, view.depth_to_colour)
+    points = points[points[:, 2] > NEAREST_M].astype(np.float64)
+    found = np.full((camera.height_px, camera.width_px), np.inf)
+    u, v = np.floor(project(points, camera)).astype(np.int64).T
+    here = (u >= 0) & (v >= 0) & (u < camera.width_px) & (v < camera.height_px)
+    np.minimum.at(found, (v[here], u[here]), points[here, 2])
+    return np.where(np.isfinite(found), found, 0).astype(np.float32)
+
+
+def before_walls(
+    labels: np.ndarray, region: LabelRegion, camera_to_grid: np.ndarray, camera: Camera
+) -> np.ndarray:
+    """Return bool [X, Y, Z]: cells of the picture that no wall or window hides.
+
+    What lies beyond a room had no label in training: whatever is said of it there is noise.
+    """
+    pixels, inside, depth_m = _pixels(region, camera_to_grid, camera)
+    walls = inside & np.isin(labels, WALLS)
+    if not walls.any():
+        return inside
+    u, v = pixels[walls].T
+    first = _first_depth(u, v, depth_m[walls], region.voxel_m, camera)
+    last_m = first[pixels[..., 1], pixels[..., 0]] + WALL_CELLS * region.voxel_m
+    return inside & (depth_m <= last_m)
+
+
+def cell_colours(
+    occupied: np.ndarray,
+    region: LabelRegion,
+    camera_to_grid: np.ndarray,
+    camera: Camera,
+    picture: np.ndarray,
+) -> np.ndarray:
+    """Return uint8 [X, Y, Z, 3]: of occupied cells the colour that the picture shows.
+
+    A cell that another hides takes the colour of the nearest one in sight.
+    """
+    pixels, inside, depth_m = _pixels(region, camera_to_grid, camera)
+    asked = occupied & inside
+    colour = np.zeros((*region.shape, 3), np.uint8)
+    if not asked.any():
+        return colour
+    u, v = pixels[asked].T
+    first = _first_depth(u, v, depth_m[asked], region.voxel_m, camera)
+    shown = np.zeros_like(asked)
+    shown[asked] = depth_m[asked] <= first[v, u] + HIDDEN_CELLS * region.voxel_m
+    at_px = pixels[shown]
+    colour[shown] = picture[at_px[:, 1], at_px[:, 0]]
+    nearest = ndimage.distance_transform_edt(~shown, return_distances=False, return_indices=True)
+    return np.where(occupied[..., None], colour[tuple(np.asarray(nearest))], np.uint8(0))
+
+
+def _first_depth(u, v, depth_m, voxel_m: float, camera: Camera) -> np.ndarray:
+    """Return float64 [H, W]: how near the first of the cells is that cover a pixel.
+
+    The cells are drawn by their centres; each spreads as wide as a cell of the middle depth looks.
+    """
+    first = np.full((camera.height_px, camera.width_px), np.inf)
+    np.minimum.at(first, (v, u), depth_m)
+    side = 1 + 2 * int(camera.fx_px * voxel_m / (2 * float(np.median(depth_m))))
+    return ndimage.minimum_filter(first, side, mode="nearest")
+
+
+def _pixels(
+    region: LabelRegion, camera_to_grid: np.ndarray, camera: Camera
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return of each cell's centre its pixel int64 [.., 2], whether it is one, and its z-depth."""
+    places = np.moveaxis(np.indices(region.shape), 0, -1) + 0.5
+    at = apply(invert_rigid(camera_to_grid), places * region.voxel_m)
+    ahead = at[..., 2] > NEAREST_M
+    pixels = project(np.where(ahead[..., None], at, [0.0, 0.0, 1.0]), camera)
+    size = (camera.width_px, camera.height_px)
+    inside = ahead & ((pixels >= 0) & (pixels < size)).all(axis=-1)
+    pixels = np.clip(np.floor(pixels), 0, np.array(size) - 1).astype(np.int64)
+    return pixels, inside, at[..., 2]

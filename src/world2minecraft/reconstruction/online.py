@@ -1,0 +1,325 @@
+"""Online mode: frames come one by one, the map is there at any time and ends as the batch's.
+
+``LiveRoom`` is given views; ``follow`` watches a capture folder that still grows. Where the room
+lies in the frames is found anew whenever their number has doubled, by the very stages of the
+batch, and the map is made anew from all frames so far; in between each frame is fused as it comes.
+So the whole takes about twice the work of the batch, however many frames there are. The end is
+``reconstruct`` itself.
+"""
+
+import io
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.capture import open_scan, realigned, write_plain
+from world2minecraft.capture.frames import FrameFiles
+from world2minecraft.capture.options import parse_options
+from world2minecraft.capture.sources import find_capture
+from world2minecraft.capture.view_stream import read_view
+from world2minecraft.construction import build_volume
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.files import read_json, write_bytes, write_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import FusedEvidence, Scan, View
+from world2minecraft.formats.room import write_room
+from world2minecraft.reconstruction.fusion import EvidenceMap, remove_floaters
+from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.occupancy import predictor
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.pipeline import reconstruct
+from world2minecraft.reconstruction.registration import corrected_scan as corrected
+from world2minecraft.reconstruction.registration import register
+from world2minecraft.reconstruction.run_folder import check_writable
+from world2minecraft.reconstruction.stages import labelled
+from world2minecraft.rendering.preview import preview
+
+FIRST_PLACING = 4  # Fewer frames rarely show two walls and a floor.
+POLL_S = 1.0
+SHOW_S = 5.0
+IDLE_S = 60.0
+DONE_FILE = "done"  # Whoever writes the capture puts it there after the last frame.
+PREVIEW_PX = (960, 720)
+
+
+class LiveMap:
+    """The map of the frames so far, in the frame of the last placing."""
+
+    def __init__(self, parameters: Parameters):
+        self.parameters = parameters
+        self.scan: Scan | None = None
+        self.frames = 0
+        self._next = FIRST_PLACING
+        self._predictor = predictor(parameters.predictor, parameters.occupy)
+        self._map = EvidenceMap(np.eye(4), parameters.fuse)
+
+    @property
+    def due(self) -> bool:
+        """Whether the room should be found anew before more frames come."""
+        return self.frames >= self._next
+
+    def add(self, view: View) -> None:
+        """Fuse one view as it stands."""
+        self.frames += 1
+        placed = np.eye(4) if self.scan is None else self.scan.scan_to_room
+        for item in self._predictor.predict(_scan_of(view, placed)):
+            self._map.add(item)
+
+    def place(self, capture: Path, labels: Path | None = None) -> bool:
+        """Find the room in a capture's frames so far, and fuse them all in its frame.
+
+        Returns whether there is a room yet; where not, the map stays as it is.
+        """
+        self._next = 2 * max(self.frames, FIRST_PLACING // 2)
+        try:
+            scan = placed_scan(capture, self.parameters, labels)
+        except InputError:
+            return False
+        map_ = EvidenceMap(scan.scan_to_room, self.parameters.fuse)
+        for item in self._predictor.predict(scan):
+            map_.add(item)
+        self.scan, self._map = scan, map_
+        return True
+
+    def fused(self) -> FusedEvidence:
+        """Return the map of the moment; before the first placing it lies in the scan's frame.
+
+        Raises:
+            CaptureError: no frame gave evidence yet.
+        """
+        return self._map.fused()
+
+
+class LiveRoom:
+    """A reconstruction that is given its views one by one.
+
+    The frames are kept in ``out/frames`` as a capture of our plain layout, with exact depth, so
+    that memory does not grow with their number and the end can be made from all of them.
+    """
+
+    def __init__(self, out: Path, parameters: Parameters | None = None):
+        """Begin a room.
+
+        Args:
+            out: the folder of the results, made if missing.
+            parameters: as of ``reconstruct``.
+
+        Raises:
+            OutputError: the folder cannot be written. UsageError: frames lie there already.
+        """
+        self.out, self.parameters = Path(out), parameters or Parameters()
+        self.frames_folder = self.out / "frames"
+        if self.frames_folder.exists():
+            raise UsageError(f"{self.frames_folder} holds the frames of another run; remove it")
+        check_writable(self.out)
+        self._live = LiveMap(self.parameters)
+        self._stated: dict[str, Any] = {}
+        self._entries: list[dict[str, Any]] = []
+        self._names: set[str] = set()
+
+    def add(self, view: View) -> None:
+        """Take one view: keep it and fuse it.
+
+        Raises:
+            UsageError: a view of this name was added before. OutputError: it cannot be kept.
+        """
+        if view.name in self._names:
+            raise UsageError(f"a view named {view.name!r} was added before")
+        self._names.add(view.name)
+        self._keep(view)
+        self._live.add(view)
+        if self._live.due:
+            self._write_capture()
+            self._live.place(self.frames_folder)
+
+    def fused(self) -> FusedEvidence:
+        """Return the map of the moment.
+
+        Raises:
+            CaptureError: no view gave evidence yet.
+        """
+        return self._live.fused()
+
+    def show(self) -> None:
+        """Write ``room.npz`` and ``preview.png`` of the moment."""
+        show(self._live, self.out)
+
+    def finish(self, progress: Progress = silent) -> Scan:
+        """Run the batch over all frames; its files replace those of the moment.
+
+        Raises:
+            CaptureError: the frames cannot be used. OutputError: the folder cannot be written.
+        """
+        self._write_capture()
+        return reconstruct(self.frames_folder, self.out, self.parameters, progress=progress)
+
+    def _keep(self, view: View) -> None:
+        """Write a view's images, and put down what ``capture.json`` shall say of it."""
+        write_plain(self.frames_folder, [view], depth_unit="m")
+        stated = read_json(self.frames_folder / "capture.json")
+        (entry,) = stated.pop("frames")
+        self._stated = self._stated or stated
+        # What this view states otherwise than the first goes into its own entry.
+        entry |= {key: value for key, value in stated.items() if self._stated.get(key) != value}
+        self._entries.append(entry)
+
+    def _write_capture(self) -> None:
+        write_json(self.frames_folder / "capture.json", self._stated | {"frames": self._entries})
+
+
+def placed_scan(
+    capture: Path, chosen: Parameters, labels: Path | None = None, progress: Progress = silent
+) -> Scan:
+    """Return a capture's scan, registered and placed, by the stages that the batch runs.
+
+    Raises:
+        CaptureError: it cannot be used.
+    """
+    options = {"voxel_m": chosen.voxel_m, "labels": labels, "options": chosen.capture}
+    scan = open_scan(capture, progress=progress, **options)
+    found = register(scan, chosen.register, progress)
+    return realigned(corrected(scan, found.corrections), found.surface)
+
+
+def show(live: LiveMap, out: Path) -> None:
+    """Write ``room.npz`` and ``preview.png`` of a map, each whole or not at all.
+
+    Objects are not yet furniture: their cells are built as they are.
+
+    Raises:
+        CaptureError: no frame gave evidence yet. OutputError: the folder cannot be written.
+    """
+    chosen, evidence = live.parameters, live.fused()
+    grid = labelled(remove_floaters(read_out(evidence), chosen.clean), evidence, chosen)
+    write_room(out / "room.npz", grid, evidence.scan_to_room)
+    volume = build_volume(
+        grid, (), (), blocks_per_metre=chosen.blocks_per_metre, parameters=chosen.build
+    )
+    picture = io.BytesIO()
+    Image.fromarray(preview(volume, *PREVIEW_PX)).save(picture, "PNG")
+    write_bytes(out / "preview.png", picture.getvalue())
+
+
+class Follower:
+    """Reads the new frames of a capture folder that grows."""
+
+    def __init__(self, capture: Path, chosen: Parameters, labels: Path | None = None):
+        self.capture, self.labels = capture, labels
+        self.live = LiveMap(chosen)
+        self._every = parse_options(chosen.capture).every
+        self._read: set[str] = set()
+
+    def poll(self) -> int:
+        """Fuse the frames that are new, and return how many.
+
+        A frame that cannot be read yet, because it is being written, is tried again next time.
+        """
+        new = 0
+        for frame in self._new_frames():
+            if self.live.scan is not None and not self._fuse(frame):
+                continue
+            self._read.add(frame.name)
+            new += 1
+        self.live.frames = len(self._read)
+        if new and self.live.due and self.live.place(self.capture, self.labels):
+            # Frames that came since the folder was listed are in the map already.
+            self._read |= set(self.live.scan.frames_used) if self.live.scan else set()
+        return new
+
+    def _new_frames(self) -> list[FrameFiles]:
+        try:
+            frames = find_capture(self.capture).frames[:: self._every]
+        except InputError:
+            return []
+        return [
+            frame
+            for frame in frames
+            if frame.name not in self._read and not frame.problem and frame.depth_path
+        ]
+
+    def _fuse(self, frame: FrameFiles) -> bool:
+        """Fuse one frame by the depth encoding that the last placing found."""
+        encoding = getattr(_innermost(self.live.scan), "encoding", None)
+        if encoding is None:
+            return False
+        try:
+            view = read_view(frame, encoding)
+        except InputError:
+            return False
+        self.live.add(view)
+        return True
+
+
+def follow(
+    capture: Path,
+    out: Path,
+    parameters: Parameters | None = None,
+    *,
+    labels: Path | None = None,
+    idle_s: float = IDLE_S,
+    show_s: float = SHOW_S,
+    poll_s: float = POLL_S,
+    progress: Progress = silent,
+    wait: Callable[[float], None] = time.sleep,
+    clock: Callable[[], float] = time.monotonic,
+) -> int:
+    """Watch a capture folder that still grows, and keep ``room.npz`` and ``preview.png`` fresh.
+
+    It ends on a file named ``done`` in the folder, on Ctrl-C, or when nothing new came for
+    ``idle_s``. The caller then runs the batch.
+
+    Args:
+        capture: the folder; it may be empty or missing at first.
+        out: the folder of the results.
+        parameters: as of ``reconstruct``.
+        labels: a folder of 2D label images.
+        idle_s: seconds without a new frame after which it ends.
+        show_s: seconds between two pictures, at least.
+        poll_s: seconds between two looks at the folder.
+        progress: told of the stage ``follow``, of unknown length.
+        wait: sleeps for so many seconds.
+        clock: tells the time in seconds.
+
+    Returns:
+        How many frames were read.
+
+    Raises:
+        OutputError: ``out`` cannot be written.
+    """
+    check_writable(out)
+    follower = Follower(capture, parameters or Parameters(), labels)
+    last_new, last_shown, stale = clock(), -np.inf, False
+    frames = 0
+    try:
+        while True:
+            done = (capture / DONE_FILE).exists()  # Before the look: what came first is read.
+            new = follower.poll()
+            frames += new
+            if new:
+                last_new, stale = clock(), True
+                progress("follow", frames, 0, f"{frames} frames")
+            if stale and follower.live.scan is not None and clock() - last_shown >= show_s:
+                show(follower.live, out)
+                last_shown, stale = clock(), False
+            if done or clock() - last_new >= idle_s:
+                return frames
+            wait(poll_s)
+    except KeyboardInterrupt:
+        return frames
+
+
+def _scan_of(view: View, scan_to_room: np.ndarray) -> Scan:
+    """Return a scan of one view, for predictors, which take scans."""
+    return Scan([view], scan_to_room, np.ones(3), (view.name,))
+
+
+def _innermost(scan: Scan | None) -> Any:
+    """Return the stream of a scan as it comes from disk, under what corrects its views."""
+    views: Any = None if scan is None else scan.views
+    while hasattr(views, "views"):
+        views = views.views
+    return views

@@ -1,0 +1,127 @@
+"""One photo as a capture: with a network's depth, or with none and a place that is taken for it.
+
+With depth the photo stands where its floor and its walls say. Without, a person held the camera:
+level unless told otherwise, at the height of a chest, in the middle of the back of the box that
+monocular networks look at.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.capture.judged import JudgedCapture
+from world2minecraft.capture.options import parse_options
+from world2minecraft.capture.photos import judged_photos
+from world2minecraft.capture.readers.plain import write_plain
+from world2minecraft.capture.readers.single_photo import SOURCE
+from world2minecraft.capture.stereo import DepthModel, depth_model
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.types import Camera, View
+from world2minecraft.geometry.undistort import pinhole_of, undistorted
+from world2minecraft.geometry.view_region import USUAL_SHAPE, USUAL_VOXEL_M
+from world2minecraft.reconstruction.parameters import Parameters
+
+DEPTH_WIDE_PX = 640
+TRUST = 255  # There is nothing else to trust.
+SIGMA_DEPTH, SIGMA_NONE = 0.10, 0.20  # Guesses: of a network's metres, and of a person's eye.
+MONO = "mono"
+
+
+def is_one_photo(source: str) -> bool:
+    """Return whether a capture's source is that of one photo."""
+    return source == SOURCE
+
+
+def prepare_photo(judged: JudgedCapture, folder: Path, chosen: Parameters, unit: str) -> None:
+    """Write one photo as a capture that can be opened.
+
+    Raises:
+        CaptureError: neither a depth network nor a monocular one was asked for, or the depth
+            network gives no metres. UsageError, InputError: what ``depth_model`` raises.
+    """
+    by_network = chosen.predictor.partition(":")[0] == MONO
+    if not chosen.depth_model and not by_network:
+        raise CaptureError(
+            judged.capture.folder,
+            "is one photo: nothing in it can be compared. Take 30 or more of the room, or let a "
+            "network guess: --depth hf:ORG/NAME or --predictor mono",
+        )
+    stated: dict[str, Any] = {
+        "made_from": judged.capture.source,
+        "depth_kind": "network",
+        "scale": "estimated",
+        "skipped": [[*row] for row in judged.skipped],
+    }
+    if chosen.depth_model:
+        model = depth_model(chosen.depth_model)
+        if model.kind != "metric":
+            raise CaptureError(
+                judged.capture.folder,
+                f"is one photo, and {model.name} gives depth without metres; take a metric one, "
+                "such as hf:depth-anything/Depth-Anything-V2-Metric-Indoor-Small-hf",
+            )
+        views = _with_depth(judged, model)
+        stated |= {"scale_sigma": SIGMA_DEPTH, "notes": [*judged.notes, _told_depth(model)]}
+    else:
+        options = parse_options(chosen.capture)
+        pose, size_m = placed(options.eye_height_m, options.pitch_deg)
+        views = _bare(judged, pose)
+        told = (
+            f"the photo has no depth: its camera is taken to stand {options.eye_height_m:g} m over "
+            f"the floor and to look {_way(options.pitch_deg)}; capture.eye_height_m and "
+            "capture.pitch_deg tell otherwise"
+        )
+        room = {"scan_to_room": np.eye(4).tolist(), "size_m": size_m.tolist()}
+        stated |= {"scale_sigma": SIGMA_NONE, "notes": [*judged.notes, told], "room": room}
+    for name in ("depth", "trust"):  # Of the same photo with other networks.
+        for path in (folder / name).glob("*"):
+            path.unlink()
+    write_plain(folder, views, depth_unit=unit, stated=stated, jpeg=True)
+
+
+def placed(eye_height_m: float, pitch_deg: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return ``camera_to_room`` of a photo without depth, and the size of the room before it."""
+    size_m = np.array(USUAL_SHAPE) * USUAL_VOXEL_M
+    eye = np.array([size_m[0] / 2, 0.0, eye_height_m])
+    pitch = np.radians(pitch_deg)
+    ahead = np.array([0.0, np.cos(pitch), np.sin(pitch)])
+    return look_at(eye, eye + ahead), size_m
+
+
+def _way(pitch_deg: float) -> str:
+    if pitch_deg == 0:
+        return "straight ahead"
+    return f"{abs(pitch_deg):g} degrees {'up' if pitch_deg > 0 else 'down'}"
+
+
+def _told_depth(model: DepthModel) -> str:
+    return f"depth and size of the room are what {model.name} guesses from one photo"
+
+
+def _straight(judged: JudgedCapture) -> tuple[str, np.ndarray, Camera]:
+    """Return the photo's name, its picture without distortion, and the camera of that."""
+    photo = next(iter(judged_photos(judged)), None)
+    if photo is None or photo.camera is None:
+        raise CaptureError(judged.capture.folder, "cannot be decoded; export it as JPEG")
+    camera = photo.camera
+    if not any(camera.distortion):
+        return photo.name, photo.colour, camera
+    flat = pinhole_of(camera, camera.width_px)
+    return photo.name, undistorted(photo.colour, camera, flat), flat
+
+
+def _with_depth(judged: JudgedCapture, model: DepthModel) -> Iterator[View]:
+    name, colour, camera = _straight(judged)
+    small = pinhole_of(camera, min(camera.width_px, DEPTH_WIDE_PX))
+    depth_m = model.predict(undistorted(colour, camera, small), small)
+    depth_m = np.where(np.isfinite(depth_m) & (depth_m > 0), depth_m, 0).astype(np.float32)
+    trust = np.where(depth_m > 0, TRUST, 0).astype(np.uint8)
+    yield View(name, np.eye(4), colour, camera, depth_m, small, trust=trust)
+
+
+def _bare(judged: JudgedCapture, pose: np.ndarray) -> Iterator[View]:
+    name, colour, camera = _straight(judged)
+    yield View(name, pose, colour, camera)

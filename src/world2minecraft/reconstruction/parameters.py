@@ -1,0 +1,199 @@
+"""Every parameter of a reconstruction, in one frozen value; ``--set key=value`` changes any.
+
+Each stage owns its own parameters and their defaults; here they are only joined.
+"""
+
+import json
+import math
+from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
+from typing import Any
+
+from world2minecraft.capture.sfm import PosingParameters
+from world2minecraft.capture.stereo import StereoParameters
+from world2minecraft.construction import BuildParameters
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.formats.forms import form_named
+from world2minecraft.minecraft.versions import game_version
+from world2minecraft.reconstruction.fusion import CleanParameters, FuseParameters
+from world2minecraft.reconstruction.instances import FindParameters
+from world2minecraft.reconstruction.occupancy import PREDICTORS, OccupyParameters
+from world2minecraft.reconstruction.registration import RegisterParameters
+from world2minecraft.reconstruction.retrieval import FurnishParameters
+from world2minecraft.reconstruction.semantics import LABELLERS
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """What decides a result, beside the capture.
+
+    voxel_m: the paper's cell. blocks_per_metre: at 4 a room is recognised at once, at 2 it is
+    not. predictor: ``depth``, or ``mono:FILE.onnx``. labeller: ``auto`` takes ``completion`` where
+    depth was measured and cells are of the size that its network learnt; else ``votes`` where
+    anything voted, or ``geometric``. mend: clean up what is built as a person would; ``w2m clean
+    OUT --list`` tells what that was. formats: further forms of the build, such as
+    ``litematic,nbt,glb``.
+    depth_model: a network whose depth fills what stereo leaves open, such as ``hf:ORG/NAME``.
+    plan: the path of a RoomPlan of the same room, as more evidence.
+    known: a length by its name, such as ``("table height", 0.72)``; known_points: two places in
+    photos, each ``PHOTO:x,y``, and the metres between them; both give a capture its scale.
+    """
+
+    voxel_m: float = 0.08
+    blocks_per_metre: float = 4.0
+    predictor: str = "depth"
+    depth_model: str = ""
+    plan: str = ""
+    labeller: str = "auto"
+    mc_version: str = "1.20.1"
+    mend: bool = True
+    formats: str = ""
+    known: tuple[str, float] | None = None
+    known_points: tuple[str, str, float] | None = None
+    capture: dict[str, str] = field(default_factory=dict)
+    posing: PosingParameters = field(default_factory=PosingParameters)
+    stereo: StereoParameters = field(default_factory=StereoParameters)
+    register: RegisterParameters = field(default_factory=RegisterParameters)
+    occupy: OccupyParameters = field(default_factory=OccupyParameters)
+    fuse: FuseParameters = field(default_factory=FuseParameters)
+    clean: CleanParameters = field(default_factory=CleanParameters)
+    find: FindParameters = field(default_factory=FindParameters)
+    furnish: FurnishParameters = field(default_factory=FurnishParameters)
+    build: BuildParameters = field(default_factory=BuildParameters)
+
+    def __post_init__(self):
+        if not 0.01 <= self.voxel_m <= 0.5:
+            raise UsageError(f"voxel_m must be 0.01 to 0.5 m, not {self.voxel_m}")
+        if not 0.25 <= self.blocks_per_metre <= 100:
+            raise UsageError(
+                f"blocks_per_metre must be 0.25 to 100, not {self.blocks_per_metre}; "
+                "try 1, 2, 4 or 12.5"
+            )
+        check_name("predictor", self.predictor.partition(":")[0], PREDICTORS.names())
+        check_name("labeller", self.labeller, ("auto", *LABELLERS.names()))
+        game_version(self.mc_version)
+        for name in self.format_names:
+            form_named(name)
+        if self.fuse.voxel_m != self.voxel_m:
+            object.__setattr__(self, "fuse", replace(self.fuse, voxel_m=self.voxel_m))
+
+    @property
+    def format_names(self) -> tuple[str, ...]:
+        """The forms that are written beside the world."""
+        return tuple(name.strip() for name in self.formats.split(",") if name.strip())
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the parameters as JSON holds them: tuples are lists there."""
+        return json.loads(json.dumps(asdict(self)))
+
+
+def check_name(kind: str, name: str, known: tuple[str, ...]) -> None:
+    """Raise UnknownNameError where ``name`` is none of ``known``."""
+    if name not in known:
+        raise UnknownNameError(kind, name, known)
+
+
+METHODS = ("best", "paper")
+# What is not set by its own key, and what is typed instead.
+SAID_ELSEWHERE = {
+    "known": '--known "table height" 0.72',
+    "known_points": "--known-points A:x,y B:x,y METRES",
+    "fuse.voxel_m": "--voxel 0.08",  # One size for all stages.
+    "capture": "--set capture.KEY=VALUE",
+}
+TYPES_IN_WORDS = {bool: "yes or no", int: "a whole number", float: "a number"}
+
+
+def with_method(parameters: Parameters, method: str) -> Parameters:
+    """Return the parameters with one of ``METHODS`` chosen: where the two differ, as docs say.
+
+    ``best`` leaves them as they are. ``paper`` stops where the paper stops: no refinement of poses
+    and depth, each cluster of DBSCAN an object, templates by IoU over all cells and turns, nothing
+    mended. What the paper leaves open (k, tau, eta, fusion, labels) is the same in both.
+
+    Raises:
+        UnknownNameError: there is no such method.
+    """
+    check_name("method", method, METHODS)
+    if method == "best":
+        return parameters
+    return replace(
+        parameters,
+        register=replace(parameters.register, passes=0),
+        find=replace(parameters.find, paper_compat=True),
+        furnish=replace(parameters.furnish, paper_compat=True),
+        mend=False,
+    )
+
+
+def with_settings(parameters: Parameters, settings: list[str]) -> Parameters:
+    """Return the parameters with ``key=value`` settings applied, such as ``find.cluster_radius=3``.
+
+    Keys that begin with ``capture.`` are handed to the capture's reader.
+
+    Raises:
+        UsageError: a setting is no ``key=value`` or its value has the wrong type.
+        UnknownNameError: no parameter has this key; the message suggests the nearest.
+    """
+    for setting in settings:
+        key, equals, text = setting.partition("=")
+        if not equals:
+            raise UsageError(
+                f"--set takes key=value, not {setting!r}, such as --set find.cluster_radius=3"
+            )
+        parameters = _with_one(parameters, key.strip().split("."), text.strip(), key.strip())
+    return parameters
+
+
+def parameter_keys(value: Any = None, prefix: str = "") -> list[str]:
+    """Return all keys that ``--set`` knows."""
+    value = Parameters() if value is None else value
+    keys = []
+    for entry in fields(value):
+        inner = getattr(value, entry.name)
+        if is_dataclass(inner):
+            keys += parameter_keys(inner, f"{prefix}{entry.name}.")
+        elif not isinstance(inner, dict | tuple) and prefix + entry.name not in SAID_ELSEWHERE:
+            keys.append(prefix + entry.name)
+    return keys
+
+
+def _with_one(value: Any, path: list[str], text: str, key: str) -> Any:
+    name = path[0]
+    if name == "capture" and len(path) == 2:
+        return replace(value, capture={**value.capture, path[1]: text})
+    if key in SAID_ELSEWHERE:
+        raise UsageError(f"--set does not take {key}; type {SAID_ELSEWHERE[key]}")
+    if name not in {entry.name for entry in fields(value)}:
+        raise UnknownNameError("parameter", key, parameter_keys())
+    inner = getattr(value, name)
+    if is_dataclass(inner) != (len(path) > 1):
+        raise UnknownNameError("parameter", key, parameter_keys())
+    changed = _with_one(inner, path[1:], text, key) if len(path) > 1 else _parse(inner, text, key)
+    try:
+        return replace(value, **{name: changed})
+    except ValueError as error:
+        raise UsageError(f"--set {key}: {error}") from error
+
+
+def _parse(example: Any, text: str, key: str) -> Any:
+    """Return ``text`` as a value of the type of ``example``."""
+    try:
+        if isinstance(example, bool):
+            return {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}[
+                text.lower()
+            ]
+        if isinstance(example, int | float):
+            return _finite(type(example)(text))
+    except (ValueError, KeyError, OverflowError):
+        words = TYPES_IN_WORDS[type(example)]
+        raise UsageError(f"--set {key} takes {words} such as {example}, not {text!r}") from None
+    if isinstance(example, str) or example is None:
+        return text
+    raise UsageError(f"--set does not take {key}: it has several values")
+
+
+def _finite(value: float) -> float:
+    """Return a number. Raises ValueError where it is none, or has no end."""
+    if not math.isfinite(value):
+        raise ValueError
+    return value

@@ -1,0 +1,151 @@
+"""Algorithm 1 of the paper, line for line: a capture becomes a Minecraft world.
+
+===========  =================================================  ==================================
+paper line   what                                               here
+===========  =================================================  ==================================
+4 to 7       O_mono, the evidence of each view                  ``occupy``
+8            O_scene, all views fused                           ``fuse``, ``label``
+9 to 11      density D, candidates C, clusters C'               ``find``
+(eq. argmax) templates by IoU over rotations                    ``furnish``
+12, 13       commands M, executed                               ``build``
+===========  =================================================  ==================================
+
+Each stage reads the files that the stage before it wrote, so that any of them can be run again.
+"""
+
+from dataclasses import replace
+from importlib.metadata import version
+from pathlib import Path
+
+from world2minecraft import __version__
+from world2minecraft.capture import realigned, settled
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import Scan
+from world2minecraft.formats.evidence import write_evidence
+from world2minecraft.formats.poses import read_poses, write_poses
+from world2minecraft.formats.scan import placed_as_written, read_registration, write_scan
+from world2minecraft.furniture.user_library import own_files, own_folder
+from world2minecraft.reconstruction.floorplans import add_plan_openings, voted_by_plan
+from world2minecraft.reconstruction.fusion import fuse_views
+from world2minecraft.reconstruction.occupancy import notes_of, predictor
+from world2minecraft.reconstruction.opening import open_prepared
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.registration import corrected_scan as corrected
+from world2minecraft.reconstruction.registration import register, told
+from world2minecraft.reconstruction.resume import kept_before, with_kept_files
+from world2minecraft.reconstruction.run_folder import RunFolder, hash_capture
+from world2minecraft.reconstruction.stages import LATER_STEPS
+
+STAGES = ("scan", "register", "fuse", *LATER_STEPS)
+
+
+def reconstruct(
+    capture: Path,
+    out: Path,
+    parameters: Parameters | None = None,
+    *,
+    start: str | None = None,
+    until: str | None = None,
+    labels: Path | None = None,
+    progress: Progress = silent,
+) -> Scan:
+    """Turn the capture in a folder into a Minecraft world in ``out / "build"``.
+
+    Args:
+        capture: a folder that ``scan`` can read.
+        out: the folder of the results; DESIGN lists its files.
+        parameters: what decides the result, beside the capture.
+        start: the stage to begin at; None goes on where a run that was cut off stopped.
+        until: the last stage to run; all of them where it is None.
+        labels: a folder of 2D label images, one a view.
+        progress: told of each step.
+
+    Raises:
+        CaptureError: the capture cannot be used. OutputError: ``out`` cannot be written.
+        UsageError: a setting is other than the one that stages before ``start`` were made with.
+    """
+    run = RunFolder(out, STAGES, start)
+    kept = kept_before(out, start, STAGES, parameters or Parameters())
+    chosen = kept.parameters
+    early = start is None or STAGES.index(start) <= STAGES.index("fuse")
+    used = predictor(chosen.predictor, chosen.occupy) if early else None
+    with run.timed("scan"):
+        scan = open_prepared(capture, out, chosen, labels, progress)
+    run.begin(with_kept_files(out, start, manifest(capture, labels, chosen, out), kept))
+    if run.needs("scan"):
+        with run.stage("scan"):
+            write_scan(run.path("scan.json"), scan)
+    if run.needs("register"):
+        with run.stage("register"):
+            found = register(scan, chosen.register.suited(scan.depth_kind), progress)
+            scan = realigned(corrected(scan, found.corrections), found.surface)
+            scan = told(scan, found.corrections.facts)
+            write_poses(run.path("poses.npz"), found.corrections)
+            write_scan(run.path("scan.json"), scan, found.corrections.facts)
+    else:
+        scan = registered_before(scan, out)
+    if used is not None and run.needs("fuse"):
+        with run.stage("fuse"):
+            rules = chosen.fuse.suited(scan.depth_kind)
+            evidence, scan = fuse_views(used.predict(scan), scan, rules, progress), settled(scan)
+            scan = replace(scan, notes=(*scan.notes, *notes_of(used)))
+            if chosen.plan:
+                evidence, told_of_plan = voted_by_plan(evidence, Path(chosen.plan))
+                scan = replace(scan, notes=(*scan.notes, *told_of_plan))
+            write_evidence(run.path("evidence.npz"), evidence)
+            write_scan(run.path("scan.json"), scan, read_registration(run.path("scan.json")))
+    run_later_stages(run, chosen, until, progress)
+    return replace(scan, notes=(*scan.notes, *kept.notes))
+
+
+def run_later_stages(
+    run: RunFolder, chosen: Parameters, until: str | None = None, progress: Progress = silent
+) -> None:
+    """Run what is not yet finished of the stages after fusion, ``until`` one of them."""
+    for stage, step in LATER_STEPS.items():
+        if run.needs(stage):
+            progress(stage, 0, 1)
+            with run.stage(stage):
+                step(run.folder, chosen)
+                if stage == "label" and chosen.plan:
+                    add_plan_openings(run.folder, Path(chosen.plan))
+            progress(stage, 1, 1)
+        if stage == until:
+            break
+
+
+def registered_before(scan: Scan, out: Path) -> Scan:
+    """Return a scan as an earlier run in ``out`` registered and placed it.
+
+    Raises:
+        InputError: no run got so far there. DamagedFileError: its files cannot be read.
+    """
+    placed = placed_as_written(scan, out / "scan.json")
+    return corrected(placed, read_poses(out / "poses.npz"))
+
+
+def network_files(chosen: Parameters) -> list[Path]:
+    """Return the files beside the capture that networks are read from or told by."""
+    named = (chosen.predictor.partition(":")[2], chosen.occupy.network, chosen.occupy.label_names)
+    return [Path(name) for name in named if name]
+
+
+def manifest(
+    capture: Path, labels: Path | None, chosen: Parameters, out: Path | None = None
+) -> dict:
+    """Return what decides a result: the hashes of what is read, the parameters and the versions.
+
+    What lies in ``out``, the folder of the results, is not read of a capture that holds it.
+    """
+    palette = Path(chosen.build.palette)
+    return {
+        "program": __version__,
+        "capture": hash_capture(capture, without=out),
+        "labels": None if labels is None else hash_capture(labels),
+        "plan": hash_capture(Path(chosen.plan)) if chosen.plan else None,
+        "networks": [hash_capture(path) for path in network_files(chosen)],
+        "palette": hash_capture(palette) if palette.is_file() else None,
+        "furniture": hash_capture(own_folder()) if own_files() else None,
+        "parameters": chosen.as_json(),
+        "versions": {name: version(name) for name in ("numpy", "scipy", "numba")},
+    }

@@ -1,0 +1,94 @@
+"""From an occupancy grid to blocks, without its capture: in a folder, or as they are."""
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.formats.occupancy import read_occupancy
+from world2minecraft.formats.room import write_room
+from world2minecraft.minecraft.formats import FORMATS, read_blocks
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.run_folder import BUILT_FROM, check_finished, check_writable
+from world2minecraft.reconstruction.stages import LATER_STEPS, built_volume
+
+# Runs from a grid alone have no scan, those of the first versions no rooms.
+MORE_FILES = ("scan.json", "layout.json")
+
+
+def rebuild(source: Path, out: Path, parameters: Parameters, progress: Progress = silent) -> None:
+    """Build ``out / "build"`` from a run's folder or from any occupancy file.
+
+    A run's folder is built from its objects and placements as they stand. From a grid alone
+    objects are found and matched first; their files are written to ``out`` too.
+
+    Raises:
+        InputError: ``source`` cannot be read. OutputError: ``out`` cannot be written.
+        UsageError: ``out`` is ``source``, or ``source`` holds blocks and no room.
+    """
+    if out.exists() and source.exists() and out.samefile(source):
+        raise UsageError(f"{out} is the source; give another folder to --out")
+    if is_block_file(source):
+        ways = f"w2m convert {source} {out} makes a world of it, --into WORLD --at X Y Z adds it"
+        raise UsageError(f"{source} holds blocks, and --out takes a room; {ways} to one")
+    if source.is_dir():
+        _copy_run(source, out)
+        stages = ("build",)
+    else:
+        grid = read_occupancy(source)
+        check_writable(out)
+        write_room(out / "room.npz", grid, np.eye(4))
+        stages = ("find", "furnish", "build")
+    _run_stages(stages, out, parameters, progress)
+
+
+def blocks_of(source: Path, parameters: Parameters, progress: Progress = silent) -> BlockVolume:
+    """Return the blocks that ``rebuild`` would write; ``source`` may hold blocks already.
+
+    Args:
+        source: a run's folder, an occupancy file, or any file or world that holds blocks; the
+            last are returned as they are, whatever the parameters.
+        parameters: how to build.
+        progress: told of each step.
+
+    Raises:
+        InputError: ``source`` cannot be read.
+    """
+    if is_block_file(source):
+        return read_blocks(source)
+    if source.is_dir():
+        check_finished(source)
+        return built_volume(source, parameters)
+    grid = read_occupancy(source)
+    with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
+        folder = Path(scratch)
+        write_room(folder / "room.npz", grid, np.eye(4))
+        _run_stages(("find", "furnish"), folder, parameters, progress)
+        return built_volume(folder, parameters)
+
+
+def is_block_file(source: Path) -> bool:
+    """Whether a known format finds blocks at ``source``."""
+    found = (FORMATS.load(name)() for name in FORMATS.names())
+    return any(format_.can_read and format_.is_at(source) for format_ in found)
+
+
+def _run_stages(
+    stages: tuple[str, ...], folder: Path, parameters: Parameters, progress: Progress
+) -> None:
+    for stage in stages:
+        progress(stage, 0, 1)
+        LATER_STEPS[stage](folder, parameters)
+        progress(stage, 1, 1)
+
+
+def _copy_run(source: Path, out: Path) -> None:
+    check_finished(source)
+    check_writable(out)
+    for name in (*BUILT_FROM, *MORE_FILES):
+        if (source / name).is_file():
+            write_bytes(out / name, (source / name).read_bytes())

@@ -1,0 +1,148 @@
+"""What ``--from STAGE`` keeps: the stages before it, and the settings that these were made with.
+
+A setting that only kept stages read cannot change any more. Left out, it stays as it was, so that
+the manifest tells the truth; given with another value, it is refused before any work.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, is_dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
+from world2minecraft.core.files import read_json
+from world2minecraft.reconstruction.parameters import Parameters
+
+# The first stage that reads a parameter, or a whole group of them.
+READ_FIRST_BY = {
+    "voxel_m": "scan", "capture": "scan", "posing": "scan", "stereo": "scan", "depth_model": "scan",
+    "known": "scan", "known_points": "scan", "register": "register", "predictor": "fuse",
+    "occupy": "fuse", "fuse": "fuse", "plan": "fuse", "labeller": "label", "clean": "label",
+    "find": "find", "furnish": "furnish", "blocks_per_metre": "build", "mc_version": "build",
+    "mend": "build", "formats": "build", "build": "build",
+}  # fmt: skip
+# The same of what the manifest says of files: hashes.
+FILES_READ_FIRST_BY = {"capture": "scan", "labels": "fuse", "plan": "fuse", "networks": "fuse"}
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What goes on as it was.
+
+    parameters: those asked for, with the kept stages' own as they were. facts: of the manifest,
+    the hashes of files that only kept stages read. changed: ``key=value`` of each parameter that
+    is kept although it is not the default.
+    """
+
+    parameters: Parameters
+    facts: Mapping[str, Any] = field(default_factory=dict)
+    changed: tuple[str, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A line for the user, where something is other than a new run would have it."""
+        return (f"kept from before: {', '.join(self.changed)}",) if self.changed else ()
+
+
+def kept_before(out: Path, start: str | None, stages: Sequence[str], asked: Parameters) -> Kept:
+    """Return the parameters with which a run in ``out`` goes on from a stage.
+
+    Args:
+        out: the run's folder, with its manifest; where it has none, all is as asked.
+        start: the stage to begin at; None keeps nothing, a name that is none of ``stages`` all.
+        stages: all stages, in order.
+        asked: what the user asks for now.
+
+    Raises:
+        UsageError: a setting that kept stages were made with is asked for with another value.
+    """
+    old = {} if start is None else _manifest(out)
+    kept = stages[: stages.index(start)] if start in stages else stages
+    default, chosen, changed = Parameters().as_json(), asked, []
+    for key, was, now in _differing(old.get("parameters"), asked.as_json(), kept):
+        if now != _at(default, key):
+            raise UsageError(
+                f"--from {start} keeps what was made with {key} {_shown(was)}, not {_shown(now)}; "
+                f"leave {key} out, or begin with --from {_first_reader(key)}"
+            )
+        chosen = _with_value(chosen, key.split("."), was, out)
+        changed.append(f"{key}={_shown(was)}")
+    files = [name for name, by in FILES_READ_FIRST_BY.items() if by in kept and name in old]
+    return Kept(chosen, {name: old[name] for name in files}, tuple(changed))
+
+
+def with_kept_files(out: Path, start: str | None, now: Mapping[str, Any], kept: Kept) -> dict:
+    """Return a manifest whose hashes of files are those that kept stages read.
+
+    Raises:
+        InputError: the capture is another than then. UsageError: other labels are given now.
+    """
+    if kept.facts.get("capture", now["capture"]) != now["capture"]:
+        raise InputError(
+            out, "was made of another capture, or its files have changed since; leave out --from"
+        )
+    if now["labels"] is not None and kept.facts.get("labels", now["labels"]) != now["labels"]:
+        raise UsageError(
+            f"--from {start} keeps what was made without these --labels; begin with --from fuse"
+        )
+    return {**now, **kept.facts}
+
+
+def _manifest(out: Path) -> Mapping[str, Any]:
+    """Return the manifest of an earlier run; an empty one where there is none to be read."""
+    path = out / "manifest.json"
+    try:
+        stated = read_json(path) if path.is_file() else None
+    except DamagedFileError:
+        return {}
+    return stated if isinstance(stated, dict) else {}
+
+
+def _differing(
+    stated: Any, asked: Mapping[str, Any], kept: Sequence[str]
+) -> Iterator[tuple[str, Any, Any]]:
+    """Give the key, the value of then and that of now where kept stages read another one."""
+    for key, was in _flat(stated if isinstance(stated, dict) else {}):
+        now = _at(asked, key)
+        if _first_reader(key) in kept and now is not ... and now != was:
+            yield key, was, now
+
+
+def _first_reader(key: str) -> str:
+    """Return the first stage that reads a parameter; nothing for one that is no more."""
+    return "" if key == "fuse.voxel_m" else READ_FIRST_BY.get(key.partition(".")[0], "")
+
+
+def _flat(stated: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
+    """Return the leaves of nested parameters by dotted keys; the options of a capture are one."""
+    leaves: list[tuple[str, Any]] = []
+    for name, value in stated.items():
+        is_group = isinstance(value, dict) and name != "capture"
+        leaves += _flat(value, f"{prefix}{name}.") if is_group else [(prefix + name, value)]
+    return leaves
+
+
+def _at(stated: Mapping[str, Any], key: str) -> Any:
+    """Return the leaf at a dotted key; ``...`` where there is none."""
+    value: Any = stated
+    for name in key.split("."):
+        if not isinstance(value, Mapping) or name not in value:
+            return ...
+        value = value[name]
+    return value
+
+
+def _with_value(value: Any, path: Sequence[str], was: Any, out: Path) -> Any:
+    """Return parameters with one leaf as a manifest states it."""
+    inner = getattr(value, path[0])
+    if is_dataclass(inner):
+        return replace(value, **{path[0]: _with_value(inner, path[1:], was, out)})
+    try:
+        return replace(value, **{path[0]: tuple(was) if isinstance(was, list) else was})
+    except (TypeError, ValueError, UsageError) as error:
+        raise DamagedFileError(out / "manifest.json", f"states {path[0]} {was!r}") from error
+
+
+def _shown(value: Any) -> str:
+    """Return a value as a setting shows it; what is empty or none by a word."""
+    return str(value) if value not in (None, "", [], {}) else "none"

@@ -1,0 +1,10 @@
+"""Stage 6, objects -> placements: the best template, turn, size and shift by IoU.
+
+It is the paper's argmax of |O_k intersected with Rot(T_j, delta)| over their union.
+"""
+
+from world2minecraft.reconstruction.retrieval.chosen_template import fit_template, ranked_matches
+from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
+from world2minecraft.reconstruction.retrieval.placing import furnish
+
+__all__ = ["FurnishParameters", "fit_template", "furnish", "ranked_matches"]

@@ -1,0 +1,156 @@
+"""Furniture that a person chose for an object: put in its place as well as it goes there."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from world2minecraft.core.types import Layout, ObjectInstance, OccupancyGrid, Placement
+from world2minecraft.furniture import Template, template, templates_of
+from world2minecraft.reconstruction.retrieval.bounds import floor_under_m, within_rooms
+from world2minecraft.reconstruction.retrieval.match import best_matches
+from world2minecraft.reconstruction.retrieval.object_evidence import Evidence, evidence_of
+from world2minecraft.reconstruction.retrieval.parameters import FurnishParameters
+from world2minecraft.reconstruction.retrieval.seeds import limits, reach_of
+from world2minecraft.reconstruction.retrieval.trial import Bias, Scored
+
+OWN_CELLS = "cells"
+
+
+def fit_template(
+    grid: OccupancyGrid,
+    instance: ObjectInstance,
+    name: str,
+    quarter_turns: int | None = None,
+    rooms: Sequence[Layout] = (),
+) -> Placement:
+    """Return one template in an object's place, sized and shifted to its cells.
+
+    Where it is nowhere near the object's cells, or there are none, it takes the object's box as
+    far as its own sizes allow. It is always put: whoever chose it knows better than the cells.
+
+    Args:
+        grid: where the cells lie.
+        instance: the object.
+        name: of the template, or ``cells`` for what is built from the object's own cells.
+        quarter_turns: the way it looks, 0 to 3; None for the best.
+        rooms: their outlines; within them it stays and on their floors it stands, where any are
+            given.
+
+    Raises:
+        UnknownNameError: there is no such template.
+    """
+    seen = _turns_of(instance)
+    if name == OWN_CELLS:
+        return _own_box(grid, instance, seen if quarter_turns is None else quarter_turns)
+    chosen = template(name)
+    placed = _near_cells(grid, instance, chosen, quarter_turns, rooms)
+    if placed is None:
+        placed = _in_box(grid, instance, chosen, seen if quarter_turns is None else quarter_turns)
+    return within_rooms(placed, rooms, grid.voxel_m) or placed
+
+
+def ranked_matches(
+    grid: OccupancyGrid, instance: ObjectInstance, count: int = 5, rooms: Sequence[Layout] = ()
+) -> tuple[tuple[str, int, float], ...]:
+    """Return the best templates of an object's class: name, quarter turns and IoU, best first.
+
+    Each template is named once, in its best turn. ``rooms`` tell on which floor the object stands.
+    """
+    if not len(instance.cells):
+        return ()
+    best: dict[str, tuple[str, int, float]] = {}
+    for one in _matches(grid, instance, templates_of(instance.class_id), rooms)[1]:
+        row = (one.trial.template.name, one.trial.quarter_turns, round(one.iou, 4))
+        best.setdefault(row[0], row)
+    return tuple(best.values())[:count]
+
+
+def _matches(
+    grid: OccupancyGrid,
+    instance: ObjectInstance,
+    templates: tuple[Template, ...],
+    rooms: Sequence[Layout],
+) -> tuple[Evidence, list[Scored]]:
+    chosen = FurnishParameters()
+    floor_m = floor_under_m(instance.center_m, rooms, grid.voxel_m)
+    reach = reach_of(templates, grid.voxel_m)
+    evidence = evidence_of(grid, instance.cells, reach, False, floor_m)
+    weights = (chosen.size_weight, chosen.front_weight, chosen.beyond_weight)
+    bias = Bias(_turns_of(instance), grid.voxel_m, *weights)
+    return evidence, best_matches(templates, evidence, bias, chosen)
+
+
+def _near_cells(
+    grid: OccupancyGrid,
+    instance: ObjectInstance,
+    chosen: Template,
+    quarter_turns: int | None,
+    rooms: Sequence[Layout],
+) -> Placement | None:
+    if not len(instance.cells):
+        return None
+    evidence, matches = _matches(grid, instance, (chosen,), rooms)
+    wanted = None if quarter_turns is None else quarter_turns % chosen.turns
+    found = [one for one in matches if wanted in (None, one.trial.quarter_turns)]
+    if not found or found[0].iou <= 0:
+        return None
+    trial = found[0].trial
+    counts = np.array(trial.counts)
+    middle = evidence.corner + trial.corner + np.array(trial.turned_counts) / 2
+    turns = trial.quarter_turns if quarter_turns is None else quarter_turns % 4
+    return _placed(
+        grid, instance, chosen.name, middle, counts, turns, found[0].iou, dict(trial.values)
+    )
+
+
+def _in_box(
+    grid: OccupancyGrid, instance: ObjectInstance, chosen: Template, turns: int
+) -> Placement:
+    """Return a template of about the object's size that stands where its box stands."""
+    sides = np.round(_along(instance.size_m, turns - _turns_of(instance)) / grid.voxel_m)
+    spans = [limits(chosen, grid.voxel_m, axis) for axis in range(3)]
+    counts = np.clip(sides, *np.array(spans).T).astype(int)
+    middle = (instance.center_m - grid.origin_m) / grid.voxel_m
+    middle[2] += (counts[2] - instance.size_m[2] / grid.voxel_m) / 2
+    return _placed(grid, instance, chosen.name, middle, counts, turns, 0.0, chosen.complete())
+
+
+def _own_box(grid: OccupancyGrid, instance: ObjectInstance, turns: int) -> Placement:
+    if not len(instance.cells):
+        size = _along(instance.size_m, turns - _turns_of(instance))
+        middle = (instance.center_m - grid.origin_m) / grid.voxel_m
+        return _placed(grid, instance, OWN_CELLS, middle, size / grid.voxel_m, turns, 0.0, {})
+    low, high = instance.cells.min(axis=0), instance.cells.max(axis=0) + 1
+    counts = _along(high - low, turns)
+    return _placed(grid, instance, OWN_CELLS, (low + high) / 2, counts, turns, 0.0, {})
+
+
+def _placed(
+    grid: OccupancyGrid,
+    instance: ObjectInstance,
+    name: str,
+    middle: np.ndarray,
+    counts: np.ndarray,
+    turns: int,
+    iou: float,
+    values: dict[str, float],
+) -> Placement:
+    """Return a placement whose box has its middle and its sides in cells of the grid."""
+    return Placement(
+        object_id=instance.id,
+        class_id=instance.class_id,
+        template=name,
+        center_m=np.round(grid.origin_m + middle * grid.voxel_m, 4),
+        size_m=np.round(counts * grid.voxel_m, 4),
+        quarter_turns=turns,
+        iou=round(iou, 4),
+        parameters=values,
+    )
+
+
+def _turns_of(instance: ObjectInstance) -> int:
+    return int(np.floor(instance.yaw_deg / 90 + 0.5)) % 4
+
+
+def _along(sides: np.ndarray, quarter_turns: int) -> np.ndarray:
+    return sides[[1, 0, 2]] if quarter_turns % 2 else sides

@@ -1,0 +1,171 @@
+"""Which design of its family stands for a match: by size, parameters and colour, after the match.
+
+A match finds the shape; many designs share it. Those whose parts explain the object's cells about
+as well as the match did are on offer, and of them the one is taken that is nearest in size and
+colour. Equal objects of one colour are asked together, so that a set of chairs stays a set.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from world2minecraft.core.types import OccupancyGrid, Placement
+from world2minecraft.furniture import Span, Template, template, variants_of
+from world2minecraft.geometry.colour import oklab_of_srgb
+from world2minecraft.reconstruction.retrieval.object_evidence import OWN, Evidence
+from world2minecraft.reconstruction.retrieval.trial import Bias, Scored, score_shifts
+
+LOST_IOU = 0.02  # What another design may explain less: about the noise of a scan.
+SLACK_M = 0.04  # Half a cell: sizes are whole cells.
+NEUTRAL = 0.1  # Oklab: a design that suits any colour is as good as one this far off.
+SIZE_COST = 0.1  # The Oklab distance that a side at the end of its span is worth. A guess.
+CLEAR_CHROMA, FADED = 0.025, 0.1  # From where on a colour has a hue, and what losing it costs.
+STAY = 0.02  # What another design must be better by than the match itself.
+LIGHT = np.sqrt(0.4)  # How much lightness counts against hue, as where blocks are chosen.
+SAME_SET, SAME_SIZE_M = 0.08, 0.12
+NO_SHIFT = np.zeros((1, 3), np.int64)
+
+
+class Offer(NamedTuple):
+    """A design that may stand for a match, with the values that it takes over."""
+
+    template: str
+    iou: float
+    parameters: dict[str, float]
+
+
+class Choice(NamedTuple):
+    """A placement, what may stand in its place, and the Oklab colour of its cells or None."""
+
+    placement: Placement
+    offers: tuple[Offer, ...]
+    colour: np.ndarray | None
+
+
+def offers_of(evidence: Evidence, match: Scored, bias: Bias) -> tuple[Offer, ...]:
+    """Return the designs of a match's family that explain its cells as well, itself the first."""
+    trial = match.trial
+    size = np.array(trial.counts) * bias.voxel_m
+    found = [Offer(trial.template.name, match.iou, dict(trial.values))]
+    for other in variants_of(trial.template.family):
+        values = _taken_over(other, dict(trial.values))
+        if other.matched or values is None or not _alike(other, trial.template, size):
+            continue
+        tried = trial._replace(template=other, values=tuple(sorted(values.items())))
+        scored = score_shifts(evidence, tried, NO_SHIFT, bias)
+        if scored.iou >= match.iou - LOST_IOU:
+            found.append(Offer(other.name, scored.iou, values))
+    return tuple(found)
+
+
+def _alike(other: Template, own: Template, size_m: np.ndarray) -> bool:
+    """Whether another design stands, turns and is as large as the one that was matched."""
+    same = (other.class_id, other.mount, other.turns) == (own.class_id, own.mount, own.turns)
+    return same and all(
+        span.minimum - SLACK_M <= side <= span.maximum + SLACK_M
+        for side, span in zip(size_m, other.size_m, strict=True)
+    )
+
+
+def _taken_over(other: Template, values: dict[str, float]) -> dict[str, float] | None:
+    """Return another design's parameters with these values; None where one is beyond its span."""
+    result = other.complete()
+    for name, value in values.items():
+        if name not in other.parameters or abs(other.parameters[name].clip(value) - value) > 1e-6:
+            return None
+        result[name] = value
+    return result
+
+
+def colour_of_cells(grid: OccupancyGrid, evidence: Evidence) -> np.ndarray | None:
+    """Return the median Oklab colour, float32 [3], of an object's own cells; None without any."""
+    cells = np.argwhere(evidence.code == OWN) + evidence.corner
+    colours = grid.colour[tuple(cells.T)]
+    colours = colours[colours.any(axis=1)]
+    return np.median(oklab_of_srgb(colours), axis=0) if len(colours) else None
+
+
+def choose(choices: Sequence[Choice]) -> tuple[Placement, ...]:
+    """Return the placements, in their order, each by the design that its whole set takes."""
+    result: dict[int, Placement] = {}
+    for members in _sets(choices):
+        best = _best([choices[index] for index in members])
+        for index in members:
+            placement, offers, _ = choices[index]
+            taken = next((offer for offer in offers if offer.template == best), None)
+            result[index] = placement if taken is None else _standing(placement, taken)
+    return tuple(result[index] for index in range(len(choices)))
+
+
+def _standing(placement: Placement, offer: Offer) -> Placement:
+    if offer.template == placement.template:
+        return placement
+    return replace(
+        placement,
+        template=offer.template,
+        parameters=offer.parameters,
+        iou=round(offer.iou, 4),
+    )
+
+
+def _sets(choices: Sequence[Choice]) -> list[list[int]]:
+    """Return the indices of choices that are of one template, about one size and one colour."""
+    found: list[list[int]] = []
+    for index, choice in enumerate(choices):
+        home = next((one for one in found if _same(choice, choices[one[0]])), None)
+        if home is None:
+            found.append([index])
+        else:
+            home.append(index)
+    return found
+
+
+def _same(one: Choice, other: Choice) -> bool:
+    if one.placement.template != other.placement.template or not one.offers or not other.offers:
+        return False
+    apart = np.abs(one.placement.size_m - other.placement.size_m).max()
+    return apart <= SAME_SIZE_M and _colours_apart(one.colour, other.colour) <= SAME_SET
+
+
+def _colours_apart(one: np.ndarray | None, other: np.ndarray | None) -> float:
+    if one is None or other is None:
+        return 0.0 if one is other else np.inf
+    return float(np.linalg.norm((one - other) * [LIGHT, 1, 1]))
+
+
+def _best(members: list[Choice]) -> str:
+    """Return the template that serves a set best, of those that are on offer to all of it."""
+    common = set.intersection(*({offer.template for offer in one.offers} for one in members))
+    own = members[0].placement.template
+    size = np.mean([one.placement.size_m for one in members], axis=0)
+    known = [one.colour for one in members if one.colour is not None]
+    colour = np.mean(known, axis=0) if known else None
+    costs = {name: _cost(template(name), size, colour) for name in sorted(common)}
+    if own not in costs:
+        return own
+    costs[own] -= STAY
+    return min(costs, key=lambda name: (round(costs[name], 6), name != own, name))
+
+
+def _cost(design: Template, size_m: np.ndarray, colour: np.ndarray | None) -> float:
+    far = max(_strangeness(*pair) for pair in zip(size_m, design.size_m, strict=True))
+    if not design.suits:
+        return NEUTRAL + SIZE_COST * far
+    if colour is None:
+        return np.inf
+    suited = oklab_of_srgb(np.array(design.suits, np.uint8))
+    apart = min(_colours_apart(colour, one) + _faded(colour, one) for one in suited)
+    return apart + SIZE_COST * far
+
+
+def _faded(colour: np.ndarray, suited: np.ndarray) -> float:
+    """Return what it costs to take a grey thing for one with a hue: pale wood is no steel."""
+    own, other = (float(np.hypot(*one[1:])) for one in (colour, suited))
+    return FADED if own >= CLEAR_CHROMA and other < own / 2 else 0.0
+
+
+def _strangeness(side: float, span: Span) -> float:
+    room = span.typical - span.minimum if side < span.typical else span.maximum - span.typical
+    return min(abs(side - span.typical) / room, 1.0) if room > 0 else 0.0

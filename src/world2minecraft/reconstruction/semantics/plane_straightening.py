@@ -1,0 +1,105 @@
+"""Planes pulled straight: each place of a plane keeps one cell, in the layer that holds its matter.
+
+Noise scatters a wall over two layers. Only cells of the plane itself move, and only along it; what
+stands before it stays. A cell that was moved takes its colour and confidence with it.
+"""
+
+from copy import copy
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.core.classes import UNKNOWN, SemanticClass
+from world2minecraft.core.types import COMPLETED, UNSEEN, OccupancyGrid
+from world2minecraft.reconstruction.layout.plane_residuals import SOLID_M, Relief, relief_of
+from world2minecraft.reconstruction.layout.storeys import Storey
+from world2minecraft.reconstruction.layout.surface_cells import Surface, turned
+
+MOVE_M = 0.02  # A place this far off its plane does not move into a layer where nothing was seen.
+
+
+class Straightening:
+    """What becomes of the cells of planes; filled plane by plane, then applied at once."""
+
+    def __init__(self, surface: Surface):
+        self.surface = surface
+        shape = surface.occupied.shape
+        self.labels = np.zeros(shape, np.uint8)  # The class of each cell that is of a plane.
+        self.origin = np.arange(np.prod(shape)).reshape(shape)  # Where its surface was seen.
+        self.before, self.behind = np.zeros((2, *shape), bool)  # Cells that a plane has left.
+
+    def storey(self, storey: Storey) -> "Straightening":
+        """Return the part that is about one storey; what is added to it counts in the whole."""
+        part = copy(self)
+        part.surface = storey.surface(self.surface)
+        for name in ("labels", "origin", "before", "behind"):
+            setattr(part, name, storey.part(getattr(self, name)))
+        return part
+
+    def add(
+        self, relief: Relief, cells: np.ndarray, classes: np.ndarray, depth_m: np.ndarray
+    ) -> None:
+        """Pull a plane straight.
+
+        Args:
+            relief: the plane.
+            cells: bool [N, A, B], the cells that are of it; no other moves.
+            classes: uint8 [A, B], what each place is.
+            depth_m: float [A, B], where along axis 0 its surface lies.
+        """
+        chosen = cells.any(axis=0)
+        layer = self._layer(relief, depth_m)
+        count = cells.shape[0]
+        chosen &= (layer >= 0) & (layer < count)
+        layers = np.arange(count)[:, None, None]
+        target = (layers == layer) & chosen
+        free_to_take = cells | ~relief.of(self.surface.occupied)
+        placed = (target & free_to_take).any(axis=0)
+        # Where no cell was seen in that layer, the place itself must say that one belongs there.
+        sure = np.abs(relief.depth_m - depth_m) <= MOVE_M
+        placed &= sure | (target & cells).any(axis=0)
+        target &= placed
+        weight = np.where(cells, relief.of(self.surface.hits), -1)
+        best = weight.argmax(axis=0)
+        index = np.take_along_axis(relief.of(self.origin), best[None], axis=0)
+        labels, origin = relief.of(self.labels), relief.of(self.origin)
+        first = target & (labels == 0)
+        origin[first] = np.broadcast_to(index, first.shape)[first]
+        labels[first] = np.broadcast_to(classes, first.shape)[first]
+        gone = cells & placed & ~target
+        relief.of(self.before)[gone & (layers < layer)] = True
+        relief.of(self.behind)[gone & (layers > layer)] = True
+
+    def add_level(
+        self, cells: np.ndarray, sign: int, kind: int, height_m: float | None = None
+    ) -> None:
+        """Pull a level plane straight: cells bool [X, Y, Z], matter above (1) or below (-1).
+
+        Where ``height_m`` is given the plane lies there, else where it was seen.
+        """
+        view = turned(cells, 2, sign)
+        box = (slice(0, view.shape[0]), slice(0, view.shape[1]), slice(0, view.shape[2]))
+        relief = relief_of(self.surface, view, 2, sign, box)
+        classes = np.full(relief.weight.shape, kind, np.uint8)
+        flat = relief.plane_m if height_m is None else np.full(classes.shape, sign * height_m)
+        self.add(relief, view, classes, flat)
+
+    def applied(self, grid: OccupancyGrid, labels: np.ndarray) -> OccupancyGrid:
+        """Return the grid with ``labels`` [X, Y, Z] for what is of no plane."""
+        labels, source = labels.copy(), np.array(grid.source)
+        confidence, colour = np.array(grid.confidence), np.array(grid.colour)
+        labels[self.before] = SemanticClass.EMPTY
+        labels[self.behind] = UNKNOWN
+        source[self.behind], confidence[self.behind], colour[self.behind] = UNSEEN, 0, 0
+        at = self.labels > 0
+        taken = self.origin[at]
+        labels[at] = self.labels[at]
+        colour[at] = grid.colour.reshape(-1, 3)[taken]
+        confidence[at] = grid.confidence.reshape(-1)[taken]
+        source[at] = np.where(grid.source[at] == UNSEEN, COMPLETED, grid.source[at])
+        return replace(grid, labels=labels, source=source, confidence=confidence, colour=colour)
+
+    def _layer(self, relief: Relief, depth_m: np.ndarray) -> np.ndarray:
+        """Return the layer of the relief's box in which a surface at a depth has its matter."""
+        inside_m = depth_m + SOLID_M - relief.edge_m(self.surface)
+        return np.floor(inside_m / self.surface.voxel_m + 1e-9).astype(int)

@@ -1,0 +1,204 @@
+"""The stages after fusion, from file to file, so that each can be run again by itself.
+
+``evidence.npz`` -> label -> ``room.npz`` -> find -> ``objects.json`` -> furnish ->
+``placements.json`` -> build -> ``build/``. Each takes the run's folder and the parameters.
+"""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.construction import WORLD_NAME, build_volume, write_build
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.types import BlockEdit, BlockVolume, FusedEvidence, OccupancyGrid
+from world2minecraft.editing.cleanup.passes import mended
+from world2minecraft.editing.journal import write_edits
+from world2minecraft.formats.centers import write_centers
+from world2minecraft.formats.evidence import read_evidence
+from world2minecraft.formats.forms import form_named, templates_of_run, write_forms
+from world2minecraft.formats.layout import write_layouts
+from world2minecraft.formats.objects import (
+    read_objects,
+    read_placements,
+    write_objects,
+    write_placements,
+)
+from world2minecraft.formats.occupancy import inner_corner_m
+from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
+from world2minecraft.formats.room import read_room, write_room
+from world2minecraft.formats.rooms import read_rooms
+from world2minecraft.formats.scan import read_depth_kind, read_room_size, read_scene_name
+from world2minecraft.minecraft.file_format import WriteOptions
+from world2minecraft.reconstruction.fusion import (
+    calibrate,
+    close_structure,
+    confidence_table,
+    remove_floaters,
+)
+from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.instances import find_objects
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.retrieval import furnish
+from world2minecraft.reconstruction.semantics import (
+    find_structure,
+    labeller,
+    with_whole_walls,
+    without_wall_guesses,
+)
+from world2minecraft.reconstruction.semantics.completion_net import LEARNT_VOXEL_M, VOXEL_TOLERANCE
+
+
+def label_stage(folder: Path, chosen: Parameters) -> None:
+    """``evidence.npz`` -> ``room.npz``, what each cell is, cleaned; ``layout.json``, the rooms."""
+    evidence = read_evidence(folder / "evidence.npz")
+    grid = remove_floaters(read_out(evidence), chosen.clean)
+    rooms = find_structure(grid, evidence)
+    write_layouts(folder / "layout.json", rooms)
+    from_photos = read_depth_kind(folder / "scan.json") == "stereo"
+    if from_photos:
+        grid = without_wall_guesses(grid, rooms)
+    grid = labelled(grid, evidence, chosen, from_photos=from_photos)
+    if from_photos:
+        grid = with_whole_walls(grid, rooms)
+    write_room(folder / "room.npz", grid, evidence.scan_to_room)
+
+
+def labelled(
+    grid: OccupancyGrid, evidence: FusedEvidence, chosen: Parameters, *, from_photos: bool = False
+) -> OccupancyGrid:
+    """Return the cleaned read-out with a class and a calibrated confidence for each cell.
+
+    ``from_photos``: depth was not measured but found by stereo.
+    """
+    name = chosen.labeller
+    if name == "auto":
+        name = usual_labeller(evidence, from_photos)
+    grid = close_structure(labeller(name).label(grid, evidence), chosen.clean)
+    return calibrate(grid, evidence, confidence_table(name))
+
+
+def usual_labeller(evidence: FusedEvidence, from_photos: bool) -> str:
+    """Return the labeller that ``auto`` takes.
+
+    It is the network where depth was measured and cells are of the size that it learnt. The errors
+    of stereo it has not seen: in a real kitchen's photos it took a table's end for a bed.
+    """
+    if not from_photos and abs(evidence.voxel_m / LEARNT_VOXEL_M - 1) <= VOXEL_TOLERANCE:
+        return "completion"
+    return "votes" if evidence.votes.any() else "geometric"
+
+
+def find_stage(folder: Path, chosen: Parameters) -> None:
+    """``room.npz`` -> the same with instances, ``centers.npz`` and ``objects.json``."""
+    grid, scan_to_room = read_room(folder / "room.npz")
+    found = find_objects(grid, chosen.find)
+    write_room(folder / "room.npz", found.grid, scan_to_room)
+    centers = found.centers
+    write_centers(folder / "centers.npz", centers.density, centers.candidates, centers.cluster)
+    write_objects(folder / "objects.json", found.instances)
+    write_occ_json(folder / "occ.json", found.grid)
+    write_centers_json(folder / "centers.json", found.instances)
+
+
+def furnish_stage(folder: Path, chosen: Parameters) -> None:
+    """``room.npz`` and ``objects.json`` -> ``placements.json``."""
+    grid, _ = read_room(folder / "room.npz")
+    instances = read_objects(folder / "objects.json", grid)
+    placed = furnish(grid, instances, chosen.furnish, read_rooms(folder, grid))
+    write_placements(folder / "placements.json", placed)
+
+
+def build_stage(folder: Path, chosen: Parameters) -> None:
+    """``room.npz`` and ``placements.json`` -> the world and its other forms in ``build``."""
+    volume, edits = _mended(folder, chosen)
+    name = scene_name(folder) or WORLD_NAME
+    write_build(folder / "build", volume, mc_version=chosen.mc_version, name=name)
+    write_edits(folder / "build", edits)
+    write_further_forms(folder, volume, chosen)
+
+
+def write_further_forms(folder: Path, volume: BlockVolume, chosen: Parameters) -> None:
+    """Write the forms that were asked for, and ``forms.json``: what each could not carry.
+
+    Those that an earlier build wrote show what was there before, and go.
+    """
+    _forget_forms(folder / "build", chosen.format_names)
+    if not chosen.format_names:
+        return
+    options = WriteOptions(
+        mc_version=chosen.mc_version, other={"templates": templates_of_run(folder)}
+    )
+    lost = write_forms(folder / "build", volume, chosen.format_names, options)
+    rows = {
+        name: {"file": f"room{form_named(name).suffix}", "lost": dict(losses)}
+        for name, losses in lost.items()
+    }
+    write_json(folder / "build" / "forms.json", rows)
+
+
+def _forget_forms(build: Path, kept: tuple[str, ...]) -> None:
+    """Take away the further forms of an earlier build but for ``kept``, and what told of them."""
+    told = build / "forms.json"
+    if not told.is_file():
+        return
+    stated = read_json(told)
+    suffixes = {_suffix_of(str(name)) for name in stated} if isinstance(stated, dict) else set()
+    for suffix in sorted(suffixes - {_suffix_of(name) for name in kept} - {"", ".schem"}):
+        place = build / f"room{suffix}"
+        if place.is_dir():
+            shutil.rmtree(place, ignore_errors=True)
+        else:
+            place.unlink(missing_ok=True)
+    told.unlink()
+
+
+def _suffix_of(name: str) -> str:
+    """Return the suffix of a form; nothing where there is no such form in this version."""
+    try:
+        return form_named(name).suffix
+    except UsageError:
+        return ""
+
+
+def built_volume(folder: Path, chosen: Parameters) -> BlockVolume:
+    """``room.npz``, ``objects.json`` and ``placements.json`` -> the blocks; nothing is written."""
+    return _mended(folder, chosen)[0]
+
+
+def _mended(folder: Path, chosen: Parameters) -> tuple[BlockVolume, tuple[BlockEdit, ...]]:
+    """The blocks, and what was mended in them after they were built."""
+    grid, _ = read_room(folder / "room.npz")
+    volume = build_volume(
+        grid,
+        read_placements(folder / "placements.json"),
+        read_objects(folder / "objects.json", grid),
+        corner_m=corner_m(folder, grid),
+        blocks_per_metre=chosen.blocks_per_metre,
+        parameters=chosen.build,
+        name=scene_name(folder),
+    )
+    return mended(volume) if chosen.mend else (volume, ())
+
+
+def scene_name(folder: Path) -> str:
+    """Return what the scene of a run is called, or nothing where no scan says so."""
+    path = folder / "scan.json"
+    return read_scene_name(path) if path.is_file() else ""
+
+
+def corner_m(folder: Path, grid: OccupancyGrid) -> np.ndarray:
+    """Return the corner (x_min, y_max) of the room's inner box: as aligned, else from the walls."""
+    if not (folder / "scan.json").is_file():
+        return inner_corner_m(grid)
+    depth_m = read_room_size(folder / "scan.json")[1]
+    return np.array([0.0, np.round(depth_m / grid.voxel_m) * grid.voxel_m])
+
+
+LATER_STEPS = {
+    "label": label_stage,
+    "find": find_stage,
+    "furnish": furnish_stage,
+    "build": build_stage,
+}

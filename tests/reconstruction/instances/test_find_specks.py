@@ -1,0 +1,77 @@
+"""Specks within a surface belong to it; what stands on it or before it does not."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.reconstruction.instances.test_find_objects import grid_of
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import turn_grid
+from world2minecraft.reconstruction.instances import FindParameters, find_objects
+from world2minecraft.reconstruction.instances.denoise import without_specks
+
+TABLE, OBJS, FURN = SemanticClass.TABLE, SemanticClass.OBJS, SemanticClass.FURN
+
+
+def _room():
+    """Return labels with a table's top two cells thick and a cupboard."""
+    labels = np.zeros((30, 28, 20), np.uint8)
+    labels[:, :, 0] = SemanticClass.FLOOR
+    labels[4:18, 4:14, 8:10] = TABLE
+    labels[20:26, 4:16, 1:14] = FURN
+    return labels
+
+
+@pytest.mark.parametrize("cells", [(3, 2, 1), (2, 1, 2), (1, 1, 1), (1, 6, 1)])
+def test_a_speck_in_a_surface_is_of_it(cells):
+    labels = _room()
+    labels[8 : 8 + cells[0], 7 : 7 + cells[1], 10 - cells[2] : 10] = OBJS
+    np.testing.assert_array_equal(without_specks(labels), _room())
+
+
+@pytest.mark.parametrize(
+    "where",
+    [
+        np.s_[8:10, 7:9, 10:11],  # On the table.
+        np.s_[8:9, 7:9, 9:12],  # Sunk into the table by a cell.
+        np.s_[19:20, 6:9, 6:8],  # Before the cupboard.
+        np.s_[17:18, 6:7, 8:10],  # At the table's edge.
+        np.s_[8:12, 6:9, 9:10],  # In the table, but as large as an object.
+        np.s_[27:29, 20:22, 1:2],  # Alone on the floor.
+    ],
+)
+def test_what_stands_on_or_before_a_surface_stays(where):
+    labels = _room()
+    labels[where] = OBJS
+    np.testing.assert_array_equal(without_specks(labels), labels)
+
+
+def test_a_speck_between_two_classes_stays():
+    labels = _room()
+    labels[18:20, 4:16, 8:10] = FURN
+    labels[17:19, 8:10, 8:10] = OBJS
+    np.testing.assert_array_equal(without_specks(labels), labels)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 3))
+@settings(max_examples=25, deadline=None)
+def test_turning_the_grid_turns_what_is_joined(seed, turns):
+    labels = _room()
+    rng = np.random.default_rng(seed)
+    noisy = (labels > 4) & (rng.random(labels.shape) < 0.05)
+    labels[noisy] = rng.integers(5, 12, int(noisy.sum()))
+    turned = np.ascontiguousarray(turn_grid(labels, turns))
+    np.testing.assert_array_equal(without_specks(turned), turn_grid(without_specks(labels), turns))
+
+
+def test_the_object_has_the_specks_cells_and_the_grid_keeps_its_labels():
+    labels = _room()
+    labels[8:10, 7:9, 9] = OBJS
+    found = find_objects(grid_of(labels))
+    np.testing.assert_array_equal(found.grid.labels, labels)
+    table = next(item for item in found.instances if item.class_id == TABLE)
+    assert (found.grid.instance[8:10, 7:9, 9] == table.id).all()
+    assert found.leftover == 0
+    plain = find_objects(grid_of(labels), FindParameters(paper_compat=True))
+    assert plain.grid.instance[8, 7, 9] != plain.grid.instance[4, 4, 9]

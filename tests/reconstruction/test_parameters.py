@@ -1,0 +1,86 @@
+"""Parameters: one truth for every default, and settings that teach."""
+
+import pytest
+
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.reconstruction.parameters import (
+    Parameters,
+    parameter_keys,
+    with_method,
+    with_settings,
+)
+
+
+def test_every_key_can_be_set_to_its_own_value():
+    parameters = Parameters()
+    for key in parameter_keys():
+        value = parameters
+        for name in key.split("."):
+            value = getattr(value, name)
+        if value is not None:
+            again = with_settings(parameters, [f"{key}={value}"])
+            assert again.as_json() == parameters.as_json(), key
+
+
+def test_settings_reach_their_stage():
+    changed = with_settings(
+        Parameters(),
+        ["fuse.min_points=5", "find.cluster_radius=3.5", "build.ceiling=no", "clean.hole_m = 0.2"],
+    )
+    assert changed.fuse.min_points == 5 and changed.find.cluster_radius == 3.5
+    assert changed.build.ceiling == "off" and changed.clean.hole_m == 0.2
+    assert Parameters().fuse.min_points == 2, "the defaults stay"
+
+
+def test_the_papers_method_stops_where_the_paper_stops_and_settings_still_change_it():
+    assert with_method(Parameters(), "best") == Parameters()
+    paper = with_method(Parameters(), "paper")
+    assert paper.find.paper_compat and paper.furnish.paper_compat and paper.register.passes == 0
+    assert not with_settings(paper, ["furnish.paper_compat=no"]).furnish.paper_compat
+    with pytest.raises(UnknownNameError, match="did you mean 'paper'"):
+        with_method(Parameters(), "papers")
+
+
+def test_the_voxel_is_said_once():
+    assert Parameters(voxel_m=0.04).fuse.voxel_m == 0.04
+    assert with_settings(Parameters(), ["voxel_m=0.1"]).fuse.voxel_m == 0.1
+
+
+def test_capture_options_are_handed_on_as_they_are():
+    changed = with_settings(Parameters(), ["capture.depth_unit=mm", "capture.every=2"])
+    assert changed.capture == {"depth_unit": "mm", "every": "2"}
+
+
+@pytest.mark.parametrize(
+    ("setting", "text"),
+    [
+        ("fuse.nudge", "no parameter is named 'fuse.nudge'; did you mean 'fuse.nudge_m'?"),
+        ("fuse", "--set takes key=value, not 'fuse', such as --set find.cluster_radius=3"),
+        ("fuse=3", "no parameter is named 'fuse'; "),
+        ("fuse.min_points=two", "fuse.min_points takes a whole number such as 2, not 'two'"),
+        ("mend=maybe", "--set mend takes yes or no such as True, not 'maybe'"),
+        ("clean.hole_m=nan", "--set clean.hole_m takes a number such as 0.32, not 'nan'"),
+        ("fuse.sure_m=inf", "--set fuse.sure_m takes a number such as 0.003, not 'inf'"),
+        ("clean.hole_m=-1", "clean.hole_m must be 0 to 10 m, not -1"),
+        ("clean.floater_cells=-2", "clean.floater_cells must be 0 or more, not -2"),
+        ("fuse.sure_m=0", "fuse.sure_m must be above 0, not 0"),
+        ("fuse.sigma_m=-1", "fuse.sigma_m must be 0 or more, not -1"),
+        ("fuse.free_log_odds=1", "fuse.free_log_odds must be 0 or less, not 1"),
+        ("fuse.min_points=0", "fuse.min_points must be 1 or more, not 0"),
+        ("fuse.min_share=2", "fuse.min_share must lie between 0 and 1, not 2"),
+        ("fuse.voxel_m=0.04", "--set does not take fuse.voxel_m; type --voxel 0.08"),
+        ("known=0.72", '--set does not take known; type --known "table height" 0.72'),
+        ("capture=x", "--set does not take capture; type --set capture.KEY=VALUE"),
+        ("build.ceiling=maybe", "build.ceiling must be on, off, glass, not 'maybe'"),
+        ("voxel_m=9", "voxel_m must be 0.01 to 0.5 m, not 9.0"),
+        ("mc_version=1.99", "1.99"),
+        ("labeller=geometry", "no labeller is named 'geometry'; did you mean 'geometric'?"),
+        ("predictor=deep", "no predictor is named 'deep'"),
+        ("build.edge=lava", "build.edge must be barrier or none, not 'lava'"),
+    ],
+)
+def test_a_wrong_setting_says_what_is_right(setting, text):
+    words = [setting if "=" in setting or setting == "fuse" else f"{setting}=1"]
+    with pytest.raises((UsageError, UnknownNameError)) as caught:
+        with_settings(Parameters(), words)
+    assert text in str(caught.value)
