@@ -11,8 +11,8 @@ from benchmarks.rows import Row
 from world2minecraft.dataset.labels import cast_depth, label_image
 from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.voxels import scene_voxels
+from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import prepare_scene
-from world2minecraft.rooms.worlds import generate_world
 
 VIEWS, ROOMS = 6, 12
 IMAGE_MS, HOUSE_S, HOUSE_MB = 60.0, 2.0, 500.0

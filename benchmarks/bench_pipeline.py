@@ -15,9 +15,9 @@ from benchmarks.rows import Row
 from world2minecraft.construction import build_volume, write_build
 from world2minecraft.core.types import OccupancyGrid
 from world2minecraft.minecraft.schematics.sponge import write_schem
+from world2minecraft.procgen import generate_room, room_views, scan_room
 from world2minecraft.reconstruction.fusion import EvidenceMap
 from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
-from world2minecraft.rooms import generate_room, room_views, scan_room
 
 FRAMES = 40
 REPEATS = 3

@@ -35,9 +35,9 @@ from benchmarks.render_scenes import (
 from benchmarks.rival_rasteriser import Rasteriser, mesh_of, why_not
 from benchmarks.rows import Row
 from world2minecraft.core.types import BlockVolume, Camera
+from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.rendering import BlockScene, prepare_scene, preview, render_volume
 from world2minecraft.rendering.light import LookLight
-from world2minecraft.rooms import generate_room, scan_room
 
 SCENES: dict[str, Callable[[], BlockVolume]] = {
     "room, 4 blocks/m": lambda: room(4.0),

@@ -8,8 +8,8 @@ from benchmarks.rows import Row
 from world2minecraft.dataset.tours import plan_views
 from world2minecraft.minecraft.physics.graph import walk_graph
 from world2minecraft.minecraft.physics.shortest_paths import distances_m
+from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import prepare_scene
-from world2minecraft.rooms.worlds import generate_world
 
 FEW, MANY = 100, 640  # 640 a house are 100,000 of 156 houses.
 BUDGET_MS = 10.0

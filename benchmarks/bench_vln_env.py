@@ -14,7 +14,7 @@ from statistics import median
 import numpy as np
 
 from benchmarks.rows import Row
-from world2minecraft.rooms.worlds import generate_world, write_house
+from world2minecraft.procgen.worlds import generate_world, write_house
 from world2minecraft.vln.environment.acting import Continuous
 from world2minecraft.vln.environment.env import VlnEnv
 from world2minecraft.vln.moves import moved

@@ -32,9 +32,9 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.evaluate import evaluate_reconstruction
 from world2minecraft.evaluate.stages import AFTER, allowed_cells, stage_losses
 from world2minecraft.formats.evidence import read_evidence, write_evidence
+from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, trials, write_trial
 from world2minecraft.reconstruction.parameters import Parameters, with_settings
 from world2minecraft.reconstruction.pipeline import reconstruct
-from world2minecraft.rooms.trials import DIFFICULTIES, Trial, trials, write_trial
 
 Row = dict[str, Any]
 

@@ -39,8 +39,8 @@ from world2minecraft.core.files import write_json
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.minecraft.rules.connections import connected
 from world2minecraft.minecraft.rules.stability import unstable
-from world2minecraft.rooms import Room, generate_room
-from world2minecraft.rooms.voxels import SHELL
+from world2minecraft.procgen import Room, generate_room
+from world2minecraft.procgen.rooms.voxelization import SHELL
 
 VOXEL_M = 0.02
 COARSE = 4  # Voxels along a cell of 8 cm,

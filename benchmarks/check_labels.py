@@ -40,9 +40,9 @@ from world2minecraft.dataset.region import RegionRule, region_in
 from world2minecraft.dataset.tours import nyu_camera
 from world2minecraft.dataset.values import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.dataset.voxels import scene_voxels
+from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import BlockScene, Picture, prepare_scene, render_volume
 from world2minecraft.rendering.block_models import OwnLooks
-from world2minecraft.rooms.worlds import generate_world
 
 EYE_M, TALL_M, ASIDE_M = 1.62, 1.8, 0.3  # The last: as near as one stands to a wall.
 NYU = nyu_camera()

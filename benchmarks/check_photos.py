@@ -31,8 +31,8 @@ from scipy.spatial import cKDTree
 from world2minecraft.capture.readers.plain import write_plain
 from world2minecraft.capture.sfm.similarity_transform import align_similarity
 from world2minecraft.core.types import OBSERVED, Camera, View
-from world2minecraft.rooms.photo import prepare_photos, take_photo
-from world2minecraft.rooms.room import Room
+from world2minecraft.procgen.rooms.room import Room
+from world2minecraft.procgen.sensors.photo import prepare_photos, take_photo
 
 REACH_VOXELS = 3**0.5 + 0.01
 
@@ -159,7 +159,7 @@ def room_inputs(seed: int, folder: Path, frames: int) -> None:
 
     All three look from the same places the same way: what one cannot see none of them can.
     """
-    from world2minecraft.rooms import generate_room, scan_room
+    from world2minecraft.procgen import generate_room, scan_room
 
     if (folder / "poses.json").is_file():
         return

@@ -36,9 +36,9 @@ from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.identity import folder_of
 from world2minecraft.formats.objects import write_objects, write_placements
 from world2minecraft.formats.room import read_room, write_room
+from world2minecraft.procgen import BASE_KINDS, generate_room, scan_room
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
-from world2minecraft.rooms import BASE_KINDS, generate_room, scan_room
 
 LABEL_ERROR = 0.1
 KINDS_COUNTED = ("add", "delete", "orient", "move", "relabel", "other")

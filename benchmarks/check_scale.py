@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from world2minecraft.capture.scale import collect_unscaled, estimate_scale, resized
-from world2minecraft.rooms import room_views
-from world2minecraft.rooms.trials import DIFFICULTIES, Trial, trials
+from world2minecraft.procgen import room_views
+from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, trials
 
 MOST_FRAMES = 60
 

@@ -27,6 +27,7 @@ from world2minecraft.evaluate.score import TrueRoom, see_truth
 from world2minecraft.evaluate.truth import read_truth
 from world2minecraft.formats.evidence import read_evidence
 from world2minecraft.metrics.calibration import CalibrationCounts, count_calibration
+from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, trials, write_trial
 from world2minecraft.reconstruction.fusion import CleanParameters, close_structure, remove_floaters
 from world2minecraft.reconstruction.fusion import extract_grid as read_out
 from world2minecraft.reconstruction.fusion.confidence import (
@@ -41,7 +42,6 @@ from world2minecraft.reconstruction.fusion.confidence import (
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
 from world2minecraft.reconstruction.semantics import labeller
-from world2minecraft.rooms.trials import DIFFICULTIES, trials, write_trial
 
 # Whether their evidence keeps its votes. A network's own confidence counts beside the evidence.
 LABELLERS = {"geometric": (True,), "votes": (True,), "completion": (True, False)}

@@ -31,7 +31,7 @@ from world2minecraft.core.errors import (
 )
 from world2minecraft.core.files import read_bytes, read_json, write_text
 from world2minecraft.formats.occupancy import DEFAULT_VOXEL_M
-from world2minecraft.rooms.trials import DIFFICULTIES, trials
+from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, trials
 
 INPUTS = ("depth", "depth+labels", "photos")
 FIGURES = ("precision", "recall", "iou", "miou", "f1", "fronts", "calibration")

@@ -18,6 +18,7 @@ import numpy as np
 from world2minecraft.construction import build_volume
 from world2minecraft.core.coordinates import apply, block_to_room, look_at
 from world2minecraft.core.types import BlockVolume, Camera, OccupancyGrid
+from world2minecraft.procgen import generate_room
 from world2minecraft.reconstruction.instances import FindParameters, find_objects
 from world2minecraft.reconstruction.retrieval import FurnishParameters, furnish
 from world2minecraft.rendering.block_elements import (
@@ -29,7 +30,6 @@ from world2minecraft.rendering.block_elements import (
 )
 from world2minecraft.rendering.block_models.builtin import OwnLooks
 from world2minecraft.rendering.texture import Texture
-from world2minecraft.rooms import generate_room
 
 KINDS = 24
 NAMES = ("solid", "holes", "glass", "frame")

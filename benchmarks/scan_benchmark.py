@@ -26,7 +26,7 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.evaluate import evaluate_reconstruction
 from world2minecraft.evaluate.foreign import evaluate_foreign, foreign_file
 from world2minecraft.evaluate.stages import stage_losses
-from world2minecraft.rooms.trials import DIFFICULTIES, Trial, write_trial
+from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, write_trial
 
 CAPTURES, TRUTHS = "captures", "truth"
 TRUTH_FILES = ("truth.npz", "truth.json")

@@ -11,7 +11,7 @@ from benchmarks.leaderboard import BEGIN, END, entry_text, read_entries, tables,
 from test_faithful_table import row as scores_row
 from world2minecraft.core.errors import DamagedFileError
 from world2minecraft.core.files import write_json
-from world2minecraft.rooms.trials import DIFFICULTIES, trials
+from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, trials
 
 ADD = ["--method", "Other", "--version", "2", "--link", "https://example.org/other",
        "--command", "other run"]  # fmt: skip

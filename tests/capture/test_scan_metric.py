@@ -19,8 +19,8 @@ from world2minecraft.capture.scale.posterior import Posterior, summed
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import View
-from world2minecraft.rooms import room_views
-from world2minecraft.rooms.trials import trial_named
+from world2minecraft.procgen import room_views
+from world2minecraft.procgen.benchmark_trials import trial_named
 
 
 def shrunk(views, factor):

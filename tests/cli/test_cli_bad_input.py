@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from world2minecraft.cli import run as w2m
-from world2minecraft.rooms import generate_room, scan_room
+from world2minecraft.procgen import generate_room, scan_room
 
 FRAMES = 6
 

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from world2minecraft import cli
-from world2minecraft.rooms.worlds import generate_world, write_house
+from world2minecraft.procgen.worlds import generate_world, write_house
 
 
 @pytest.fixture(scope="module")

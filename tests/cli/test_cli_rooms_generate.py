@@ -4,7 +4,7 @@ import pytest
 
 from world2minecraft import cli
 from world2minecraft.core.files import read_json
-from world2minecraft.rooms import read_generated
+from world2minecraft.procgen import read_generated
 
 
 def test_a_room_is_written_and_can_be_read_back(tmp_path, capsys):

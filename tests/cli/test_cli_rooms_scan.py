@@ -6,7 +6,8 @@ import pytest
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.files import read_npz
-from world2minecraft.rooms import capture, generate_room, trials, write_generated
+from world2minecraft.procgen import benchmark_trials as trials
+from world2minecraft.procgen import capture, generate_room, write_generated
 
 
 @pytest.fixture(autouse=True)
@@ -17,7 +18,7 @@ def small_pictures(monkeypatch):
     def small(*args, **named):
         scan(*args, **named, width=64, height=48)
 
-    monkeypatch.setattr("world2minecraft.rooms.scan_room", small)
+    monkeypatch.setattr("world2minecraft.procgen.scan_room", small)
     monkeypatch.setattr(trials, "scan_room", small)
 
 

@@ -5,10 +5,10 @@ from functools import cache
 import numpy as np
 
 from world2minecraft.core.types import OccupancyGrid, Placement
+from world2minecraft.procgen import Room, generate_room
 from world2minecraft.reconstruction.instances import find_objects
 from world2minecraft.reconstruction.instances.parameters import FindParameters
 from world2minecraft.reconstruction.retrieval import FurnishParameters, furnish
-from world2minecraft.rooms import Room, generate_room
 
 STEP = 4  # Fine cells of 2 cm a cell.
 FILLED = 0.125  # Of a cell, to count as occupied.

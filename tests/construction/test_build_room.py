@@ -21,7 +21,7 @@ from world2minecraft.geometry.padded_morphology import beside, grown, parts_of
 from world2minecraft.minecraft.collision_shapes import is_full_cube
 from world2minecraft.minecraft.rules.light import block_light
 from world2minecraft.minecraft.rules.stability import unstable
-from world2minecraft.rooms import generate_house, generate_room
+from world2minecraft.procgen import generate_house, generate_room
 
 SCALES = (1.0, 2.0, 4.0)
 CEILING, FLOOR, WALL = 1, 2, 3

@@ -10,7 +10,7 @@ from world2minecraft.dataset import photo_rooms
 from world2minecraft.dataset.photo_rooms import PhotoRooms, photo_samples, room_voxels
 from world2minecraft.dataset.showing import seen_in_cells
 from world2minecraft.dataset.store import open_store
-from world2minecraft.rooms import generate_room
+from world2minecraft.procgen import generate_room
 
 CAMERA = Camera(160, 120, 129.7, 129.7, 80.0, 60.0)
 

@@ -22,10 +22,10 @@ from world2minecraft.dataset.tours.rooms import find_rooms, shared
 from world2minecraft.dataset.tours.tourist import GAP_DEG, GAP_M
 from world2minecraft.minecraft.physics.body_fit import bodies_fit
 from world2minecraft.minecraft.physics.graph import solid_of, walk_graph
+from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import prepare_scene
 from world2minecraft.rendering.batch import render_batch
 from world2minecraft.rendering.views.cameras import camera_of
-from world2minecraft.rooms.worlds import generate_world
 
 COUNT = 60
 

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from world2minecraft.rooms import generate_room
-from world2minecraft.rooms.capture import room_views
-from world2minecraft.rooms.shots import room_to_scan
+from world2minecraft.procgen import generate_room
+from world2minecraft.procgen.capture import room_views
+from world2minecraft.procgen.sensors.shots import room_to_scan
 
 NAME = "scene0000_00"
 SEED = 500

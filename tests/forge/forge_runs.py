@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
-from world2minecraft.rooms import generate_room, scan_room
 
 FRAMES = 12
 

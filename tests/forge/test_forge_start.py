@@ -20,7 +20,7 @@ from world2minecraft.forge.identity import folder_of
 from world2minecraft.forge.session import Session
 from world2minecraft.forge.sources import DEMO_FOLDER
 from world2minecraft.forge.workshop import Workshop
-from world2minecraft.rooms import generate_room, scan_room
+from world2minecraft.procgen import generate_room, scan_room
 
 
 @pytest.fixture

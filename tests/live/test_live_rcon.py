@@ -32,7 +32,7 @@ def room(tmp_path_factory) -> Path:
     script = """
 import sys
 import numpy as np
-from world2minecraft.rooms import generate_room
+from world2minecraft.procgen import generate_room
 room = generate_room(7, kind="living")
 stride = round(0.08 / room.voxel_m)
 np.save(sys.argv[1], room.labels[::stride, ::stride, ::stride])

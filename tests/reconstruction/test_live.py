@@ -11,12 +11,12 @@ from world2minecraft.capture import write_plain
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.formats.room import read_room
+from world2minecraft.procgen import generate_room
+from world2minecraft.procgen.capture import room_views
 from world2minecraft.reconstruction import online as live_module
 from world2minecraft.reconstruction.online import Follower, LiveRoom, follow
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import reconstruct
-from world2minecraft.rooms import generate_room
-from world2minecraft.rooms.capture import room_views
 
 FRAMES = 12
 

@@ -16,7 +16,7 @@ from world2minecraft.formats.objects import read_objects, read_placements
 from world2minecraft.formats.room import read_room
 from world2minecraft.minecraft.schematics.sponge import read_schem
 from world2minecraft.minecraft.worlds.world_writer import read_world
-from world2minecraft.rooms import generate_room, scan_room
+from world2minecraft.procgen import generate_room, scan_room
 
 FILES = {
     "manifest.json", "run.json", "scan.json", "evidence.npz", "room.npz", "centers.npz",

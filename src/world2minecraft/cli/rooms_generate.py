@@ -7,7 +7,7 @@ import typer
 
 if TYPE_CHECKING:
     from world2minecraft.core.progress import Progress
-    from world2minecraft.rooms import Room
+    from world2minecraft.procgen import Room
 
 EXAMPLES = """\
 w2m rooms generate --seed 7                              a room, to my_room/
@@ -116,7 +116,7 @@ def _write_worlds(houses: int, seed: int, worlds: Path, style: str | None) -> No
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.rooms.worlds import write_worlds
+    from world2minecraft.procgen.worlds import write_worlds
 
     if seed < 0:
         raise UsageError(f"--seed must be 0 or more, not {seed}")
@@ -141,7 +141,7 @@ def _check_words(
 
 
 def _house(seed: int, rooms: int | None, storeys: int | None, clutter: float) -> "Room":
-    from world2minecraft.rooms import generate_house
+    from world2minecraft.procgen import generate_house
 
     count = DEFAULT_ROOMS if rooms is None else rooms
     return generate_house(
@@ -150,7 +150,7 @@ def _house(seed: int, rooms: int | None, storeys: int | None, clutter: float) ->
 
 
 def _room(seed: int, kind: str | None, shape: str, clutter: float) -> "Room":
-    from world2minecraft.rooms import generate_room
+    from world2minecraft.procgen import generate_room
 
     drawn = None if shape == "any" else shape
     return generate_room(seed, kind=kind, clutter=clutter, shape=drawn)
@@ -162,7 +162,7 @@ def _write(made: "Room", out: Path, progress: "Progress") -> None:
     from PIL import Image
 
     from world2minecraft.core.files import write_bytes
-    from world2minecraft.rooms import room_picture, write_generated
+    from world2minecraft.procgen import room_picture, write_generated
 
     progress("write", 0, 2, "layout.json, truth.npz")
     write_generated(made, out)

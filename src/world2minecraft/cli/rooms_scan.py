@@ -7,7 +7,7 @@ import typer
 
 if TYPE_CHECKING:
     from world2minecraft.core.progress import Progress
-    from world2minecraft.rooms import Room
+    from world2minecraft.procgen import Room
 
 EXAMPLES = """\
 w2m rooms scan my_room --out capture                    what w2m rooms generate wrote
@@ -101,7 +101,7 @@ def _check_source(
 def _check_figures(given: dict[str, Any]) -> None:
     """Refuse figures out of range before any work is done."""
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.rooms.shots import Shooting
+    from world2minecraft.procgen.sensors.shots import Shooting
 
     try:
         Shooting(**given)
@@ -122,7 +122,7 @@ def _check_empty(out: Path) -> None:
 
 
 def _scan_trial(name: str, out: Path, progress: "Progress") -> None:
-    from world2minecraft.rooms.trials import trial_named, write_trial
+    from world2minecraft.procgen.benchmark_trials import trial_named, write_trial
 
     write_trial(trial_named(name), out, progress)
 
@@ -130,7 +130,7 @@ def _scan_trial(name: str, out: Path, progress: "Progress") -> None:
 def _room(
     room_dir: Path | None, seed: int | None, kind: str | None, progress: "Progress"
 ) -> "Room":
-    from world2minecraft.rooms import generate_room, read_generated
+    from world2minecraft.procgen import generate_room, read_generated
 
     progress("room", 0, 1)
     room = read_generated(room_dir) if room_dir is not None else generate_room(seed or 0, kind=kind)
@@ -141,7 +141,7 @@ def _room(
 def _scan(
     room: "Room", out: Path, seed: int | None, given: dict[str, Any], progress: "Progress"
 ) -> None:
-    from world2minecraft.rooms import scan_room
+    from world2minecraft.procgen import scan_room
 
     chosen = room.seed if seed is None else seed
     scan_room(room, out, seed=chosen, progress=progress, **given)

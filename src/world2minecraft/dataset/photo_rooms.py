@@ -20,11 +20,16 @@ from world2minecraft.dataset.formats.sscnet import downsampled
 from world2minecraft.dataset.labels import label_image
 from world2minecraft.dataset.region import region_in
 from world2minecraft.dataset.values import USUAL_VOXEL_M, FineClass, OccSample, SceneVoxels
+from world2minecraft.procgen import Room, generate_room
+from world2minecraft.procgen.rooms.kinds import KINDS
+from world2minecraft.procgen.sensors.exposure import (
+    TexturedScene,
+    developed,
+    exposed,
+    prepare_textured,
+)
+from world2minecraft.procgen.sensors.tour import plan_tour
 from world2minecraft.rendering.voxel_camera import cast_voxels
-from world2minecraft.rooms import Room, generate_room
-from world2minecraft.rooms.exposure import TexturedScene, developed, exposed, prepare_textured
-from world2minecraft.rooms.kinds import KINDS
-from world2minecraft.rooms.tour import plan_tour
 
 FIRST_SEED = 40_000  # Of rooms: those of trials and of other sets are far below.
 ROOMS_A_SEED = 1_000

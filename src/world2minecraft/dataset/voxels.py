@@ -67,7 +67,7 @@ def scene_voxels(
             stand along the room's axes.
 
     Example:
-        >>> from world2minecraft.rooms import generate_room
+        >>> from world2minecraft.procgen import generate_room
         >>> SLACK_M < LEAST_VOXEL_M
         True
     """

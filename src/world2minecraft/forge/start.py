@@ -38,7 +38,7 @@ from world2minecraft.forge.requests import object_of, workshop_of
 from world2minecraft.forge.tasks import parameters_of
 from world2minecraft.forge.usual import demo_s, reconstruct_s
 from world2minecraft.forge.workshop import Workshop
-from world2minecraft.rooms import BASE_KINDS
+from world2minecraft.procgen import BASE_KINDS
 
 SCALES = (1, 2, 4, 12.5)
 USUAL_SCALE = 4

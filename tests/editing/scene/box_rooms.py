@@ -7,7 +7,7 @@ from voxel_scenes import VOXEL_M, grid_of
 
 from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.metrics.truth import carry_truth
-from world2minecraft.rooms import generate_room
+from world2minecraft.procgen import generate_room
 
 DOOR = (slice(20, 30), slice(0, 1), slice(1, 27))  # x, y, z
 WINDOW = (slice(0, 1), slice(15, 30), slice(12, 25))

@@ -16,7 +16,7 @@ from roomplans import captured_room
 from scipy.ndimage import gaussian_filter
 
 from world2minecraft.forge.serve import ForgeServer
-from world2minecraft.rooms import generate_room, scan_room
+from world2minecraft.procgen import generate_room, scan_room
 
 MOST_MS = 60_000  # A room of ten frames takes ten seconds; machines that test are busy.
 

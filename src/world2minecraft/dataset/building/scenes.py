@@ -25,8 +25,8 @@ from world2minecraft.dataset.source import SceneSource, open_scene_source
 from world2minecraft.dataset.store.layout import SCENES
 from world2minecraft.dataset.tours import TourRule, layouts_beside, plan_views, write_views
 from world2minecraft.dataset.values import FineClass
+from world2minecraft.procgen.worlds import house_of, write_house
 from world2minecraft.rendering import LookLight, prepare_scene
-from world2minecraft.rooms.worlds import house_of, write_house
 
 USUAL_HOUR = 12.0
 

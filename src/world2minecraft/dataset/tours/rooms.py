@@ -22,7 +22,7 @@ from world2minecraft.minecraft.physics.body import HEIGHT
 from world2minecraft.minecraft.physics.columns import Solid
 from world2minecraft.minecraft.physics.graph import WalkGraph
 from world2minecraft.minecraft.physics.shortest_paths import parts, reachable
-from world2minecraft.rooms.stands import is_inside
+from world2minecraft.procgen.sensors.navmesh import is_inside
 
 NARROW_M = 1.1  # Rooms are parted where they are narrower than this.
 LEAST_ROOM_M2 = 1.2  # What is smaller is no room of its own,

@@ -14,7 +14,7 @@ from world2minecraft.evaluate.scannet.mesh import labelled_meshes, read_labelled
 from world2minecraft.evaluate.scannet.seen import seen_free
 from world2minecraft.evaluate.scannet.surface import surface_voxels
 from world2minecraft.evaluate.truth import Truth
-from world2minecraft.rooms.capture import stated_object
+from world2minecraft.procgen.capture import stated_object
 
 RECORDINGS = ("scannet_sens", "scannet_folder")
 VOXEL_M = 0.02  # As the truth of generated rooms: a quarter of a cell.

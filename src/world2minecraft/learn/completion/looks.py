@@ -13,12 +13,12 @@ import numpy as np
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.types import Camera, FusedEvidence, View
 from world2minecraft.learn.completion.noise import ScanNoise, lost_pixels, wrong_labels
+from world2minecraft.procgen.rooms.room import Room
+from world2minecraft.procgen.sensors.depth_camera import jittered_pose, scale_factor, sense_depth
+from world2minecraft.procgen.sensors.photo import PhotoScene, take_photo
+from world2minecraft.procgen.sensors.shots import LUMINANCE
 from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
 from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
-from world2minecraft.rooms.photo import PhotoScene, take_photo
-from world2minecraft.rooms.room import Room
-from world2minecraft.rooms.sensor import jittered_pose, scale_factor, sense_depth
-from world2minecraft.rooms.shots import LUMINANCE
 
 LookKind = Literal["walk", "few", "single"]
 FOCAL_SHARE = 0.8107  # NYU's: 518.86 px at 640.

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
-from world2minecraft.rooms.sensor import SENSORS, Sensor
+from world2minecraft.procgen.sensors.depth_camera import SENSORS, Sensor
 
 MISFIT_M = {"walk": 0.016, "few": 0.045, "single": 0.048}  # Of a quarter false, measured.
 PATCH_SHARE = 1 / 80  # Of the width: 8 px at 640, the patches in which label images err.

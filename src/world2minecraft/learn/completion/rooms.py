@@ -7,8 +7,8 @@ Training takes seeds from 10,000 on, so that no seed of a benchmark (1000 to 104
 import numpy as np
 
 from world2minecraft.core.errors import World2MinecraftError
-from world2minecraft.rooms import generate_house, generate_room
-from world2minecraft.rooms.room import Room
+from world2minecraft.procgen import generate_house, generate_room
+from world2minecraft.procgen.rooms.room import Room
 
 FIRST_SEED = 10_000
 HOUSE_SHARE = 0.06  # A house takes four times a room's time.

@@ -25,14 +25,14 @@ from world2minecraft.learn.completion.looks import (
 from world2minecraft.learn.completion.noise import ScanNoise, draw_noise
 from world2minecraft.learn.completion.rooms import training_room
 from world2minecraft.metrics.truth import carry_truth
+from world2minecraft.procgen.rooms.room import Room
+from world2minecraft.procgen.sensors.photo import prepare_photos
+from world2minecraft.procgen.sensors.tour import plan_tour
 from world2minecraft.reconstruction.fusion import CleanParameters, remove_floaters
 from world2minecraft.reconstruction.fusion import extract_grid as read_out
 from world2minecraft.reconstruction.semantics.completion import hint_of
 from world2minecraft.reconstruction.semantics.completion_channels import Sight, sight_of
 from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
-from world2minecraft.rooms.photo import prepare_photos
-from world2minecraft.rooms.room import Room
-from world2minecraft.rooms.tour import plan_tour
 
 LOOKS: tuple[LookKind, ...] = ("walk", "few", "single", "single", "single")
 SHELL_CELLS = 2  # Cells of wall, slab and ceiling around a room that count as its own.

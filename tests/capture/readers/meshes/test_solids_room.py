@@ -13,9 +13,9 @@ from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.readers.meshes.formats import load_solid
 from world2minecraft.capture.readers.meshes.source import world_of
 from world2minecraft.core.coordinates import apply, invert_rigid
+from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import predictor
-from world2minecraft.rooms import generate_room, scan_room
 
 
 def quads_of(room):

@@ -1,0 +1,31 @@
+"""Procedural furnished rooms as metric layouts and 2 cm voxels, and virtual scans of them.
+
+``generate_room`` gives the room of a seed, ``generate_house`` a house of several rooms;
+``scan_room`` writes a capture of either as a depth camera would hand it over, with the exact truth
+beside it.
+"""
+
+from world2minecraft.procgen.capture import room_views, scan_room
+from world2minecraft.procgen.houses.house import generate_house
+from world2minecraft.procgen.preview import room_picture
+from world2minecraft.procgen.rooms.kinds import BASE_KINDS, KINDS
+from world2minecraft.procgen.rooms.room import Room, generate_room
+from world2minecraft.procgen.rooms.shapes import SHAPES
+from world2minecraft.procgen.sensors.depth_camera import SENSORS, Sensor
+from world2minecraft.procgen.stored import read_generated, write_generated
+
+__all__ = [
+    "BASE_KINDS",
+    "KINDS",
+    "SENSORS",
+    "SHAPES",
+    "Room",
+    "Sensor",
+    "generate_house",
+    "generate_room",
+    "read_generated",
+    "room_picture",
+    "room_views",
+    "scan_room",
+    "write_generated",
+]

@@ -1,0 +1,1 @@
+"""Houses of several rooms: floor plans, stairs, and their rooms furnished."""

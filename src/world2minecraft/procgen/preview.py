@@ -1,0 +1,112 @@
+"""A picture of a generated room or house from above at an angle, opened so that one looks in."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import apply, look_at
+from world2minecraft.core.types import Camera
+from world2minecraft.procgen.rooms.room import Room
+from world2minecraft.procgen.sensors.photo import prepare_photos, take_photo
+
+ELEVATION_DEG = {"room": 42.0, "house": 58.0}  # Inner walls hide less from a steeper place.
+TURN_DEG = 32.0
+FOV_DEG = 24.0
+RIM_M = 0.3  # What stays of the near walls of a room,
+CUT_M = 1.5  # and of everything in a house.
+NEAR_M = 0.16  # What hangs on a near wall goes with it.
+BACKGROUND = np.array([238, 238, 235], np.uint8)
+SUPERSAMPLE = 2
+
+
+def room_picture(room: Room, width_px: int = 1280, height_px: int | None = None) -> np.ndarray:
+    """Return a cutaway picture, uint8 [height, width, 3]; storeys lie side by side.
+
+    Args:
+        room: a room or a house.
+        width_px: of the picture.
+        height_px: of the picture; None: three quarters of its width, half for two storeys.
+    """
+    levels = sorted({layout.floor_z_m for layout in room.layouts})
+    share = width_px // len(levels)
+    if height_px is None:
+        height_px = width_px // 2 if len(levels) > 1 else width_px * 3 // 4
+    return np.concatenate(
+        [_storey_picture(room, level, share, height_px) for level in levels], axis=1
+    )
+
+
+def _storey_picture(room: Room, floor_z_m: float, width_px: int, height_px: int) -> np.ndarray:
+    opened = _opened(room, floor_z_m)
+    scene = prepare_photos(opened)
+    size = (width_px * SUPERSAMPLE, height_px * SUPERSAMPLE)
+    camera, pose = _camera(opened, "house" if len(room.layouts) > 1 else "room", *size)
+    photo = take_photo(scene, camera, pose)
+    picture = np.where((photo.voxel_index < 0)[..., None], BACKGROUND, photo.colour)
+    blocks = picture.reshape(height_px, SUPERSAMPLE, width_px, SUPERSAMPLE, 3).astype(np.uint16)
+    return ((blocks.sum(axis=(1, 3)) + 2) // 4).astype(np.uint8)
+
+
+def _opened(room: Room, floor_z_m: float) -> Room:
+    """Return one storey without what hides its inside."""
+    storey = [layout for layout in room.layouts if layout.floor_z_m == floor_z_m]
+    slab = round(-room.origin_m[2] / room.voxel_m)
+    low = round((floor_z_m - room.origin_m[2]) / room.voxel_m) - slab
+    height = CUT_M if len(room.layouts) > 1 else storey[0].wall_height_m
+    high = low + slab + round(height / room.voxel_m)
+    labels = room.labels[:, :, low:high].copy()
+    if len(room.layouts) == 1:
+        _drop_near_roofs(labels)
+        _drop_near_walls(room, labels, slab)
+    origin = np.array([*room.origin_m[:2], room.origin_m[2] + low * room.voxel_m])
+    return replace(
+        room,
+        layouts=tuple(storey),
+        labels=np.ascontiguousarray(labels),
+        instance=room.instance[:, :, low:high],
+        colour=np.ascontiguousarray(room.colour[:, :, low:high]),
+        origin_m=origin,
+    )
+
+
+def _drop_near_roofs(labels: np.ndarray) -> None:
+    """Empty what of a sloped ceiling hangs over the near half of the room."""
+    x, y = (side // 2 for side in labels.shape[:2])
+    for part in (labels[x:], labels[:, :y]):
+        part[part == int(SemanticClass.CEILING)] = 0
+
+
+def _drop_near_walls(room: Room, labels: np.ndarray, slab: int) -> None:
+    """Empty the walls at x = max and y = 0, where one looks from, down to a rim."""
+    rim, deep = slab + round(RIM_M / room.voxel_m), slab + round(NEAR_M / room.voxel_m)
+    labels[-slab:, :, rim:] = 0
+    labels[:, :slab, rim:] = 0
+    hung = slab + round(1.0 / room.voxel_m)
+    objects = int(SemanticClass.OBJS)
+    for part in (labels[-deep:, :, hung:], labels[:, :deep, hung:]):
+        part[part == objects] = 0
+
+
+def _camera(room: Room, kind: str, width_px: int, height_px: int) -> tuple[Camera, np.ndarray]:
+    """Return a camera and ``camera_to_room`` that see the whole from high x and low y."""
+    size = np.array(room.labels.shape) * room.voxel_m
+    corners = np.stack(np.meshgrid(*([0.0, 1.0],) * 3, indexing="ij"), -1).reshape(-1, 3) * size
+    corners += room.origin_m
+    middle = corners.mean(axis=0)
+    up, turn = np.radians(ELEVATION_DEG[kind]), np.radians(TURN_DEG)
+    # The longer side lies across the picture.
+    flat = (np.sin(turn), -np.cos(turn)) if size[0] > size[1] else (np.cos(turn), -np.sin(turn))
+    toward = np.array([flat[0] * np.cos(up), flat[1] * np.cos(up), np.sin(up)])
+    focal = min(width_px, height_px) / (2 * np.tan(np.radians(FOV_DEG) / 2))
+    distance = 1.0
+    while True:
+        pose = look_at(middle + toward * distance, middle)
+        seen = apply(np.linalg.inv(pose), corners)
+        if (seen[:, 2] > 0.1).all():
+            u, v = focal * seen[:, 0] / seen[:, 2], focal * seen[:, 1] / seen[:, 2]
+            if np.ptp(u) < 0.96 * width_px and np.ptp(v) < 0.96 * height_px:
+                break
+        distance *= 1.03
+    centre = (width_px / 2 - (u.min() + u.max()) / 2, height_px / 2 - (v.min() + v.max()) / 2)
+    return Camera(width_px, height_px, focal, focal, *centre), pose

@@ -1,0 +1,1 @@
+"""Furnished rooms: floor shapes, furniture, placement, clutter and voxels."""

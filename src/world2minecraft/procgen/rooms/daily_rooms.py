@@ -1,0 +1,219 @@
+"""The recipes of a living room, a bedroom, a kitchen, a dining room and a study.
+
+Each recipe fills a ``Plan``; it places by relation (a sofa against a wall, the television across
+from it, chairs that face their table) and returns what the floor wears, or None where the room
+does not hold what makes it what it is.
+"""
+
+from world2minecraft.procgen.rooms import decor, seating, storage
+from world2minecraft.procgen.rooms.colour_scheme import WHITE, Style
+from world2minecraft.procgen.rooms.furniture_model import Model
+from world2minecraft.procgen.rooms.place import Item, Plan, snapped
+from world2minecraft.procgen.rooms.relations import (
+    Rug,
+    chairs_around,
+    pendant_over,
+    picture_anywhere,
+    pictures_over,
+    rug_around,
+)
+
+
+def furnish_living(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
+    """A sofa that looks at a television across a low table on a rug. None: it does not fit."""
+    rng = plan.rng
+    long_walls = (1, 3) if plan.size_m[0] >= plan.size_m[1] else (0, 2)
+    walls = tuple(int(wall) for wall in rng.permutation(long_walls))
+    couch_model = seating.sofa(rng.uniform(1.8, 2.2), style.cloth, style.second_cloth, style.wood)
+    couch = plan.add_at_walls(couch_model, walls, along=(0.5, 0.42, 0.58))
+    if couch is None:
+        return None
+    wall = round(couch.yaw_deg / 90) % 4
+    along = couch.y_m if wall % 2 == 0 else couch.x_m
+    board_model = storage.cabinet("tv_board", (0.42, 1.6, 0.48), 3, 1, WHITE, style.wood)
+    across = plan.ground.walls[(wall + 2) % 4]
+    share = (along - across.first_m) / across.length_m
+    board = plan.add_at_walls(board_model, ((wall + 2) % 4,), along=(share,), clear_m=0.5)
+    if board is None:
+        return None
+    plan.add_upon(decor.tv(rng.uniform(1.1, 1.3)), board, 0.0, 0.0)
+    plan.add_upon(decor.book_pile(rng), board, 0.04, -0.68)
+    low = plan.add_before(seating.table("coffee_table", 0.6, 1.1, 0.42, style.wood), couch, 0.38)
+    if low is None:
+        return None
+    plan.add_upon(decor.book_pile(rng), low, 0.06, 0.3)
+    plan.add_upon(decor.vase(style.second_cloth), low, -0.08, -0.24)
+    easy = seating.armchair(style.second_cloth, style.wood)
+    _beside_low_table(plan, low, easy)
+    plan.add_in_corner(decor.floor_lamp((250, 232, 190)), near=couch)
+    plan.add_at_walls(
+        storage.bookshelf(rng.uniform(0.8, 1.1), 1.9, style.wood, rng),
+        clear_m=0.4,
+        along=(0.1, 0.9),
+    )
+    plan.add_in_corner(decor.plant(rng.uniform(1.1, 1.5), rng))
+    pictures_over(plan, couch, 1.3)
+    return (rug_around(low, 0.5, 0.55, style.second_cloth),)
+
+
+def _beside_low_table(plan: Plan, low: Item, easy: Model) -> None:
+    for side in (1, -1) if plan.rng.random() < 0.5 else (-1, 1):
+        away = low.model.size_m[1] / 2 + 0.34 + easy.size_m[0] / 2
+        x, y = low.point(0.12, side * away)
+        if plan.add(snapped(Item(easy, x, y, 0.0, (low.yaw_deg - side * 90) % 360))):
+            return
+
+
+def furnish_bed(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
+    """A bed with its head at a wall between two night tables, a wardrobe, a dresser."""
+    rng = plan.rng
+    width = float(rng.choice([1.4, 1.6, 1.8]))
+    walls = tuple(int(wall) for wall in rng.permutation(4))
+    bed = plan.add_at_walls(
+        seating.bed(width, style.wood, style.cloth), walls, along=(0.5, 0.45, 0.55), clear_m=0.5
+    )
+    if bed is None:
+        return None
+    stand = storage.cabinet("nightstand", (0.42, 0.44, 0.52), 1, 2, style.wood, style.wood)
+    back = -(bed.model.size_m[0] - stand.size_m[0]) / 2
+    for side in (1, -1):
+        aside = side * (width / 2 + stand.size_m[1] / 2 + 0.04)
+        x, y = bed.point(back, aside)
+        placed = plan.add(snapped(Item(stand, x, y, 0.0, bed.yaw_deg)), may_block=False)
+        if placed:
+            plan.add_upon(decor.table_lamp(style.dark_wood), placed, -0.04, 0.0)
+    plan.reserve_beside(bed, 0.5)
+    closet = storage.cabinet("wardrobe", (0.6, rng.uniform(1.2, 1.8), 2.06), 3, 1, WHITE, WHITE)
+    others = tuple(int(w) for w in rng.permutation(4) if w != round(bed.yaw_deg / 90) % 4)
+    plan.add_at_walls(closet, others, along=(0.0, 1.0), clear_m=0.5)
+    dresser = storage.cabinet("dresser", (0.48, 1.1, 0.84), 2, 3, style.wood, style.wood)
+    chest = plan.add_at_walls(dresser, others, clear_m=0.4)
+    if chest:
+        plan.add_upon(decor.vase(style.second_cloth), chest, 0.0, 0.3)
+        pictures_over(plan, chest, 1.25, count=1)
+    plan.add_in_corner(decor.plant(rng.uniform(0.9, 1.3), rng))
+    pictures_over(plan, bed, 1.35)
+    return (rug_around(bed, 0.55, 0.45, style.second_cloth),)
+
+
+def furnish_kitchen(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
+    """An L of counters with sink, cooker and hood, cupboards above, a fridge, a small table."""
+    rng = plan.rng
+    wall = 1 if plan.size_m[0] >= plan.size_m[1] else 0
+    run = _kitchen_run(plan, style, wall)
+    if run is None:
+        return None
+    _kitchen_arm(plan, style, wall)
+    width = float(rng.choice([0.9, 1.2]))
+    table = seating.table("kitchen_table", 0.8, width, 0.74, style.wood)
+    along, away = 0.62 * plan.size_m[1 - wall % 2], 0.68 * plan.size_m[wall % 2]
+    x, y = (along, away) if wall == 1 else (away, along)
+    board = plan.add(snapped(Item(table, x, y, 0.0, 90.0 * wall)))
+    if board is None:
+        return None
+    chairs_around(plan, board, seating.chair(style.wood, style.cloth), ends=False)
+    plan.add_upon(decor.bowl(), board, 0.0, 0.0)
+    pendant_over(plan, board, (60, 64, 66))
+    plan.add_at_walls(decor.crate((0.3, 0.4, 0.3), (190, 150, 104)))
+    plan.add_in_corner(decor.plant(rng.uniform(0.8, 1.1), rng))
+    picture_anywhere(plan)
+    return ()
+
+
+def _kitchen_run(plan: Plan, style: Style, wall: int) -> Item | None:
+    """Place counter, cooker, sink and fridge along a wall, and what hangs above them."""
+    front, worktop = style.front, style.worktop
+    corner, cooker = storage.counter(1.0, front, worktop), storage.oven(front, worktop)
+    cool = storage.fridge(WHITE if front != WHITE else (190, 192, 196))
+    rest = plan.wall_length(wall) - corner.size_m[1] - cooker.size_m[1] - cool.size_m[1]
+    sink = storage.counter(min(1.6, rest - 0.02), front, worktop, sink=True)
+    placed, at = [], 0.0
+    for model in (corner, cooker, sink, cool):
+        placed.append(plan.add(plan.at_wall(model, wall, at + model.size_m[1] / 2)))
+        at += model.size_m[1]
+    if not all(placed):
+        return None
+    left, stove = corner.size_m[1], cooker.size_m[1]
+    hanging = [
+        (decor.hood(), left + stove / 2, 1.56),
+        (storage.wall_cabinet(left, front), left / 2, 1.44),
+        (storage.wall_cabinet(sink.size_m[1], front), left + stove + sink.size_m[1] / 2, 1.44),
+    ]
+    for model, along, z_m in hanging:
+        plan.add(plan.at_wall(model, wall, along, z_m))
+    plan.add_upon(decor.microwave(), placed[0], -0.1, 0.0, top_m=0.9)
+    return placed[0]
+
+
+def _kitchen_arm(plan: Plan, style: Style, wall: int) -> None:
+    """Place the other arm of the L along the wall that starts in the same corner."""
+    arm_wall = 1 - wall
+    for length in (1.6, 1.2, 0.8):
+        arm = storage.counter(length, style.front, style.worktop)
+        item = plan.add(plan.at_wall(arm, arm_wall, 0.64 + arm.size_m[1] / 2))
+        if item:
+            plan.add_upon(decor.kettle((196, 60, 52)), item, -0.06, 0.2)
+            plan.add_upon(decor.vase(style.second_cloth), item, -0.1, -0.3)
+            top = storage.wall_cabinet(length - 0.2, style.front)
+            plan.add(plan.at_wall(top, arm_wall, 0.64 + length / 2, 1.44))
+            plan.reserved.append(plan.front_box(item, 0.7))
+            return
+
+
+def furnish_dining(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
+    """A long table with chairs all around under a lamp, a sideboard, pictures."""
+    rng = plan.rng
+    along_x = plan.size_m[0] >= plan.size_m[1]
+    length = float(rng.choice([1.6, 1.8, 2.0]))
+    table = seating.table("dining_table", 0.9, length, 0.74, style.wood)
+    yaw = 90.0 if along_x else 0.0
+    item = Item(table, plan.size_m[0] / 2, plan.size_m[1] / 2, 0.0, yaw)
+    board = plan.add(snapped(item))
+    if board is None:
+        return None
+    chairs_around(plan, board, seating.chair(style.wood, style.cloth), ends=True)
+    plan.add_upon(decor.vase(style.second_cloth), board, 0.0, 0.0)
+    plan.add_upon(decor.bowl(), board, 0.1, 0.45)
+    pendant_over(plan, board, style.second_cloth)
+    side = storage.cabinet("sideboard", (0.46, 1.6, 0.84), 4, 1, style.wood, style.dark_wood)
+    chest = plan.add_at_walls(side, tuple(int(w) for w in rng.permutation(4)), along=(0.5,))
+    if chest:
+        plan.add_upon(decor.table_lamp(style.dark_wood), chest, 0.0, 0.6)
+        plan.add_upon(decor.bowl(), chest, 0.0, -0.3)
+        pictures_over(plan, chest, 1.35)
+    tall = storage.cabinet("cupboard", (0.42, 0.9, 1.9), 2, 2, style.wood, style.wood)
+    plan.add_at_walls(tall, along=(0.0, 1.0))
+    plan.add_in_corner(decor.plant(rng.uniform(1.1, 1.5), rng))
+    picture_anywhere(plan)
+    return (rug_around(board, 0.7, 0.7, style.second_cloth),)
+
+
+def furnish_study(plan: Plan, style: Style) -> tuple[Rug, ...] | None:
+    """A desk with a screen and its chair, walls of books, boxes, an easy chair."""
+    rng = plan.rng
+    walls = tuple(int(wall) for wall in rng.permutation(4))
+    desk = plan.add_at_walls(
+        seating.desk(rng.uniform(1.4, 1.7), style.wood, WHITE), walls, along=(0.5, 0.4, 0.6),
+        clear_m=0.9,
+    )  # fmt: skip
+    if desk is None:
+        return None
+    worker = plan.add_before(seating.office_chair((52, 56, 66)), desk, 0.06)
+    if worker is None:
+        return None
+    plan.add_upon(decor.monitor(), desk, -0.16, 0.0)
+    plan.add_upon(decor.keyboard(), desk, 0.12, 0.0)
+    plan.add_upon(decor.table_lamp(style.dark_wood), desk, -0.16, desk.model.size_m[1] / 2 - 0.2)
+    plan.add_upon(decor.book_pile(rng), desk, 0.0, -desk.model.size_m[1] / 2 + 0.2)
+    for share in (0.0, 1.0, 0.5):
+        shelf = storage.bookshelf(rng.uniform(0.8, 1.1), 1.9, style.wood, rng)
+        plan.add_at_walls(shelf, walls[1:] + walls[:1], along=(share,), clear_m=0.4)
+    plan.add_in_corner(seating.armchair(style.cloth, style.wood))
+    plan.add_in_corner(decor.waste_bin((90, 96, 104)), near=desk)
+    plan.add_in_corner(decor.plant(rng.uniform(1.0, 1.4), rng))
+    crate = plan.add_at_walls(decor.crate((0.36, 0.46, 0.34), (196, 158, 112)))
+    if crate:
+        plan.add_upon(decor.crate((0.3, 0.36, 0.26), (184, 146, 102)), crate, 0.0, 0.02)
+    pictures_over(plan, desk, 1.4, count=1)
+    centre = (plan.size_m[0] / 2, plan.size_m[1] / 2)
+    return ((centre[0] - 0.8, centre[1] - 0.6, centre[0] + 0.8, centre[1] + 0.6, style.cloth),)

@@ -1,0 +1,95 @@
+"""The door and the windows of a room, chosen before it is furnished."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from world2minecraft.core.types import Opening
+from world2minecraft.procgen.rooms.decor import curtain, door
+from world2minecraft.procgen.rooms.furniture_model import Colour, whole
+from world2minecraft.procgen.rooms.ground import Ground
+from world2minecraft.procgen.rooms.place import Item, Plan
+
+DOOR_M = (0.90, 2.04)
+DOOR_SWING_M = 0.9
+SILL_M, HEAD_M = 0.96, 2.1
+RECESS_M = 0.06  # How deep a window or a door leaf lies in its wall.
+
+
+@dataclass(frozen=True)
+class Hole:
+    """An opening in a wall, from ``first_m`` to ``last_m`` along it; walls as ``Plan`` has them."""
+
+    kind: Literal["window", "door", "doorway"]
+    wall: int
+    first_m: float
+    last_m: float
+    sill_m: float
+    head_m: float
+
+    def opening(self, ground: Ground) -> Opening:
+        """Return it as the layout states it."""
+        wall = ground.walls[self.wall]
+        start, end = (np.array(wall.point(along)) for along in (self.first_m, self.last_m))
+        return Opening(self.kind, start, end, self.sill_m, self.head_m)
+
+
+def choose_openings(plan: Plan, *, walls: tuple[int, ...]) -> tuple[Hole, ...]:
+    """Choose a door and one or two windows on the given walls, and keep the air before them free.
+
+    Args:
+        plan: the empty plan; its ``reserved`` places grow.
+        walls: which walls may have openings, two or more.
+    """
+    rng = plan.rng
+    order = [int(wall) for wall in rng.permutation(walls)]
+    side = plan.ground.walls[order[0]]
+    near = rng.random() < 0.5
+    first = side.first_m + whole(0.2 if near else side.length_m - 0.2 - DOOR_M[0])
+    holes = [Hole("door", order[0], first, first + DOOR_M[0], 0.0, DOOR_M[1])]
+    for wall in order[1 : 2 + int(rng.integers(2))]:
+        side = plan.ground.walls[wall]
+        wide = min(whole(rng.uniform(1.1, 1.6)), whole(side.length_m - 0.5))
+        first = side.first_m + whole(side.length_m / 2 - wide / 2 + rng.uniform(-0.2, 0.2))
+        holes.append(Hole("window", wall, first, first + wide, SILL_M, HEAD_M))
+    for hole in holes:
+        reserve_before(plan, hole)
+    return tuple(holes)
+
+
+def reserve_before(plan: Plan, hole: Hole) -> None:
+    """Keep the swing of a door and the air before a window free."""
+    far = 0.2 if hole.kind == "window" else DOOR_SWING_M
+    aside = 0.34 if hole.kind == "window" else 0.04
+    low, high = (hole.sill_m, hole.head_m) if hole.kind == "window" else (0.0, 2.1)
+    rect = plan.ground.walls[hole.wall].rect(hole.first_m - aside, hole.last_m + aside, 0.0, far)
+    plan.reserved.append((*rect[:2], low, *rect[2:], high))
+
+
+def hang_curtains(plan: Plan, holes: tuple[Hole, ...], colour: Colour) -> None:
+    """Hang a curtain on both sides of each window where there is room."""
+    for hole in holes:
+        if hole.kind != "window":
+            continue
+        for long in (True, False):
+            bottom = 0.06 if long else hole.sill_m - 0.1
+            model = curtain(0.30, hole.head_m + 0.14 - bottom, colour)
+            spots = (hole.first_m - 0.16, hole.last_m + 0.16)
+            items = [plan.at_wall(model, hole.wall, along, bottom) for along in spots]
+            if all(plan.fits(item, may_block=True) for item in items):
+                plan.items.extend(items)
+                break
+
+
+def door_item(plan: Plan, hole: Hole, colour: Colour) -> Item:
+    """Return the leaf of a door, set into its wall."""
+    model = door(hole.last_m - hole.first_m, hole.head_m, colour)
+    middle = (hole.first_m + hole.last_m) / 2
+    return plan.at_wall(model, hole.wall, middle, 0.0, -model.size_m[0])
+
+
+def door_step_m(plan: Plan, hole: Hole) -> tuple[float, float]:
+    """Return the place on the floor where one stands after coming in."""
+    item = door_item(plan, hole, (0, 0, 0))
+    return item.point(0.5, 0.0)

@@ -1,0 +1,154 @@
+"""Seeded furnished rooms: a layout in metres and the same room as 2 cm voxels."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.core.errors import UnknownNameError, World2MinecraftError
+from world2minecraft.core.types import Layout, LayoutObject
+from world2minecraft.procgen.rooms import voxelization as voxels
+from world2minecraft.procgen.rooms.clutter import NARROW_BODY_M, WIDE_BODY_M, scatter
+from world2minecraft.procgen.rooms.colour_scheme import WHITE, choose_style
+from world2minecraft.procgen.rooms.kinds import BASE_KINDS, KINDS, random_size
+from world2minecraft.procgen.rooms.openings import (
+    Hole,
+    choose_openings,
+    door_item,
+    door_step_m,
+    hang_curtains,
+)
+from world2minecraft.procgen.rooms.place import Item, Plan, ways_are_clear
+from world2minecraft.procgen.rooms.shapes import SHAPES, open_walls, shape_of_seed, shaped_ground
+
+ATTEMPTS = 80  # A recipe fits on its first tries as a rule; the worst of 500 seeds is far below.
+
+
+@dataclass(frozen=True, eq=False)
+class Room:
+    """A place to be scanned: one furnished room, or a house of several.
+
+    Instance n is the n-th object of all layouts in order, ``objects[n - 1]``. ``labels`` are class
+    ids, 0 air. The inner box of a room is from (0, 0, 0) to its size, the shell of walls, floor
+    slab and ceiling lies around it; in a house this holds for the box around all rooms.
+    """
+
+    kind: str
+    seed: int
+    layouts: tuple[Layout, ...]
+    labels: np.ndarray  # uint8 [X, Y, Z]
+    instance: np.ndarray  # uint16 [X, Y, Z]
+    colour: np.ndarray  # uint8 [X, Y, Z, 3]
+    voxel_m: float
+    origin_m: np.ndarray  # float64 [3]
+
+    @property
+    def layout(self) -> Layout:
+        """The first layout: the only one of a single room."""
+        return self.layouts[0]
+
+    @property
+    def objects(self) -> tuple[LayoutObject, ...]:
+        """The objects of all layouts, in the order of their instances."""
+        return tuple(item for layout in self.layouts for item in layout.objects)
+
+    @property
+    def size_m(self) -> np.ndarray:
+        """The inner sides and the height of the box around all rooms, float64 [3]."""
+        sides = np.max([layout.floor_polygon_m.max(axis=0) for layout in self.layouts], axis=0)
+        top = max(layout.floor_z_m + layout.wall_height_m for layout in self.layouts)
+        return np.array([*sides, top])
+
+
+def generate_room(
+    seed: int, *, kind: str | None = None, clutter: float = 0.0, shape: str | None = "box"
+) -> Room:
+    """Return the room of a seed: the same seed gives the same bytes.
+
+    Args:
+        seed: 0 or more.
+        kind: one of ``KINDS``; None draws one of the five of ``BASE_KINDS``.
+        clutter: 0 (tidy) to 1: how many things lie about, and how askew the chairs stand.
+        shape: one of ``SHAPES``; None draws one.
+
+    Raises:
+        UnknownNameError: no kind or no shape has this name.
+    """
+    if seed < 0:
+        raise ValueError(f"seed must be 0 or more, not {seed}")
+    if not 0 <= clutter <= 1:
+        raise ValueError(f"clutter must be from 0 to 1, not {clutter}")
+    kind = kind_of_seed(seed) if kind is None else kind
+    if kind not in KINDS:
+        raise UnknownNameError("room kind", kind, KINDS)
+    shape = shape_of_seed(seed) if shape is None else shape
+    if shape not in SHAPES:
+        raise UnknownNameError("room shape", shape, SHAPES)
+    for attempt in range(ATTEMPTS):
+        room = _try_room(seed, kind, shape, clutter, np.random.default_rng([seed, attempt]))
+        if room is not None:
+            return room
+    raise World2MinecraftError(f"seed {seed} gives no {kind} room; try another seed")
+
+
+def kind_of_seed(seed: int) -> str:
+    """Return the kind of room that a seed draws where none is asked for."""
+    return sorted(BASE_KINDS)[int(np.random.default_rng(seed).integers(len(BASE_KINDS)))]
+
+
+def _try_room(
+    seed: int, kind: str, shape: str, clutter: float, rng: np.random.Generator
+) -> Room | None:
+    recipe = KINDS[kind]
+    plan = Plan(shaped_ground(shape, random_size(recipe, rng), rng), rng)
+    style = choose_style(rng)
+    holes = choose_openings(plan, walls=open_walls(plan.ground, kind))
+    rugs = recipe.furnish(plan, style)
+    # Box rooms keep the narrower way that old seeds were drawn with.
+    body_m = NARROW_BODY_M if shape == "box" and kind in BASE_KINDS else WIDE_BODY_M
+    if rugs is None or not ways_are_clear(plan, door_step_m(plan, holes[0]), body_m=body_m):
+        return None
+    hang_curtains(plan, holes, style.curtain)
+    scatter(plan, clutter, np.random.default_rng([seed, 1 << 21]), [door_step_m(plan, holes[0])])
+    items = [*plan.items, door_item(plan, holes[0], WHITE)]
+    canvas = voxels.Canvas(plan.size_m)
+    voxels.paint_shell(canvas, style, recipe.floor, rng)
+    voxels.paint_built(canvas, plan.ground, style)
+    for hole in holes:
+        voxels.paint_hole(canvas, hole, plan.ground.walls[hole.wall])
+    for rug in rugs:
+        voxels.paint_rug(canvas, rug, (0.0, 0.0, *plan.size_m[:2]))
+    for number, item in enumerate(items, start=1):
+        voxels.paint_item(canvas, item, number, rng)
+    return Room(
+        kind=kind,
+        seed=seed,
+        layouts=(room_layout(plan, holes, items, kind),),
+        labels=canvas.labels,
+        instance=canvas.instance,
+        colour=canvas.colour,
+        voxel_m=voxels.VOXEL_M,
+        origin_m=canvas.origin_m,
+    )
+
+
+def room_layout(plan: Plan, holes: tuple[Hole, ...], items: list[Item], name: str = "") -> Layout:
+    """Return the layout of a furnished plan, in the plan's own frame."""
+    return Layout(
+        floor_polygon_m=plan.ground.polygon_m,
+        wall_height_m=plan.size_m[2],
+        openings=tuple(hole.opening(plan.ground) for hole in holes),
+        objects=tuple(layout_object(item) for item in items),
+        name=name,
+    )
+
+
+def layout_object(item: Item) -> LayoutObject:
+    """Return an item as the layout states it."""
+    _, _, z0, _, _, z1 = item.box_m
+    return LayoutObject(
+        class_id=item.model.class_id,
+        center_m=np.array([item.x_m, item.y_m, (z0 + z1) / 2]),
+        size_m=np.array(item.model.size_m),
+        yaw_deg=item.yaw_deg % 360,
+        name=item.model.name,
+    )

@@ -1,0 +1,117 @@
+"""A phone as the sensor: photos with or without their poses, and a video; never depth.
+
+Surfaces have marks (``texture``), the pictures have soft edges, a phone's exposure and noise
+(``exposure``), and neighbours share most of what they see (``film``).
+"""
+
+import io
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.core.errors import MissingExtraError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.core.types import View
+from world2minecraft.procgen.rooms.room import Room
+from world2minecraft.procgen.sensors.exposure import (
+    TexturedScene,
+    developed,
+    exposed,
+    prepare_textured,
+)
+from world2minecraft.procgen.sensors.film import Film, plan_film
+from world2minecraft.procgen.sensors.shots import FrameTruth, Shooting, Shot, room_to_scan
+
+PHOTO_QUALITY = 92  # What phones write.
+RATE_HZ = 24
+VIDEO_BITS_PER_PIXEL = 1.6  # A picture; phones spend 0.3 with better codecs.
+KEY_EVERY = 12  # Pictures; any of them is reached after decoding half a second at most.
+SHUTTER = 0.1  # Of the time from one picture of a video to the next.
+MOMENTS = 4  # Rays of a pixel, each at its own moment.
+
+
+def phone_shots(room: Room, how: Shooting) -> Iterator[Shot]:
+    """Yield a phone's pictures of a room, one at a time, in the order of the walk."""
+    scene = prepare_textured(room)
+    rng = np.random.default_rng([how.seed, 1])
+    video = how.sensor == "video"
+    film = plan_film(room, scene.photos.scene, how.camera, how.planned, rng, smooth=video)
+    to_scan = room_to_scan(how.seed)
+    return (_shot(scene, how, film, to_scan, number) for number in range(how.taken))
+
+
+def _shot(
+    scene: TexturedScene, how: Shooting, film: Film, to_scan: np.ndarray, number: int
+) -> Shot:
+    video = how.sensor == "video"
+    true = film.pose(number)
+    during = true[None]
+    if video:  # The shutter is open for a while, and the pose is that of its middle.
+        off = (np.arange(MOMENTS) - (MOMENTS - 1) / 2) * SHUTTER / MOMENTS
+        during = np.array([film.pose(number + part) for part in off])
+    rng = np.random.default_rng([how.seed, 3, number])
+    light = exposed(scene, how.camera, during)
+    colour = developed(light, rng, drift=0.0 if video else 1.0)
+    name = f"frame-{number:06d}"
+    view = View(name, to_scan @ true, colour=colour, colour_camera=how.camera)
+    return Shot(view, FrameTruth(name, true, 1.0))
+
+
+def write_photos(folder: str | Path, views: Iterable[View]) -> None:
+    """Write the colour of views as JPEG photos that say nothing of lens or place.
+
+    Raises:
+        OutputError: the folder cannot be written.
+    """
+    for view in views:
+        buffer = io.BytesIO()
+        Image.fromarray(_colour(view)).save(buffer, "JPEG", quality=PHOTO_QUALITY)
+        write_bytes(Path(folder) / f"{view.name}.jpg", buffer.getvalue())
+
+
+def write_video(path: str | Path, views: Iterable[View]) -> None:
+    """Write the colour of views as a video of 24 pictures a second; the same views, same bytes.
+
+    Args:
+        path: an ``.mp4``; its folder is made where it is missing.
+        views: all of one size, both sides even; at least one.
+
+    Raises:
+        OutputError: it cannot be written. MissingExtraError: ``av`` is not installed.
+    """
+    try:
+        import av  # noqa: PLC0415
+    except ImportError as error:
+        raise MissingExtraError("writing videos", "capture") from error
+    buffer = io.BytesIO()
+    options = {"fflags": "+bitexact"}  # No version of the writer in the file.
+    with av.open(buffer, "w", format="mp4", options=options) as container:
+        stream: Any = None
+        for view in views:
+            colour = _colour(view)
+            if stream is None:
+                stream = _stream(container, colour.shape[1], colour.shape[0])
+            frame = av.VideoFrame.from_ndarray(colour, format="rgb24")
+            container.mux(stream.encode(frame))
+        container.mux(stream.encode(None))
+    write_bytes(Path(path), buffer.getvalue())
+
+
+def _stream(container: Any, width: int, height: int) -> Any:
+    stream = container.add_stream("mpeg4", rate=RATE_HZ)
+    stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
+    stream.codec_context.thread_count = 1  # Slices would depend on the number of threads.
+    stream.codec_context.gop_size = KEY_EVERY
+    stream.codec_context.max_b_frames = 0
+    stream.bit_rate = int(VIDEO_BITS_PER_PIXEL * width * height * RATE_HZ)
+    stream.codec_context.flags |= 1 << 23  # bitexact
+    return stream
+
+
+def _colour(view: View) -> np.ndarray:
+    if view.colour is None:
+        raise ValueError(f"{view.name} has no colour")
+    return np.ascontiguousarray(view.colour)

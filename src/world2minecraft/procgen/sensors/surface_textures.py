@@ -1,0 +1,224 @@
+"""Marks on surfaces, bound to the place: grain, weave, print, stone, posters on walls.
+
+All is made from a hash of the place in metres, at about 2 mm, so that two photos from different
+places see the same marks: what matching needs and what flat colours lack. Marks finer than a
+pixel fade out, as they do in a lens. Strength 1 is what real rooms look like.
+"""
+
+from world2minecraft.core.jit import inlined, njit
+from world2minecraft.procgen.rooms.materials import Material
+
+BARE, WALL = int(Material.BARE), int(Material.WALL)
+WOOD_X, WOOD_Y, WOOD_Z = int(Material.WOOD_X), int(Material.WOOD_Y), int(Material.WOOD_Z)
+CLOTH, PRINT, RUG = int(Material.CLOTH), int(Material.PRINT), int(Material.RUG)
+TILE, PICTURE, LEAF = int(Material.TILE), int(Material.PICTURE), int(Material.LEAF)
+TEXT, STONE, VIEW = int(Material.TEXT), int(Material.STONE), int(Material.VIEW)
+POSTER_STEP_M = 1.5  # One poster at most on each stretch of wall of this length.
+POSTER_SHARE = 0.5
+FLOOR_SEED = 40  # Of what is no thing; those of things follow.
+
+
+@njit
+def mixed(a, b, c, d):
+    """Return a number from 0 to 1 that belongs to four whole numbers."""
+    h = (a * 73856093) ^ (b * 19349663) ^ (c * 83492791) ^ (d * 49979687)
+    h = ((h ^ (h >> 15)) * 1274126177) & 0x7FFFFFFF
+    h = ((h ^ (h >> 13)) * 1103515245) & 0x7FFFFFFF
+    return ((h ^ (h >> 16)) & 0xFFFFF) / 1048575.0
+
+
+@njit
+def noise(x, y, z, wave, foot, seed):
+    """Return smooth noise of -1 to 1 at a place.
+
+    Args:
+        x: of the place, in metres, like ``y`` and ``z``.
+        y: see ``x``.
+        z: see ``x``.
+        wave: the length of its marks.
+        foot: the side of the pixel's footprint; marks finer than two of it fade out.
+        seed: a whole number.
+    """
+    fade = min(max(wave / (2.0 * foot) - 0.4, 0.0), 1.0)
+    if fade <= 0.0:
+        return 0.0
+    x, y, z = x / wave, y / wave, z / wave
+    i, j, k = int(x), int(y), int(z)
+    a, b, c = x - i, y - j, z - k
+    a, b, c = a * a * (3 - 2 * a), b * b * (3 - 2 * b), c * c * (3 - 2 * c)
+    total = 0.0
+    for di in range(2):
+        for dj in range(2):
+            share = (a if di else 1 - a) * (b if dj else 1 - b)
+            if share > 0:
+                low = mixed(i + di, j + dj, k, seed)
+                total += share * (low + c * (mixed(i + di, j + dj, k + 1, seed) - low))
+    return fade * (2.0 * total - 1.0)
+
+
+@njit
+def tone(material, seed, x, y, z, face, foot):
+    """Return what the colour of a spot is multiplied by, about 1.
+
+    Args:
+        material: a ``Material``.
+        seed: the thing's number.
+        x: of the place, in metres of the grid, like ``y`` and ``z``.
+        y: see ``x``.
+        z: see ``x``.
+        face: which way the surface looks, 0 to 5.
+        foot: the side of the pixel's footprint, in metres.
+    """
+    if material == WALL:  # Plaster, rolled and not quite even.
+        fine = noise(x, y, z, 0.012, foot, 1) + noise(x, y, z, 0.04, foot, 2)
+        return 1 + 0.006 * fine + 0.014 * noise(x, y, z, 0.45, foot, 3)
+    if material in (WOOD_X, WOOD_Y, WOOD_Z):
+        return _wood(material, seed, x, y, z, face, foot)
+    if material in (CLOTH, PRINT):
+        return _cloth(material, seed, x, y, z, face, foot)
+    if material == RUG:
+        return _rug(x, y, z, foot)
+    if material == TILE:  # Veins of marble.
+        bent = noise(x, y, z, 0.2, foot, 5)
+        vein = abs(noise(x + 0.1 * bent, y, z, 0.11, foot, 6))
+        return 1 - 0.22 * max(0.0, 0.25 - vein) / 0.25 + 0.05 * noise(x, y, z, 0.02, foot, 7)
+    if material == STONE:
+        grit = noise(x, y, z, 0.008, foot, 8) + noise(x, y, z, 0.02, foot, 9)
+        return 1 + 0.16 * grit
+    if material == LEAF:
+        return 1 + 0.35 * noise(x, y, z, 0.035, foot, 10) + 0.2 * noise(x, y, z, 0.012, foot, 11)
+    if material == PICTURE:
+        broad = noise(x, y, z, 0.09, foot, seed) + noise(x, y, z, 0.035, foot, seed + 1)
+        return 1 + 0.3 * broad + 0.18 * noise(x, y, z, 0.014, foot, seed + 2)
+    if material == TEXT:
+        return _text(seed, x, y, z, face, foot)
+    if material == VIEW:
+        return 1 + 0.06 * noise(x, y, z, 0.14, foot, 12) + 0.05 * noise(x, y, z, 0.04, foot, 13)
+    return 1 + 0.008 * noise(x, y, z, 0.03, foot, 14) + 0.016 * noise(x, y, z, 0.25, foot, 15)
+
+
+@njit
+def _wood(material, seed, x, y, z, face, foot):
+    """Streaks along the grain, and rings where it was cut across a knot."""
+    if seed == FLOOR_SEED:  # Each row of boards was sawn from another tree.
+        seed += 3 * int(y / 0.14)
+    axis = material - WOOD_X
+    if axis == face // 2:  # The grain does not run out of a face: it runs along another side.
+        axis = 2 if axis < 2 else 0
+    long_x, long_y, long_z = 9.0 if axis == 0 else 1.0, 9.0 if axis == 1 else 1.0, 1.0
+    long_z = 9.0 if axis == 2 else 1.0
+    a, b, c = x / long_x, y / long_y, z / long_z
+    streaks = 0.09 * noise(a, b, c, 0.006, foot, seed + 1) + 0.1 * noise(a, b, c, 0.018, foot, seed)
+    # The numbers of rings per unit of noise: a knot every half metre or so.
+    ring = 6.0 * noise(x / 3, y / 3, z / 3, 0.12, foot, seed + 2) + 2.0 * noise(
+        a, b, c, 0.05, foot, 4
+    )
+    ring = abs(ring - int(ring))
+    return 1 + streaks - 0.14 * max(0.0, ring - 0.7) / 0.3 + 0.05 * noise(x, y, z, 0.3, foot, 16)
+
+
+@njit
+def _cloth(material, seed, x, y, z, face, foot):
+    """A weave and folds; with a print, stripes, checks or spots of its own."""
+    weave = noise(x, y, z, 0.004, foot, 17) + noise(x, y, z, 0.01, foot, 18)
+    worn = noise(x, y, z, 0.05, foot, 19) + noise(x, y, z, 0.18, foot, 20)
+    plain = 1 + 0.07 * weave + 0.035 * worn
+    if material == CLOTH:
+        return plain
+    axis = face // 2
+    u, v = (y if axis == 0 else x), (y if axis == 2 else z)
+    step = 0.05 + 0.06 * mixed(seed, 1, 0, 0)
+    if foot > step / 2:
+        return plain
+    kind = int(3 * mixed(seed, 2, 0, 0))
+    i, j = int(u / step), int(v / step)
+    a, b = u / step - i - 0.5, v / step - j - 0.5
+    if kind == 0:
+        marked = a * a + b * b < 0.06 + 0.1 * mixed(i, j, seed, 3)
+    elif kind == 1:
+        marked = abs(a) < 0.1 + 0.2 * mixed(i, seed, 4, 0)
+    else:
+        marked = abs(a) < 0.12 or abs(b) < 0.08 + 0.1 * mixed(j, seed, 5, 0)
+    return plain * (0.78 if marked else 1.04)
+
+
+@njit
+def _rug(x, y, z, foot):
+    """Diamonds with hearts, no two quite alike, and the pile of wool."""
+    step = 0.22
+    i, j = int(x / step), int(y / step)
+    a, b = abs(x / step - i - 0.5), abs(y / step - j - 0.5)
+    ring = a + b
+    kind = mixed(i, j, 6, 0)
+    value = 1.0
+    if ring < 0.46:
+        value = 0.76 if kind < 0.5 else 1.2
+    if ring < 0.3:
+        value = 1.16 if kind < 0.7 else 0.7
+    if ring < 0.05 + 0.1 * kind:
+        value = 0.68
+    if a > 0.46 or b > 0.46:
+        value = 0.86
+    pile = noise(x, y, z, 0.006, foot, 21) + noise(x, y, z, 0.016, foot, 22)
+    return value * (1 + 0.1 * pile + 0.05 * noise(x, y, z, 0.07, foot, 23))
+
+
+@njit
+def _text(seed, x, y, z, face, foot):
+    """Rows of dark dashes, as on the backs of books, labels and screens."""
+    axis = face // 2
+    u, v = (y if axis == 0 else x), (y if axis == 2 else z)
+    block = mixed(int(u / 0.06), int(v / 0.08), seed, 7)
+    value = 0.84 + 0.3 * block
+    if block > 0.35 and foot < 0.012:
+        row = v / 0.014
+        inked = mixed(int(u / 0.009), int(row), seed, 8) > 0.4
+        if inked and row - int(row) < 0.55:
+            value *= 0.62 if block < 0.8 else 1.3
+    return value * (1 + 0.04 * noise(x, y, z, 0.02, foot, 24))
+
+
+@njit
+def poster(u, v, plane, foot, found):
+    """Write the colour of a poster into ``found`` float64 [3]; return whether one hangs there.
+
+    Args:
+        u: along the wall, in metres.
+        v: over the floor, in metres.
+        plane: the wall's number.
+        foot: the side of the pixel's footprint, in metres.
+        found: changed where one hangs there.
+    """
+    cell = int(u / POSTER_STEP_M)
+    if mixed(cell, plane, 9, 0) > POSTER_SHARE:
+        return False
+    wide, high = 0.35 + 0.4 * mixed(cell, plane, 10, 0), 0.4 + 0.4 * mixed(cell, plane, 11, 0)
+    a = u - cell * POSTER_STEP_M - (POSTER_STEP_M - wide) * (0.1 + 0.8 * mixed(cell, plane, 12, 0))
+    b = v - 1.15 - 0.25 * mixed(cell, plane, 13, 0)
+    if not (0 <= a < wide and 0 <= b < high):
+        return False
+    rim = min(a, wide - a, b, high - b)
+    seed = int(1048575 * mixed(cell, plane, 14, 0))
+    if rim < 0.012:
+        _paint(found, 0.18 + 0.7 * (mixed(seed, 14, 0, 0) > 0.6), seed, 0.05)
+    elif rim < 0.04:
+        _paint(found, 0.92, seed, 0.02)
+    elif b < 0.16 and a < 0.7 * wide and foot < 0.012:
+        row = b / 0.02
+        inked = mixed(int(a / 0.008), int(row), seed, 15) > 0.35 and row - int(row) < 0.5
+        _paint(found, 0.2 if inked else 0.9, seed, 0.03)
+    else:
+        broad = noise(a + 3, b + 3, 0.5, 0.16, foot, seed)
+        field = broad + 0.6 * noise(a + 3, b + 3, 0.5, 0.05, foot, seed + 1)
+        step = int((field + 2.0) * 2.2)
+        grain = 0.06 * noise(a + 3, b + 3, 0.5, 0.012, foot, 25)
+        _paint(found, 0.25 + 0.6 * mixed(step, seed, 16, 0) + grain, seed * 7 + step, 0.5)
+    return True
+
+
+@inlined
+def _paint(found, light, seed, colourful):
+    """Write a colour of a lightness of 0 to 1 and a hue that belongs to the seed."""
+    for n in range(3):
+        hue = (mixed(seed, 17 + n, 0, 0) - 0.5) * colourful
+        found[n] = 255.0 * min(max(light + hue, 0.02), 0.98)

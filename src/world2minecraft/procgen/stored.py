@@ -1,0 +1,172 @@
+"""A generated room or house on disk: ``layout.json`` and ``truth.npz``, written and read back.
+
+What is read may come from anywhere: sizes are checked before memory is taken, and every number
+before it is used.
+"""
+
+import math
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.archives import UNREADABLE
+from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, class_id
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError, UnknownNameError
+from world2minecraft.core.files import read_json, read_npz, write_json, write_npz
+from world2minecraft.core.types import Layout, LayoutObject, Opening
+from world2minecraft.formats.objects import rounded
+from world2minecraft.procgen.rooms.room import Room
+
+LAYOUT, TRUTH = "layout.json", "truth.npz"
+ARRAYS = ("colour", "instance", "labels", "origin_m", "voxel_m")
+MAX_CELLS = 400_000_000  # A house of 14 rooms on one storey has about 90 million.
+BYTES_A_CELL = 6  # One of labels, two of instance, three of colour.
+MAX_LAYOUTS, MAX_OBJECTS = 64, 65_535
+MAX_LAYOUT_BYTES = 32 << 20
+VOXEL_RANGE_M = (0.005, 0.5)
+
+
+def write_generated(room: Room, folder: str | Path) -> None:
+    """Write a room or a house, so that ``read_generated`` gives it back.
+
+    Raises:
+        OutputError: the folder cannot be written.
+    """
+    arrays = {name: np.asarray(getattr(room, name)) for name in ARRAYS}
+    write_npz(Path(folder) / TRUTH, arrays)
+    write_json(
+        Path(folder) / LAYOUT,
+        {
+            "kind": room.kind,
+            "seed": room.seed,
+            "size_m": rounded(room.size_m),
+            "layouts": [_stated(layout) for layout in room.layouts],
+        },
+    )
+
+
+def read_generated(folder: str | Path) -> Room:
+    """Read what ``write_generated`` wrote; lengths come back rounded to a tenth of a millimetre.
+
+    Raises:
+        InputError: a file is missing. DamagedFileError: a file is not what it should be.
+        LimitError: the room is larger than ``MAX_CELLS``.
+    """
+    path, truth = Path(folder) / LAYOUT, Path(folder) / TRUTH
+    if not path.is_file():
+        raise InputError(path, "is not there; `w2m rooms generate --out DIR` writes such a folder")
+    stated = read_json(path, MAX_LAYOUT_BYTES)
+    try:
+        kind, seed = str(stated["kind"]), int(stated["seed"])
+        layouts = _layouts(stated["layouts"])
+    except (KeyError, TypeError, ValueError, OverflowError, AttributeError, UnknownNameError) as e:
+        raise DamagedFileError(path, f"is no layout of a room ({e})") from e
+    _check_declared(truth)
+    arrays = read_npz(truth, ARRAYS)
+    _check_arrays(truth, arrays, sum(len(layout.objects) for layout in layouts))
+    return Room(
+        kind=kind,
+        seed=seed,
+        layouts=layouts,
+        labels=arrays["labels"],
+        instance=arrays["instance"],
+        colour=arrays["colour"],
+        voxel_m=float(arrays["voxel_m"]),
+        origin_m=arrays["origin_m"],
+    )
+
+
+def _stated(layout: Layout) -> dict[str, Any]:
+    return {
+        "name": layout.name,
+        "floor_z_m": round(layout.floor_z_m, 4),
+        "wall_height_m": round(layout.wall_height_m, 4),
+        "floor_polygon_m": [rounded(corner) for corner in layout.floor_polygon_m],
+        "openings": [
+            {
+                "kind": opening.kind,
+                "start_m": rounded(opening.start_m),
+                "end_m": rounded(opening.end_m),
+                "sill_m": round(opening.sill_m, 4),
+                "head_m": round(opening.head_m, 4),
+            }
+            for opening in layout.openings
+        ],
+        "objects": [
+            {
+                "class": CLASS_NAMES[item.class_id],
+                "name": item.name,
+                "center_m": rounded(item.center_m),
+                "size_m": rounded(item.size_m),
+                "yaw_deg": round(item.yaw_deg, 4),
+            }
+            for item in layout.objects
+        ],
+    }
+
+
+def _layouts(rows: Any) -> tuple[Layout, ...]:
+    if not isinstance(rows, list) or not 1 <= len(rows) <= MAX_LAYOUTS:
+        raise ValueError(f"layouts must be a list of 1 to {MAX_LAYOUTS} rooms")
+    if sum(len(row["objects"]) for row in rows) > MAX_OBJECTS:
+        raise ValueError(f"it has more than {MAX_OBJECTS:,} objects")
+    return tuple(_layout(row) for row in rows)
+
+
+def _layout(row: dict[str, Any]) -> Layout:
+    openings = tuple(
+        Opening(o["kind"], o["start_m"], o["end_m"], float(o["sill_m"]), float(o["head_m"]))
+        for o in row["openings"]
+    )
+    objects = tuple(
+        LayoutObject(
+            class_id(o["class"]), o["center_m"], o["size_m"], float(o["yaw_deg"]), str(o["name"])
+        )
+        for o in row["objects"]
+    )
+    return Layout(
+        floor_polygon_m=np.array(row["floor_polygon_m"], np.float64),
+        wall_height_m=float(row["wall_height_m"]),
+        openings=openings,
+        objects=objects,
+        floor_z_m=float(row["floor_z_m"]),
+        name=str(row["name"]),
+    )
+
+
+def _check_declared(path: Path) -> None:
+    """Refuse a file whose arrays say that they are larger than any room, before they are read."""
+    if not path.is_file():
+        raise InputError(path, "is not there; it lies beside layout.json")
+    try:
+        with zipfile.ZipFile(path) as archive:
+            declared = sum(entry.file_size for entry in archive.infolist())
+    except UNREADABLE as error:
+        raise DamagedFileError(path, f"is not a readable .npz ({error})") from error
+    if declared > MAX_CELLS * BYTES_A_CELL:
+        raise LimitError(path, f"has {declared:,} bytes; a room has {MAX_CELLS:,} cells at most")
+
+
+def _check_arrays(path: Path, arrays: dict[str, np.ndarray], objects: int) -> None:
+    labels, instance, colour = (arrays[name] for name in ("labels", "instance", "colour"))
+    wanted = (
+        (labels, np.uint8, labels.shape if labels.ndim == 3 and labels.size else None, "labels"),
+        (instance, np.uint16, labels.shape, "instance"),
+        (colour, np.uint8, (*labels.shape, 3), "colour"),
+        (arrays["origin_m"], np.float64, (3,), "origin_m"),
+        (arrays["voxel_m"], np.float64, (), "voxel_m"),
+    )
+    for values, dtype, shape, name in wanted:
+        if values.dtype != dtype or values.shape != shape:
+            raise DamagedFileError(path, f"{name} is {values.dtype} {values.shape}, not a room's")
+    if not np.isfinite(arrays["origin_m"]).all():
+        raise DamagedFileError(path, "origin_m is not finite")
+    voxel_m = float(arrays["voxel_m"])
+    if not math.isfinite(voxel_m) or not VOXEL_RANGE_M[0] <= voxel_m <= VOXEL_RANGE_M[1]:
+        raise DamagedFileError(path, f"voxel_m is {voxel_m}, not from 0.005 to 0.5")
+    if labels.max() >= CLASS_COUNT:
+        raise DamagedFileError(path, f"labels hold {labels.max()}, which is no class")
+    if instance.max() > objects:
+        raise DamagedFileError(path, f"instance holds {instance.max()} of {objects} objects")

@@ -1,0 +1,70 @@
+"""The blocks of a house while they are set, with the furniture design that each is a part of."""
+
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.construction.canvas import Canvas
+from world2minecraft.construction.connect import settle
+from world2minecraft.construction.lattice import Lattice
+from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK, grid_to_block_axes
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.procgen.worlds.house import BlockHouse
+
+MARGIN = 1  # The wall; what lies before it comes on top.
+UNDER = 2  # Layers under the lowest rooms: their floor, and the ground.
+OVER = 3  # Layers over the highest rooms: ceiling, roof and air.
+
+
+class WorldCanvas(Canvas):
+    """A canvas that knows designs. A place of the house is ``inner + margin`` of its arrays."""
+
+    def __init__(self, house: BlockHouse, garden: int = 1):
+        self.margin = margin = MARGIN + garden
+        layers = UNDER + house.grounds[-1] + house.height + OVER
+        shape = (house.size[0] + 2 * margin, house.size[1] + 2 * margin, layers)
+        corner = (-margin, ROOM_CORNER_BLOCK[1] - UNDER, -margin)
+        scale = house.blocks_per_metre
+        corner_m = np.array([0.0, house.size[1] / scale])
+        upper = tuple(UNDER + ground for ground in house.grounds[1:])
+        super().__init__(Lattice(corner, shape, corner_m, scale, upper))
+        self.design = np.zeros(shape, np.uint16)
+        self.designs: dict[str, int] = {"": 0}
+
+    def at(self, x: int, y: int, z: int) -> tuple[int, int, int]:
+        """Return the index of a block of the house."""
+        return x + self.margin, y + self.margin, z + UNDER
+
+    def box(
+        self, low: tuple[int, int, int], high: tuple[int, int, int]
+    ) -> tuple[slice, slice, slice]:
+        """Return the slices of a box of blocks of the house, [low, high)."""
+        x, y, z = (slice(a, b) for a, b in zip(self.at(*low), self.at(*high), strict=True))
+        return x, y, z
+
+    def set(
+        self,
+        at: tuple[Any, ...] | np.ndarray,
+        state: str,
+        class_id: int,
+        instance: int = 0,
+        design: str = "",
+    ) -> None:
+        """Set blocks of one state at an index, slices or a mask."""
+        self.put(at, self.id_of(state), class_id, instance)
+        self.design[at] = self.designs.setdefault(design, len(self.designs))
+
+    def settle(self) -> int:
+        """Connect what joins, and take away what would not stay; return how many blocks went."""
+        taken = settle(self)
+        self.design[self.states == 0] = 0
+        return taken
+
+    def finished(self) -> tuple[BlockVolume, np.ndarray, tuple[str, ...]]:
+        """Return the volume, its designs uint16 [X, Y, Z] in block axes, and their names."""
+        used = np.unique(self.design)
+        names = tuple(self.designs)
+        kept = sorted(names[int(number)] for number in used if number)
+        order = {name: number for number, name in enumerate(kept, 1)} | {"": 0}
+        renumber = np.array([order.get(name, 0) for name in names], np.uint16)
+        return self.volume(), grid_to_block_axes(renumber[self.design]), ("", *kept)

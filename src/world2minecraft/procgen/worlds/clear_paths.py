@@ -1,0 +1,114 @@
+"""Ways that stay free: from every door of a room to every other, as wide as a person.
+
+A room's ways are asked before a thing is put: what would shut a door, or close off a good part of
+the floor, is not put.
+"""
+
+import numpy as np
+
+from world2minecraft.geometry.connected_components import connected_parts
+from world2minecraft.procgen.worlds.house import BlockGap, BlockHouse, BlockRoom, person_blocks
+
+KEPT_SHARE = 0.6  # Of the free floor that ways must still cover,
+KEPT_PLACES = 0.95  # and of the places where a person fits that one must still come to.
+
+
+class Ways:
+    """Which columns of each room are taken, and whether its ways are free."""
+
+    def __init__(self, house: BlockHouse):
+        self.house = house
+        self.body, self.head = person_blocks(house.blocks_per_metre)
+        self.taken = [~room.floor(house.size) for room in house.rooms]
+        # The first corners of places where a person must be able to stand.
+        self.ends: list[list[tuple[int, int]]] = [[] for _ in house.rooms]
+        for gap in house.gaps:
+            if gap.kind != "window":
+                for number in gap.rooms:
+                    self.end(house.rooms[number], _before(gap, ~self.taken[number], self.body))
+
+    def close(self, room: BlockRoom, box: tuple[int, int, int, int]) -> None:
+        """Take columns [x0, y0, x1, y1) of a room for good, as stairs do."""
+        x0, y0, x1, y1 = box
+        self.taken[room.number][x0:x1, y0:y1] = True
+
+    def end(self, room: BlockRoom, corner: tuple[int, int]) -> None:
+        """Add a place that ways must reach, by its least column; nothing is put there."""
+        self.ends[room.number].append(corner)
+
+    def stands(self, room: BlockRoom, cells: np.ndarray) -> np.ndarray:
+        """Return those columns, int [N, 2], of cells [N, 3] of the house that hinder a person."""
+        low = cells[:, 2] < room.ground + self.head
+        return np.unique(cells[low, :2], axis=0)
+
+    def stay(self, room: BlockRoom, columns: np.ndarray) -> bool:
+        """Whether ways stay free when columns, int [N, 2], are taken too."""
+        if not len(columns):
+            return True
+        box = (slice(room.low[0], room.high[0]), slice(room.low[1], room.high[1]))
+        after = self.taken[room.number].copy()
+        after[tuple(columns.T)] = True
+        free = ~after[box]
+        # Places of the body's first corner, then all columns that it covers from there.
+        places = _eroded(free, self.body)
+        reached = self._reached(room, places)
+        if reached is None or reached.sum() < KEPT_PLACES * places.sum():
+            return False
+        return bool(_grown(reached, self.body).sum() >= KEPT_SHARE * free.sum())
+
+    def take(self, room: BlockRoom, columns: np.ndarray) -> None:
+        """Take columns, int [N, 2]."""
+        self.taken[room.number][tuple(columns.T)] = True
+
+    def free(self, room: BlockRoom) -> np.ndarray:
+        """Return the columns, bool [X, Y] of the house, that nothing stands on."""
+        return ~self.taken[room.number]
+
+    def _reached(self, room: BlockRoom, places: np.ndarray) -> np.ndarray | None:
+        """Return those of the places of a room's box that hang together with all ends, or None."""
+        parts, count = connected_parts(places, corners=False)
+        ends = np.array(self.ends[room.number]).reshape(-1, 2) - room.low
+        if not count:
+            return None
+        numbers = np.unique(parts[tuple(ends.T)]) if len(ends) else np.array([_largest(parts)])
+        if len(numbers) != 1 or numbers[0] == 0:
+            return None
+        return parts == numbers[0]
+
+
+def _largest(parts: np.ndarray) -> int:
+    return int(np.bincount(parts[parts > 0]).argmax())
+
+
+def _eroded(free: np.ndarray, body: int) -> np.ndarray:
+    places = free
+    for axis in (0, 1):
+        places = np.logical_and.reduce(_windows(places, body, axis, before=0))
+    return places
+
+
+def _grown(places: np.ndarray, body: int) -> np.ndarray:
+    covered = places
+    for axis in (0, 1):
+        covered = np.logical_or.reduce(_windows(covered, body, axis, before=body - 1))
+    return covered
+
+
+def _windows(mask: np.ndarray, body: int, axis: int, before: int) -> list[np.ndarray]:
+    """Return a mask shifted by 0 to ``body`` - 1 along an axis, nothing beyond its ends."""
+    size = mask.shape[axis]
+    shape = [side + (body - 1) * (a == axis) for a, side in enumerate(mask.shape)]
+    padded, rest = np.zeros(shape, bool), (slice(None),) * axis
+    padded[(*rest, slice(before, before + size))] = mask
+    return [padded[(*rest, slice(n, n + size))] for n in range(body)]
+
+
+def _before(gap: BlockGap, floor: np.ndarray, body: int) -> tuple[int, int]:
+    """Return the least column of a person who stands in a room, bool [X, Y], before a gap."""
+    across, along = gap.turn % 2, 1 - gap.turn % 2
+    corner, beyond = [0, 0], [0, 0]
+    corner[along] = (gap.low[along] + gap.high[along] - body) // 2
+    beyond[along], beyond[across] = corner[along], gap.high[across]
+    is_beyond = beyond[across] < floor.shape[across] and floor[tuple(beyond)]
+    corner[across] = gap.high[across] if is_beyond else gap.low[across] - body
+    return corner[0], corner[1]

@@ -1,0 +1,331 @@
+"""Designs of the library are put into rooms, block by block, where they fit and shut no way.
+
+A thing of a metric layout keeps its place to within two blocks, its front, and the wall that it
+stands at; other things look for a place along a wall, in the middle, or on something.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.furniture import Idiom, template
+from world2minecraft.furniture.block_designs import block_size, laid
+from world2minecraft.procgen.rooms.place import Item
+from world2minecraft.procgen.worlds.canvas import WorldCanvas
+from world2minecraft.procgen.worlds.clear_paths import Ways
+from world2minecraft.procgen.worlds.furniture_choice import designs_for, dressed
+from world2minecraft.procgen.worlds.house import BlockHouse, BlockRoom
+from world2minecraft.procgen.worlds.styles import RoomLook
+
+AT_WALL_M = 0.12  # What stands nearer to a wall than this stands at it.
+NUDGES = sorted(
+    ((a, b) for a in range(-2, 3) for b in range(-2, 3)),
+    key=lambda step: (abs(step[0]) + abs(step[1]), step),
+)
+FLAT = ("rug",)  # Families that one walks over.
+PLACES_TRIED = 24
+Corner = tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Thing:
+    """A piece of furniture in its place: its box of blocks of the house and its front."""
+
+    instance: int
+    design: str
+    class_id: int
+    room: int
+    low: Corner
+    high: Corner
+    quarter_turns: int
+
+
+@dataclass
+class Furnisher:
+    """Puts things into one room after another of a house."""
+
+    canvas: WorldCanvas
+    house: BlockHouse
+    looks: tuple[RoomLook, ...]
+    ways: Ways
+    things: list[Thing] = field(default_factory=list)
+    count: int = 0
+    kept: np.ndarray = field(init=False)  # bool [X, Y, Z] of the canvas: must stay air.
+
+    def __post_init__(self):
+        self.kept = np.zeros(self.canvas.states.shape, bool)
+
+    def next_instance(self) -> int:
+        """Return a number that no thing has yet."""
+        self.count += 1
+        return self.count
+
+    def of(self, instance: int) -> Thing:
+        """Return a thing by its number."""
+        return next(thing for thing in self.things if thing.instance == instance)
+
+    def put_item(self, item: Item, room: BlockRoom, rng: np.random.Generator) -> int:
+        """Set a design that stands for a thing of the metric layout; 0 where none fits there."""
+        names = designs_for(item.model.name, item.model.size_m)
+        turns = round(item.yaw_deg / 90) % 4
+        for number in rng.permutation(len(names)):
+            name = names[int(number)]
+            found = self.design(name, room, turns, rng, item.model.size_m)
+            if found is None:
+                continue
+            low = self._corner(item, found, room)
+            if template(name).mount == "floor":
+                low[2] = self._on(low, found)
+            if placed := self.put(name, found, low, room, turns, NUDGES):
+                return placed
+        return 0
+
+    def design(
+        self,
+        name: str,
+        room: BlockRoom,
+        turns: int,
+        rng: np.random.Generator,
+        size_m: Sequence[float] | None = None,
+    ) -> Idiom | None:
+        """Return a design turned and in the room's materials; its size is drawn where none is."""
+        made = template(name)
+        if size_m is None:
+            share = rng.triangular(-1, 0, 1)
+            size_m = [
+                span.typical + share * (span.maximum - span.typical if share > 0
+                else span.typical - span.minimum) for span in made.size_m
+            ]  # fmt: skip
+        size = np.array([span.clip(v) for span, v in zip(made.size_m, size_m, strict=True)])
+        found = laid(made, block_size(size, self.house.blocks_per_metre), None, turns)
+        return None if found is None else dressed(found, made, self.looks[room.number], rng)
+
+    def put_at_wall(
+        self,
+        names: Sequence[str],
+        room: BlockRoom,
+        rng: np.random.Generator,
+        *,
+        above: int | None = None,
+        size_m: Sequence[float] | None = None,
+    ) -> int:
+        """Set one of some designs with its back to a wall that has nothing in it there.
+
+        Args:
+            names: designs, tried in a drawn order.
+            room: where.
+            rng: draws the design, its size and its place.
+            above: layers over the floor, for what hangs.
+            size_m: its size; drawn where none is given.
+
+        Returns:
+            The thing's number; 0 where there is no place.
+        """
+        for number in rng.permutation(len(names)):
+            name = names[int(number)]
+            for turns in rng.permutation(4).tolist():
+                found = self.design(name, room, turns, rng, size_m)
+                if found is None:
+                    break
+                z = room.ground + (above or 0)
+                for x, y in self._along(found, room, turns, rng):
+                    fits = self._has_wall(found, (x, y, z), turns)
+                    fits = fits and self._front_is_free(found, (x, y, z), room, turns)
+                    if fits and (placed := self.put(name, found, [x, y, z], room, turns)):
+                        return placed
+        return 0
+
+    def put_free(
+        self,
+        names: Sequence[str],
+        room: BlockRoom,
+        rng: np.random.Generator,
+        *,
+        size_m: Sequence[float] | None = None,
+        tries: int = PLACES_TRIED,
+    ) -> int:
+        """Set one of some designs anywhere on the floor, nearest to the middle of places drawn."""
+        name = names[int(rng.integers(len(names)))]
+        turns = int(rng.integers(4))
+        found = self.design(name, room, turns, rng, size_m)
+        if found is None:
+            return 0
+        middle = [(a + b) / 2 for a, b in zip(room.low, room.high, strict=True)]
+        most = [room.high[0] - found.size[0], room.high[1] - found.size[2]]
+        if most[0] < room.low[0] or most[1] < room.low[1]:
+            return 0
+        spots = np.stack(
+            [rng.integers(room.low[n], most[n] + 1, size=tries) for n in (0, 1)], axis=1
+        )
+        off = spots + np.array([found.size[0], found.size[2]]) / 2 - middle
+        for n in np.argsort(np.hypot(*off.T), kind="stable"):
+            x, y = spots[n].tolist()
+            if placed := self.put(name, found, [x, y, room.ground], room, turns):
+                return placed
+        return 0
+
+    def put_on(self, names: Sequence[str], thing: Thing, rng: np.random.Generator) -> int:
+        """Set one of some small designs on top of a thing; 0 where nothing is free there."""
+        room = self.house.rooms[thing.room]
+        name = names[int(rng.integers(len(names)))]
+        found = self.design(name, room, thing.quarter_turns, rng)
+        if found is None:
+            return 0
+        spots = [
+            (x, y)
+            for x in range(thing.low[0], thing.high[0] - found.size[0] + 1)
+            for y in range(thing.low[1], thing.high[1] - found.size[2] + 1)
+        ]
+        for n in rng.permutation(len(spots)).tolist():
+            place = [*spots[n], thing.high[2]]
+            if self._carries(place, found, thing) and (
+                placed := self.put(name, found, place, room, thing.quarter_turns)
+            ):
+                return placed
+        return 0
+
+    def put_flat(
+        self,
+        name: str,
+        room: BlockRoom,
+        rng: np.random.Generator,
+        middle: Sequence[float],
+        *,
+        turns: int | None = None,
+        size_m: Sequence[float] | None = None,
+    ) -> int:
+        """Lay a rug around a place, under what stands there already; drawn where not said."""
+        turns = int(rng.integers(4)) if turns is None else turns
+        found = self.design(name, room, turns, rng, size_m)
+        if found is None:
+            return 0
+        low = [round(middle[0] - found.size[0] / 2), round(middle[1] - found.size[2] / 2)]
+        cells = self._cells(found) + np.array([*low, room.ground])
+        inside = room.floor(self.house.size)
+        within = (cells[:, :2] >= room.low) & (cells[:, :2] < room.high)
+        good = np.asarray(within.all(axis=1))
+        good[good] &= inside[tuple(cells[good, :2].T)]
+        good[good] &= self.canvas.states[tuple((cells[good] + self.canvas.at(0, 0, 0)).T)] == 0
+        if good.sum() < 0.3 * len(good):
+            return 0
+        blocks = tuple(b for b, keep in zip(found.blocks, good, strict=True) if keep)
+        return self._set(name, Idiom(blocks, found.size), cells[good], room, turns)
+
+    def put(
+        self,
+        name: str,
+        found: Idiom,
+        low: Sequence[int],
+        room: BlockRoom,
+        turns: int,
+        nudges: Sequence[tuple[int, int]] = ((0, 0),),
+    ) -> int:
+        """Set a design at a place or beside it where all its blocks are free; its number, or 0."""
+        cells, inside = self._cells(found), room.floor(self.house.size)
+        for dx, dy in nudges:
+            at = cells + np.array([low[0] + dx, low[1] + dy, low[2]])
+            if self._is_free(at, room, inside):
+                stands = self.ways.stands(room, at)
+                if self.ways.stay(room, stands):
+                    self.ways.take(room, stands)
+                    return self._set(name, found, at, room, turns)
+        return 0
+
+    def _cells(self, found: Idiom) -> np.ndarray:
+        """Return the cells of a design's blocks, x y z up from its least, int [N, 3]."""
+        offsets = np.array([block.offset for block in found.blocks])
+        deep = found.size[2]
+        return np.stack([offsets[:, 0], deep - 1 - offsets[:, 2], offsets[:, 1]], axis=1)
+
+    def _is_free(self, at: np.ndarray, room: BlockRoom, inside: np.ndarray) -> bool:
+        flat = at[:, :2]
+        if (flat < room.low).any() or (flat >= room.high).any():
+            return False
+        if at[:, 2].min() < room.ground or at[:, 2].max() >= room.ground + room.height:
+            return False
+        own = tuple((at + self.canvas.at(0, 0, 0)).T)
+        free = (self.canvas.states[own] == 0) & ~self.kept[own]
+        return bool(free.all() and inside[tuple(flat.T)].all())
+
+    def _set(self, name: str, found: Idiom, at: np.ndarray, room: BlockRoom, turns: int) -> int:
+        instance, class_id = self.next_instance(), template(name).class_id
+        for (x, y, z), block in zip(at.tolist(), found.blocks, strict=True):
+            self.canvas.set(self.canvas.at(x, y, z), block.state, class_id, instance, name)
+        low, high = at.min(axis=0).tolist(), (at.max(axis=0) + 1).tolist()
+        thing = Thing(instance, name, class_id, room.number, tuple(low), tuple(high), turns)
+        self.things.append(thing)
+        return instance
+
+    def _corner(self, item: Item, found: Idiom, room: BlockRoom) -> list[int]:
+        """Return the least block of a thing's design, x y z of the house."""
+        scale = self.house.blocks_per_metre
+        box, cell = item.box_m, self.house.plan.cells[room.number]
+        wide, tall, deep = found.size
+        corner = []
+        for axis, side in ((0, wide), (1, deep)):
+            start, end = cell.rect[axis], cell.rect[axis + 2]
+            low, high = room.low[axis], room.high[axis]
+            middle = low + ((box[axis] + box[axis + 3]) / 2 - start) * scale
+            place = round(middle - side / 2)
+            if box[axis] - start < AT_WALL_M:
+                place = low
+            elif end - box[axis + 3] < AT_WALL_M:
+                place = high - side
+            corner.append(int(np.clip(place, low, max(low, high - side))))
+        floor_m = cell.storey * self.house.plan.pitch_m
+        above = round((box[2] - floor_m) * scale)
+        return [*corner, room.ground + min(above, max(room.height - tall, 0))]
+
+    def _on(self, low: list[int], found: Idiom) -> int:
+        """Return the layer on the highest thing under a design's middle, not over its place."""
+        x, y, _ = self.canvas.at(low[0] + found.size[0] // 2, low[1] + found.size[2] // 2, 0)
+        top = self.canvas.at(0, 0, low[2] + 1)[2]
+        filled = np.flatnonzero(self.canvas.states[x, y, : top + 1])
+        return int(filled.max()) + 1 - self.canvas.at(0, 0, 0)[2] if len(filled) else low[2]
+
+    def _carries(self, place: list[int], found: Idiom, thing: Thing) -> bool:
+        """Whether each block of a design's foot would stand on a block of the thing."""
+        foot = self._cells(found)
+        foot = foot[foot[:, 2] == 0] + np.array(place) - [0, 0, 1]
+        at = tuple((foot + self.canvas.at(0, 0, 0)).T)
+        return bool((self.canvas.instance[at] == thing.instance).all())
+
+    def _along(
+        self, found: Idiom, room: BlockRoom, turns: int, rng: np.random.Generator
+    ) -> list[tuple[int, int]]:
+        """Return places at the wall behind a front, in a drawn order, corners rather first."""
+        wide, deep = found.size[0], found.size[2]
+        most = room.high[0] - wide, room.high[1] - deep
+        axis = 1 - turns % 2  # That the wall runs along.
+        if most[0] < room.low[0] or most[1] < room.low[1]:
+            return []
+        at = room.low[1 - axis] if turns < 2 else most[1 - axis]
+        spots = np.arange(room.low[axis], most[axis] + 1)
+        order = rng.permutation(spots)[:PLACES_TRIED].tolist()
+        return [(at, one) if axis == 1 else (one, at) for one in order]
+
+    def _has_wall(self, found: Idiom, low: Corner, turns: int) -> bool:
+        """Whether all of a design's back is before bare wall."""
+        wide, tall, deep = found.size
+        high = (low[0] + wide, low[1] + deep, low[2] + tall)
+        axis = turns % 2
+        a, b = list(low), list(high)
+        a[axis] = low[axis] - 1 if turns < 2 else high[axis]
+        b[axis] = a[axis] + 1
+        behind = self.canvas.semantic[self.canvas.box((a[0], a[1], a[2]), (b[0], b[1], b[2]))]
+        return bool((behind == SemanticClass.WALL).all())
+
+    def _front_is_free(self, found: Idiom, low: Corner, room: BlockRoom, turns: int) -> bool:
+        """Whether nothing stands right before a design's front."""
+        wide, tall, deep = found.size
+        high = (low[0] + wide, low[1] + deep, low[2] + tall)
+        axis = turns % 2
+        a, b = list(low), list(high)
+        a[axis] = high[axis] if turns < 2 else low[axis] - 1
+        b[axis] = a[axis] + 1
+        if a[axis] < room.low[axis] or b[axis] > room.high[axis]:
+            return False
+        box = self.canvas.box((a[0], a[1], a[2]), (b[0], b[1], b[2]))
+        return not self.canvas.states[box].any()

@@ -1,0 +1,159 @@
+"""Which designs of the furniture library may stand for a thing of a layout, and in what material.
+
+A layout knows a sofa; the library has eleven. One is drawn, so that many houses show all of them,
+and its woods, cloths and stones are those of the room.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from world2minecraft.furniture.block_designs import Idiom
+from world2minecraft.furniture.materials import (
+    Material,
+    Swatch,
+    kinds,
+    restated,
+    shape_of,
+    swatches,
+)
+from world2minecraft.furniture.template import Template
+from world2minecraft.procgen.worlds.styles import RoomLook
+
+# A thing's name in a layout -> the designs that may stand for it.
+DESIGNS: dict[str, tuple[str, ...]] = {
+    "armchair": (
+        "armchair", "armchair_leather", "armchair_white", "armchair_wing", "armchair_wooden_arms",
+    ),
+    "bath_cabinet": ("wall_cabinet_glass", "wall_cabinet", "wall_mirror"),
+    "bathtub": ("bathtub", "bathtub_freestanding"),
+    "bed": (
+        "double_bed", "double_bed_boxed", "double_bed_king", "double_bed_low", "poster_bed",
+    ),
+    "narrow_bed": (
+        "single_bed", "single_bed_boxed", "single_bed_footboard", "single_bed_white", "bunk_bed",
+        "bunk_bed_pine",
+    ),
+    "bench": ("bench", "bench_stone", "ottoman", "blanket_chest"),
+    "bin": ("pedal_bin", "laundry_basket"),
+    "bookshelf": ("bookcase", "bookcase_low", "cube_shelf", "display_cabinet"),
+    "box": ("box", "crate"),
+    "cat_tree": ("coat_stand", "pantry_rack"),
+    "chair": (
+        "chair", "chair_cafe", "chair_carver", "chair_high_back", "chair_padded", "chair_white",
+    ),
+    "child_chair": ("chair_child", "stool", "stool_padded"),
+    "coats": ("coat_stand", "standing_mirror"),
+    "coffee_table": (
+        "coffee_table", "coffee_table_round", "coffee_table_stone", "coffee_table_white",
+    ),
+    "counter": ("counter",),
+    "cupboard": ("cabinet", "display_cabinet", "chest_of_drawers", "grandfather_clock"),
+    "curtain": ("curtain_single", "curtain_sheer"),
+    "desk": ("desk", "desk_drawers", "desk_partners", "desk_white"),
+    "dining_table": (
+        "dining_table", "dining_table_dark", "dining_table_stone", "dining_table_white",
+        "table_trestle", "dining_table_steel",
+    ),
+    "dresser": ("chest_of_drawers", "sideboard", "vanity", "cabinet"),
+    "easel": ("standing_mirror", "bust"),
+    "filing_cabinet": ("filing_cabinet", "locker"),
+    "floor_lamp": ("lamp", "paper_lamp", "arc_lamp"),
+    "floor_vase": ("vase", "plant_flowering", "bust"),
+    "fridge": ("fridge", "fridge_double"),
+    "gym_ball": ("ottoman",),
+    "hood": ("range_hood",),
+    "kitchen_table": (
+        "round_table", "round_table_dark", "round_table_white", "table_bistro", "table_bar",
+        "dining_table", "dining_table_steel", "kitchen_island",
+    ),
+    "laundry": ("laundry_basket",),
+    "microwave": ("microwave",),
+    "mirror": ("wall_mirror",),
+    "monitor": ("monitor", "monitor_wide"),
+    "nightstand": ("nightstand", "table_side"),
+    "office_chair": ("office_chair", "office_chair_executive", "office_chair_mesh"),
+    "oven": ("stove", "dishwasher", "oven_tower"),
+    "pendant": ("pendant_lamp", "globe_lamp", "lantern_lamp"),
+    "picture": ("picture", "portrait", "wall_mirror"),
+    "plant": ("plant", "plant_flowering", "indoor_tree", "palm", "fir", "cactus", "bonsai"),
+    "play_table": ("table_side", "coffee_table", "coffee_table_round"),
+    "potted_plant": ("fern", "flowers", "bonsai"),
+    "printer": ("microwave",),
+    "rocking_horse": ("stool_padded", "chair_child"),
+    "rug": ("rug", "rug_checked", "rug_round", "rug_striped"),
+    "sculpture": ("bust", "vase"),
+    "shoe_cabinet": ("shoe_rack", "blanket_chest", "table_console", "cabinet"),
+    "shower": ("shower",),
+    "sideboard": ("sideboard", "bookcase_low", "chest_of_drawers"),
+    "sink_counter": ("sink_unit",),
+    "sofa": (
+        "sofa", "sofa_armless", "sofa_chesterfield", "sofa_leather", "sofa_two_seats",
+        "sofa_white", "sofa_wooden_arms",
+    ),
+    "stool": ("stool", "stool_padded", "stool_lab", "stool_piano", "stool_bar"),
+    "table_lamp": ("table_lamp", "desk_lamp", "candles"),
+    "teddy": ("box",),
+    "toilet": ("toilet",),
+    "towel": ("towel_radiator",),
+    "toy_shelf": ("cube_shelf", "bookcase_low"),
+    "tv": ("wall_tv", "tv_on_foot", "tv_on_foot", "tv_tube"),
+    "tv_board": ("tv_stand", "sideboard"),
+    "vase": ("flowers", "fern", "candles"),
+    "wall_cabinet": ("wall_cabinet", "wall_cabinet_glass", "wall_shelf"),
+    "wardrobe": ("wardrobe", "wardrobe_panels", "wardrobe_sliding"),
+    "washing_machine": ("washing_machine", "washer_dryer"),
+    "washstand": ("pedestal_basin", "vanity", "sink_unit"),
+    "whiteboard": ("projector_screen",),
+}  # fmt: skip
+OF_CHOICE = 0.8  # How often a material that follows the room is the room's first.
+
+
+def designs_for(name: str, size_m: Sequence[float]) -> tuple[str, ...]:
+    """Return the designs that may stand for a thing of a layout; none where it is too small."""
+    depth, width, height = size_m
+    if name == "bed" and min(depth, width) < 1.3:
+        name = "narrow_bed"
+    if name in ("chair", "stool") and height < 0.62 and width < 0.4:
+        name = "child_chair"
+    return DESIGNS.get(name, ())
+
+
+def dressed(design: Idiom, template: Template, look: RoomLook, rng: np.random.Generator) -> Idiom:
+    """Return a design with those of its materials in the room's that take a colour."""
+    blocks = list(design.blocks)
+    values: dict[str, str] = {}
+    for role in sorted({block.role for block in blocks}):
+        material = template.materials.get(role)
+        if material is None or not material.takes_colour or material.kind not in kinds():
+            continue
+        own = [n for n, block in enumerate(blocks) if block.role == role]
+        shapes = frozenset(
+            shape for n in own if (shape := shape_of(blocks[n].state, material.kind))
+        )
+        value = values.setdefault(material.kind, _value(material, look, rng))
+        swatch = next((s for s in swatches_of(material.kind, shapes) if s.value == value), None)
+        for n in own:
+            shape = shape_of(blocks[n].state, material.kind)
+            if shape and swatch:
+                blocks[n] = blocks[n]._replace(state=restated(blocks[n].state, shape, swatch))
+    return Idiom(tuple(blocks), design.size, design.materials)
+
+
+def swatches_of(kind: str, shapes: frozenset[str]) -> tuple[Swatch, ...]:
+    """Return the materials of a kind that have all the shapes, those not chosen by colour too."""
+    offered = {s.value: s for s in swatches(kind, shapes)}
+    for value, blocks in kinds()[kind].blocks.items():
+        if value not in offered and shapes <= set(blocks):
+            offered[value] = Swatch(kind, value, blocks["full"])
+    return tuple(offered.values())
+
+
+def _value(material: Material, look: RoomLook, rng: np.random.Generator) -> str:
+    first = rng.random() < OF_CHOICE
+    return {
+        "wood": look.wood if first else look.second_wood,
+        "cloth": look.cloth if first else look.second_cloth,
+        "paint": look.cloth if first else look.second_cloth,
+        "stone": look.stone,
+    }.get(material.kind, material.value)

@@ -1,0 +1,121 @@
+"""Worlds of houses on disk: a folder a house, with the world, its scene and its designs."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.files import write_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.formats.layout import write_layouts
+from world2minecraft.formats.scene import scene_of, write_scene
+from world2minecraft.minecraft.versions import DEFAULT_VERSION, game_version
+from world2minecraft.minecraft.worlds.world_writer import write_world
+from world2minecraft.procgen.worlds.layouts import house_layouts
+from world2minecraft.procgen.worlds.making import HouseWorld, generate_world
+
+ROOMS, STOREYS_SHARE = (4, 9), 0.35  # 156 houses have about 1,000 rooms.
+WARES_A_HOUSE = 37  # By so many the order of wares is further on from house to house.
+
+
+def write_house(
+    made: HouseWorld, folder: str | Path, *, name: str, mc_version: str = DEFAULT_VERSION
+) -> None:
+    """Write ``world/``, ``scene.json``, ``scene.npz``, ``designs.json`` and what stands where.
+
+    ``layout.json`` has the rooms and their openings, ``house.json`` the style, the light, the kinds
+    of rooms and the furniture.
+
+    Raises:
+        OutputError: the folder cannot be written. UnknownNameError: no such version.
+    """
+    target, version = Path(folder), game_version(mc_version)
+    spawn = made.spawn
+    write_world(
+        made.volume,
+        target / "world",
+        name=name,
+        spawn=spawn.position,
+        spawn_yaw_deg=spawn.yaw_deg,
+        version=version,
+        hour=float(made.light["hour"]),
+    )
+    scene = scene_of(
+        made.volume,
+        mc_version=version.name,
+        data_version=version.data_version,
+        spawn=spawn.position,
+        spawn_yaw_deg=spawn.yaw_deg,
+        design=made.design,
+        designs=made.designs,
+        light=made.light,
+    )
+    write_scene(target, scene)
+    write_layouts(target / "layout.json", house_layouts(made.house, made.things))
+    write_json(target / "house.json", _facts(made))
+
+
+def _facts(made: HouseWorld) -> dict[str, Any]:
+    layouts = house_layouts(made.house, made.things)
+    rooms = [
+        {"kind": room.kind, "storey": room.storey, "name": layout.name}
+        for room, layout in zip(made.house.rooms, layouts, strict=True)
+    ]
+    things = [
+        {
+            "instance": thing.instance,
+            "design": thing.design,
+            "class": CLASS_NAMES[thing.class_id],
+            "room": thing.room,
+            "center_m": [round(float(v), 4) for v in stated.center_m],
+            "size_m": [round(float(v), 4) for v in stated.size_m],
+            "yaw_deg": stated.yaw_deg,
+        }
+        for layout, room in zip(layouts, made.house.rooms, strict=True)
+        for thing, stated in zip(
+            (one for one in made.things if one.room == room.number), layout.objects, strict=True
+        )
+    ]
+    return {"style": made.style, "light": made.light, "rooms": rooms, "things": things}
+
+
+def write_worlds(
+    folder: str | Path,
+    houses: int,
+    seed: int,
+    *,
+    style: str | None = None,
+    progress: Progress = silent,
+) -> list[Path]:
+    """Write ``house_0001`` to ``house_N`` below a folder; a longer series begins with a shorter.
+
+    Args:
+        folder: where; made when it is not there.
+        houses: how many.
+        seed: of the series.
+        style: of all houses; each draws its own where None.
+        progress: told of each house.
+
+    Raises:
+        OutputError: the folder cannot be written. UnknownNameError: no style has this name.
+    """
+    target, written = Path(folder), []
+    for number in range(1, houses + 1):
+        progress("houses", number - 1, houses, f"house_{number:04d}")
+        name = f"house_{number:04d}"
+        made = house_of(seed, number, style=style)
+        write_house(made, target / name, name=name.replace("_", " "))
+        written.append(target / name)
+    progress("houses", houses, houses)
+    return written
+
+
+def house_of(seed: int, number: int, *, style: str | None = None) -> HouseWorld:
+    """Return one house of a series, by its number from 1; its style is drawn where None."""
+    rng = np.random.default_rng([seed, number])
+    rooms = int(rng.integers(ROOMS[0], ROOMS[1] + 1))
+    storeys = 2 if rng.random() < STOREYS_SHARE else 1
+    deck = (seed, number * WARES_A_HOUSE)
+    own = int(rng.integers(1 << 31))
+    return generate_world(own, rooms=rooms, storeys=storeys, style=style, deck=deck)
