@@ -25,16 +25,16 @@ from scipy import ndimage
 
 from world2minecraft.core.classes import CLASS_NAMES, UNKNOWN
 from world2minecraft.core.files import write_json
+from world2minecraft.evaluation.metrics.occupancy import (
+    OccupancyCounts,
+    count_occupancy,
+    iou_of_precision_recall,
+)
 from world2minecraft.learn.completion.samples import (
     Sample,
     make_samples,
     read_samples,
     write_samples,
-)
-from world2minecraft.metrics.occupancy import (
-    OccupancyCounts,
-    count_occupancy,
-    iou_of_precision_recall,
 )
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
 from world2minecraft.reconstruction.semantics.completion_net import CompletionModel, likeliest

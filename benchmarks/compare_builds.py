@@ -17,9 +17,9 @@ from PIL import Image, ImageDraw, ImageFont
 from rich.console import Console
 
 from world2minecraft.core.files import read_json, write_bytes
+from world2minecraft.evaluation.report.comparison_pictures import as_png
+from world2minecraft.evaluation.report.scene import read_built
 from world2minecraft.rendering.preview import preview
-from world2minecraft.report.pictures import as_png
-from world2minecraft.report.scene import read_built
 
 PREVIEW_PX = (960, 720)
 GAP_PX, CAPTION_PX = 12, 46

@@ -22,11 +22,11 @@ from sklearn.linear_model import LogisticRegression
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import COMPLETED, OBSERVED, FusedEvidence, OccupancyGrid
-from world2minecraft.evaluate.frames import used_frames
-from world2minecraft.evaluate.score import TrueRoom, see_truth
-from world2minecraft.evaluate.truth import read_truth
+from world2minecraft.evaluation.metrics.calibration import CalibrationCounts, count_calibration
+from world2minecraft.evaluation.scoring.score import TrueRoom, see_truth
+from world2minecraft.evaluation.scoring.truth import read_truth
+from world2minecraft.evaluation.scoring.used_frames import used_frames
 from world2minecraft.formats.evidence import read_evidence
-from world2minecraft.metrics.calibration import CalibrationCounts, count_calibration
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, trials, write_trial
 from world2minecraft.reconstruction.fusion import CleanParameters, close_structure, remove_floaters
 from world2minecraft.reconstruction.fusion import extract_grid as read_out

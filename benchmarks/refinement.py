@@ -3,7 +3,7 @@
 Everything is expressed in the run's own room frame. A scene is done when none of these remains:
 
 - objects that match no true one, and true ones without a match: a match has the same class and a
-  centre within 0.3 m (``metrics.objects``), for all true objects including unseen ones;
+  centre within 0.3 m (``evaluation.metrics.objects``), for all true objects including unseen ones;
 - matched chairs, sofas and beds with a wrong orientation, of the object or of its furniture;
 - floaters: parts of the occupancy, connected by corners, without structure or of at most 30 cells;
 - planes (the floor, the ceiling, each wall of the true room) of which 2 % or more are holes: no
@@ -29,19 +29,19 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Layout, LayoutObject, OccupancyGrid, SceneObject
 from world2minecraft.editing.scene import SceneDraft, Tools, parse_command, runs_of_cells
 from world2minecraft.editing.scene.planes import find_planes
-from world2minecraft.evaluate.frames import truth_of_run, used_frames
-from world2minecraft.evaluate.layout import in_room
-from world2minecraft.evaluate.score import see_truth
-from world2minecraft.evaluate.truth import Truth, read_instances
-from world2minecraft.formats.room import read_room
-from world2minecraft.furniture import TEMPLATES, template
-from world2minecraft.geometry.connected_components import connected_parts
-from world2minecraft.metrics.objects import (
+from world2minecraft.evaluation.metrics.objects import (
     TURN_TOLERANCE_DEG,
     TURNED_CLASSES,
     match_objects,
     turn_between_deg,
 )
+from world2minecraft.evaluation.scoring.layout import in_room
+from world2minecraft.evaluation.scoring.score import see_truth
+from world2minecraft.evaluation.scoring.truth import Truth, read_instances
+from world2minecraft.evaluation.scoring.used_frames import truth_of_run, used_frames
+from world2minecraft.formats.room import read_room
+from world2minecraft.furniture import TEMPLATES, template
+from world2minecraft.geometry.connected_components import connected_parts
 
 HOLE_SHARE = 0.02
 NEAR_CELLS = 2  # A wall is found to a cell, and a cell of it lies half before its face.

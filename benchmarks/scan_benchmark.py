@@ -23,9 +23,9 @@ from rich.console import Console
 from benchmarks.check_faithful import CLEAN, chosen_trials, rows_table, stages_table
 from world2minecraft.core.errors import InputError, UsageError, World2MinecraftError
 from world2minecraft.core.files import read_json, write_json
-from world2minecraft.evaluate import evaluate_reconstruction
-from world2minecraft.evaluate.foreign import evaluate_foreign, foreign_file
-from world2minecraft.evaluate.stages import stage_losses
+from world2minecraft.evaluation.scoring import evaluate_reconstruction
+from world2minecraft.evaluation.scoring.foreign_method import evaluate_foreign, foreign_file
+from world2minecraft.evaluation.scoring.stages import stage_losses
 from world2minecraft.procgen.benchmark_trials import DIFFICULTIES, Trial, write_trial
 
 CAPTURES, TRUTHS = "captures", "truth"

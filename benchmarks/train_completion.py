@@ -16,6 +16,7 @@ import numpy as np
 import torch
 from safetensors.torch import load_file
 
+from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_occupancy
 from world2minecraft.learn.completion.augment import cropped
 from world2minecraft.learn.completion.export import export_completion
 from world2minecraft.learn.completion.network import MULTIPLE, CompletionNet
@@ -23,7 +24,6 @@ from world2minecraft.learn.completion.pool import SamplePool
 from world2minecraft.learn.completion.rooms import FIRST_SEED
 from world2minecraft.learn.completion.samples import Sample, read_samples
 from world2minecraft.learn.completion.training import CompletionRun, Trainer
-from world2minecraft.metrics.occupancy import OccupancyCounts, count_occupancy
 from world2minecraft.reconstruction.semantics.completion_channels import network_input
 
 

@@ -22,13 +22,16 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from tests.metrics.paper_occupancy import MINECRAFTOCC, row
+from tests.evaluation.metrics.paper_occupancy import MINECRAFTOCC, row
 
 from world2minecraft.cli.progress import shown
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import read_json, write_json, write_text
 from world2minecraft.core.progress import Progress
 from world2minecraft.dataset.importers import open_occupancy
+from world2minecraft.evaluation.metrics.confidence_intervals import micro_figures
+from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts
+from world2minecraft.evaluation.metrics.protocols import PROTOCOLS, ProtocolCounts, count_frame
 from world2minecraft.learn.config import PRESETS, DataSource, RunConfig
 from world2minecraft.learn.data.cache import Frames
 from world2minecraft.learn.data.opening import CachePlace, open_frames, open_run_data, rule_of
@@ -44,9 +47,6 @@ from world2minecraft.learn.training import (
     trained_network,
 )
 from world2minecraft.learn.validation import said_labels
-from world2minecraft.metrics.intervals import micro_figures
-from world2minecraft.metrics.occupancy import OccupancyCounts
-from world2minecraft.metrics.protocols import PROTOCOLS, ProtocolCounts, count_frame
 
 SCENE_COUNTS = "scene_counts.json"
 

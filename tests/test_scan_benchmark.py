@@ -10,8 +10,8 @@ from benchmarks import scan_benchmark
 from world2minecraft.capture.sources import find_capture
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.files import read_json
-from world2minecraft.evaluate import read_truth
-from world2minecraft.metrics.truth import carry_truth
+from world2minecraft.evaluation.metrics.truth import carry_truth
+from world2minecraft.evaluation.scoring import read_truth
 from world2minecraft.procgen.benchmark_trials import trial_named
 
 NAME, VOXEL_M = "noise-500", 0.08

@@ -9,13 +9,13 @@ from typing import Any
 
 from world2minecraft.core.archives import AnyPath
 from world2minecraft.core.progress import Progress, silent
+from world2minecraft.evaluation.report import write_brief_report, write_report
+from world2minecraft.evaluation.report.jit_warmup import pictures_compiled_meanwhile
 from world2minecraft.reconstruction.floorplans import PlanWorld, build_plan
 from world2minecraft.reconstruction.opening import open_prepared
 from world2minecraft.reconstruction.parameters import Parameters
 from world2minecraft.reconstruction.pipeline import STAGES, reconstruct, registered_before
 from world2minecraft.reconstruction.resume import kept_before
-from world2minecraft.report import write_brief_report, write_report
-from world2minecraft.report.ahead import pictures_compiled_meanwhile
 
 
 def make_run(

@@ -8,12 +8,12 @@ from world2minecraft.construction import write_build
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.types import AIR, BlockVolume
 from world2minecraft.editing.journal import write_edits
+from world2minecraft.evaluation.report.scene import read_built
 from world2minecraft.minecraft.nbt import pack_gzip, write_nbt
 from world2minecraft.minecraft.signs import sign_entity
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.level_dat import level_data
 from world2minecraft.minecraft.worlds.world_reader import read_level, read_world
-from world2minecraft.report.scene import read_built
 
 SIGN = "minecraft:oak_sign[rotation=0,waterlogged=false]"
 PALETTE = (AIR, SIGN, "minecraft:oak_planks", "minecraft:red_concrete", "minecraft:white_concrete")

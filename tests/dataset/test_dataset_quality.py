@@ -19,7 +19,12 @@ from world2minecraft.dataset.quality import (
     size_of,
 )
 from world2minecraft.dataset.store import SampleFiles, write_store
-from world2minecraft.metrics.image_quality import laplacian_variance, niqe, niqe_model, piqe
+from world2minecraft.evaluation.metrics.image_quality import (
+    laplacian_variance,
+    niqe,
+    niqe_model,
+    piqe,
+)
 
 OWN = niqe_model("own")
 

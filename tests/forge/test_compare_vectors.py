@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.editing.scene.difference import difference
-from world2minecraft.metrics.occupancy import count_occupancy
+from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 
 VECTORS = Path(__file__).parent / "vectors" / "compare.json"
 

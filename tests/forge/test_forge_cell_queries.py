@@ -12,9 +12,9 @@ from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.editing.scene.difference import difference, labels_in_cells
 from world2minecraft.editing.scene.runs import cells_of_runs
+from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.forge.editor import Editor
 from world2minecraft.formats.occupancy import labels_grid
-from world2minecraft.metrics.occupancy import count_occupancy
 
 labels_of = st.integers(0, 10_000).map(
     lambda seed: np.random.default_rng(seed).choice([0, 2, 3, 5, 255], (4, 3, 5)).astype(np.uint8)

@@ -7,11 +7,11 @@ import pytest
 from forge_serving import client, served, small_editor
 
 from world2minecraft.editing.scene import SceneDraft
+from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.forge.comparing import labels_of_truth
 from world2minecraft.forge.editor import Editor
 from world2minecraft.forge.volumes import HEADER
 from world2minecraft.formats.room import read_room
-from world2minecraft.metrics.occupancy import count_occupancy
 
 
 def test_the_truth_of_a_generated_room_meets_its_run(small_run):

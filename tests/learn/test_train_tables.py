@@ -9,8 +9,8 @@ from hypothesis.extra.numpy import arrays
 from tests.learn import toy_network
 from tests.learn.toy_sets import write_toy_store
 
+from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_occupancy
 from world2minecraft.learn import training
-from world2minecraft.metrics.occupancy import OccupancyCounts, count_occupancy
 
 
 @pytest.fixture(autouse=True)

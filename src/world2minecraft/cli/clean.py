@@ -121,7 +121,7 @@ def opened(build: Path) -> "History":
     """
     from world2minecraft.editing.history import History
     from world2minecraft.editing.journal import EDITS_FILE, Journal
-    from world2minecraft.report.scene import read_built
+    from world2minecraft.evaluation.report.scene import read_built
 
     volume = read_built(build)
     try:

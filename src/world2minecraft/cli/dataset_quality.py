@@ -70,8 +70,8 @@ def run(
         quality_text,
         size_of,
     )
-    from world2minecraft.metrics.image_quality import niqe_model
-    from world2minecraft.metrics.image_quality.niqe_models import available_variants
+    from world2minecraft.evaluation.metrics.image_quality import niqe_model
+    from world2minecraft.evaluation.metrics.image_quality.niqe_models import available_variants
 
     size = size_of(resize)
     models = [niqe_model(name) for name in variant or available_variants()]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.evaluate.scannet import TruthMade
+    from world2minecraft.evaluation.scoring.scannet import TruthMade
 
 EXAMPLES = """\
 w2m evaluate scannet scans/scene0000_00                  beside the scene's own files
@@ -34,7 +34,7 @@ def run(
     """
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.evaluate.scannet import scenes_in, write_scannet_truth
+    from world2minecraft.evaluation.scoring.scannet import scenes_in, write_scannet_truth
 
     scenes = scenes_in(scene)
     compiling_note()

@@ -63,9 +63,9 @@ def run(
     """
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
+    from world2minecraft.evaluation.report import write_brief_report
     from world2minecraft.reconstruction.homes import join
     from world2minecraft.reconstruction.parameters import Parameters, with_settings
-    from world2minecraft.report import write_brief_report
 
     chosen = Parameters(blocks_per_metre=blocks_per_metre, mc_version=mc_version)
     chosen = with_settings(with_build_options(chosen, style, palette, formats), settings or [])

@@ -37,8 +37,8 @@ def run(
         InputError: a file is missing or damaged.
     """
     from world2minecraft.core.files import write_bytes
+    from world2minecraft.evaluation.report.comparison_pictures import as_png
     from world2minecraft.paper.figure import reconstruction_figure
-    from world2minecraft.report.pictures import as_png
 
     figure = reconstruction_figure(folder, capture or folder / "capture", walk)
     write_bytes(out, as_png(figure))

@@ -18,11 +18,11 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.core.types import Layout, LayoutObject, Opening
+from world2minecraft.evaluation.report import write_brief_report
 from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
 from world2minecraft.furniture.layout_checks import inside_polygon
 from world2minecraft.reconstruction.floorplans import PlanWorld, build_captured
 from world2minecraft.reconstruction.parameters import Parameters
-from world2minecraft.report import write_brief_report
 
 PLACE = "layout of"
 

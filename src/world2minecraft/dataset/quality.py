@@ -16,8 +16,12 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress, silent
 from world2minecraft.dataset.statistics.paper import PAPER, PUBLISHED_QUALITY, PublishedQuality
 from world2minecraft.dataset.statistics.tables import columns
-from world2minecraft.metrics.image_quality import NiqeModel, laplacian_variance, piqe
-from world2minecraft.metrics.image_quality.niqe import distance, has_patches, patch_features
+from world2minecraft.evaluation.metrics.image_quality import NiqeModel, laplacian_variance, piqe
+from world2minecraft.evaluation.metrics.image_quality.niqe import (
+    distance,
+    has_patches,
+    patch_features,
+)
 
 KERNELS = (1, 5)
 PAPER_KERNEL, PAPER_VARIANT = 5, "skvideo"  # Inferred: see CAVEATS.

@@ -14,9 +14,9 @@ from world2minecraft.editing.scene.floaters import MAX_CELLS, find_floaters
 from world2minecraft.editing.scene.holes import HOLE_M2, hole_cells, plane_gaps
 from world2minecraft.editing.scene.planes import find_planes
 from world2minecraft.editing.scene.runs import runs_of_cells
+from world2minecraft.evaluation.metrics.occupancy import count_occupancy
 from world2minecraft.forge.comparing import labels_of_file, labels_of_truth, truth_folder
 from world2minecraft.forge.query import QueriedScene, Query
-from world2minecraft.metrics.occupancy import count_occupancy
 
 OPENED, TRUTH = "opened", "truth"
 DECIMALS = 4

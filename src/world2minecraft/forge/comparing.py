@@ -13,9 +13,9 @@ from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import UNSEEN
 from world2minecraft.editing.scene import SceneDraft
 from world2minecraft.editing.scene.difference import labels_in_cells
-from world2minecraft.evaluate.truth import read_truth
+from world2minecraft.evaluation.metrics.truth import carry_truth
+from world2minecraft.evaluation.scoring.truth import read_truth
 from world2minecraft.formats.occupancy import read_occupancy
-from world2minecraft.metrics.truth import carry_truth
 
 SUFFIXES = (".npz", ".npy", ".json")
 

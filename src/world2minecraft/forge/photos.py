@@ -20,9 +20,9 @@ from world2minecraft.capture.frames import FrameFiles
 from world2minecraft.capture.images import read_colour, read_small
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import Camera
-from world2minecraft.evaluate.frames import computed
+from world2minecraft.evaluation.report.placed_frames import judge_capture_of, placed_frames, used_by
+from world2minecraft.evaluation.scoring.used_frames import computed
 from world2minecraft.geometry.undistort import undistorted
-from world2minecraft.report.placed import judge_capture_of, placed_frames, used_by
 
 LONGEST_PX, SMALL_PX = 1280, 200
 HELD_BYTES = 48 << 20  # Of pictures that were made: some hundred.

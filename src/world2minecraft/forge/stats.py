@@ -9,9 +9,7 @@ from typing import Any
 
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import read_json
-from world2minecraft.forge.effort import read_effort
-from world2minecraft.forge.identity import folder_of, read_identity
-from world2minecraft.metrics.effort import (
+from world2minecraft.evaluation.metrics.effort import (
     PAPER_REFINED,
     PAPER_SCRATCH,
     Effort,
@@ -19,6 +17,8 @@ from world2minecraft.metrics.effort import (
     improvement,
     mean_row,
 )
+from world2minecraft.forge.effort import read_effort
+from world2minecraft.forge.identity import folder_of, read_identity
 
 Row = Mapping[str, float | None]
 # The paper's rows: name, title, how far it is indented.

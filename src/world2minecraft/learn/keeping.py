@@ -19,11 +19,11 @@ import lightning
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress
+from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts
 from world2minecraft.learn.checkpoints import write_checkpoint, write_weights
 from world2minecraft.learn.config import RunConfig
 from world2minecraft.learn.journal import Journal
 from world2minecraft.learn.stepping import Steps, rate_of
-from world2minecraft.metrics.occupancy import OccupancyCounts
 
 CHECKPOINT, WEIGHTS, LAST = "checkpoint.safetensors", "weights.safetensors", "last.safetensors"
 NOTED_STEPS = 20  # A mean of losses is noted so often.

@@ -10,10 +10,10 @@ from torch import nn
 
 from world2minecraft.core.errors import MissingExtraError
 from world2minecraft.core.progress import Progress, silent
+from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_occupancy
 from world2minecraft.learn.config import RunConfig
 from world2minecraft.learn.data.batches import ordered_batches
 from world2minecraft.learn.data.cache import Frames
-from world2minecraft.metrics.occupancy import OccupancyCounts, count_occupancy
 
 
 def precision_here(precision: str, device: torch.device) -> str:

@@ -17,6 +17,13 @@ from world2minecraft.core.classes import CLASS_COLOURS, OBJECT_CLASSES, UNKNOWN
 from world2minecraft.core.coordinates import grid_to_block_axes
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import AIR, BlockVolume, Camera, OccupancyGrid
+from world2minecraft.evaluation.report.placed_frames import (
+    PlacedFrame,
+    judge_capture_of,
+    placed_frames,
+    used_by,
+)
+from world2minecraft.evaluation.report.scene import read_built
 from world2minecraft.formats.room import read_room
 from world2minecraft.geometry.undistort import pinhole_of, undistorted
 from world2minecraft.paper.walked import views_of_walk
@@ -28,8 +35,6 @@ from world2minecraft.rendering.presentation.turntable import OPEN_ELEVATION_DEG
 from world2minecraft.rendering.scene import BlockScene, prepare_scene
 from world2minecraft.rendering.views.cameras import camera_of
 from world2minecraft.rendering.views.orbit import orbit_shots
-from world2minecraft.report.placed import PlacedFrame, judge_capture_of, placed_frames, used_by
-from world2minecraft.report.scene import read_built
 
 VIEWS, STEPS = 3, 6  # Rows, and pictures of a walk.
 CELL_PX = (480, 360)

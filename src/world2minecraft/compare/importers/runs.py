@@ -14,8 +14,8 @@ from world2minecraft.compare.importers.reading import MOST_OBJECTS
 from world2minecraft.compare.values import ComparedScene
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Layout
-from world2minecraft.evaluate.frames import truth_of_run
-from world2minecraft.evaluate.layout import in_room
+from world2minecraft.evaluation.scoring.layout import in_room
+from world2minecraft.evaluation.scoring.used_frames import truth_of_run
 from world2minecraft.formats.objects import read_placements
 from world2minecraft.formats.room import read_room
 from world2minecraft.formats.rooms import read_rooms

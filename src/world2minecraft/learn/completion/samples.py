@@ -15,6 +15,7 @@ from world2minecraft.core.coordinates import apply, rotation_about_z
 from world2minecraft.core.errors import CaptureError, DamagedFileError
 from world2minecraft.core.files import array_names, read_npz, write_npz
 from world2minecraft.core.types import Camera, FusedEvidence
+from world2minecraft.evaluation.metrics.truth import carry_truth
 from world2minecraft.learn.completion.looks import (
     TOUR_VIEWS,
     Look,
@@ -24,7 +25,6 @@ from world2minecraft.learn.completion.looks import (
 )
 from world2minecraft.learn.completion.noise import ScanNoise, draw_noise
 from world2minecraft.learn.completion.rooms import training_room
-from world2minecraft.metrics.truth import carry_truth
 from world2minecraft.procgen.rooms.room import Room
 from world2minecraft.procgen.sensors.photo import prepare_photos
 from world2minecraft.procgen.sensors.tour import plan_tour

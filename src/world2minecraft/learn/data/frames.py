@@ -17,8 +17,8 @@ from world2minecraft.core.types import Camera
 from world2minecraft.dataset.formats.boxes import cells_in_image
 from world2minecraft.dataset.formats.sscnet import downsampled
 from world2minecraft.dataset.values import OccSample
+from world2minecraft.evaluation.metrics.protocols import KnownCells
 from world2minecraft.learn.config import Grid
-from world2minecraft.metrics.protocols import KnownCells
 
 SAME_SURFACE = 0.05  # Of the depth: neighbours farther apart are of two surfaces.
 

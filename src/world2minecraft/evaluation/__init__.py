@@ -1,0 +1,1 @@
+"""Scores: metrics, reconstructions against their truth, and the fidelity report."""

@@ -1,0 +1,84 @@
+"""How well a confidence is calibrated: are cells of confidence 0.9 right nine times in ten?
+
+In: the confidence of each cell and whether its label is right. Out: counts in bins of equal width
+that add up over scenes, the reliability table and the expected calibration error (Naeini et al.,
+"Obtaining Well Calibrated Probabilities Using Bayesian Binning", 2015).
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.evaluation.metrics.occupancy import ratio
+
+BINS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class CalibrationCounts:
+    """Of each bin: its cells, those that are right, and the sum of their confidences."""
+
+    cells: np.ndarray = field(default_factory=lambda: np.zeros(BINS, np.int64))
+    right: np.ndarray = field(default_factory=lambda: np.zeros(BINS, np.int64))
+    confidence_sum: np.ndarray = field(default_factory=lambda: np.zeros(BINS))
+
+    def __add__(self, other: "CalibrationCounts") -> "CalibrationCounts":
+        return CalibrationCounts(
+            self.cells + other.cells,
+            self.right + other.right,
+            self.confidence_sum + other.confidence_sum,
+        )
+
+    @property
+    def error(self) -> float:
+        """The expected calibration error: the mean gap between sure and right, by cells."""
+        gaps = np.abs(self.confidence_sum - self.right)
+        return ratio(float(gaps.sum()), int(self.cells.sum()))
+
+    def rows(self) -> list[dict[str, Any]]:
+        """The reliability table: one row for each bin that has cells."""
+        edges = np.linspace(0, 1, len(self.cells) + 1)
+        return [
+            {
+                "from": round(float(edges[n]), 3),
+                "to": round(float(edges[n + 1]), 3),
+                "cells": int(self.cells[n]),
+                "confidence": round(float(self.confidence_sum[n] / self.cells[n]), 4),
+                "right": round(float(self.right[n] / self.cells[n]), 4),
+            }
+            for n in np.flatnonzero(self.cells)
+        ]
+
+
+def count_calibration(
+    confidence: np.ndarray, right: np.ndarray, bins: int = BINS
+) -> CalibrationCounts:
+    """Count the cells of one scene.
+
+    Args:
+        confidence: float of any shape, 0 to 1; a bin holds its lower edge, the last both.
+        right: bool of the same shape.
+        bins: how many, of equal width.
+
+    Raises:
+        ValueError: the shapes differ, or a confidence lies outside 0 to 1.
+
+    Example:
+        >>> counts = count_calibration(np.array([0.9, 0.9]), np.array([True, False]))
+        >>> round(counts.error, 3)
+        0.4
+    """
+    values = np.asarray(confidence, np.float64).reshape(-1)
+    hits = np.asarray(right, bool).reshape(-1)
+    if np.shape(confidence) != np.shape(right):
+        raise ValueError(f"confidence {np.shape(confidence)} and right {np.shape(right)} differ")
+    if values.size and not (values.min() >= 0 and values.max() <= 1):
+        raise ValueError("confidence must lie between 0 and 1")
+    # A stored float16 of 0.8 is 0.7998; rounding keeps it in the bin that it was meant for.
+    at = np.minimum(np.floor(np.round(values, 3) * bins + 1e-9).astype(np.int64), bins - 1)
+    return CalibrationCounts(
+        np.bincount(at, minlength=bins),
+        np.bincount(at[hits], minlength=bins),
+        np.bincount(at, weights=values, minlength=bins),
+    )

@@ -1,0 +1,139 @@
+"""The scores of many frames: summed, averaged, and how sure they are.
+
+- **micro**: counts of all frames are added, then ratios are taken; what papers print.
+- **macro**: each figure is taken of each frame, then their mean. A class counts in the frames whose
+  truth holds it, as the line of DDRNet averages; classes that no frame holds count 0. A frame in
+  which nothing is occupied and nothing said to be has no IoU and is left out of the mean.
+- **interval**: of the micro figures, by a bootstrap over scenes: frames of one scene are alike, so
+  scenes are drawn, not frames. The middle 95 % of the draws; none for a single scene.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts
+from world2minecraft.evaluation.metrics.protocols import ProtocolCounts
+
+DRAWS = 1000
+SHARE = 0.95  # Of the draws within the interval.
+FIGURES = ("iou", "precision", "recall", "miou")
+
+
+@dataclass(frozen=True, eq=False)
+class FrameScore:
+    """The counts of one frame, and the scene that it is of."""
+
+    scene_id: str
+    counts: ProtocolCounts
+
+
+def summarise(frames: Sequence[FrameScore], *, draws: int = DRAWS, seed: int = 0) -> dict[str, Any]:
+    """Return micro, macro and interval figures, fractions from 0 to 1.
+
+    Args:
+        frames: of one protocol.
+        draws: how many times scenes are drawn.
+        seed: the same seed, the same interval.
+
+    Returns:
+        ``frames``, ``scenes``, ``cells``; ``micro`` and ``macro`` with iou, precision, recall,
+        miou, miou_present_classes and class_iou; ``interval`` with [low, high] of each figure and
+        class, or None.
+    """
+    tables = scene_tables(frames)
+    total = sum((frame.counts for frame in frames), ProtocolCounts())
+    return {
+        "frames": len(frames),
+        "scenes": len(tables),
+        "cells": total.classes.cells,
+        "micro": micro_figures(total),
+        "macro": macro_figures(frames),
+        "interval": bootstrap(tables, draws=draws, seed=seed) if len(tables) > 1 else None,
+    }
+
+
+def micro_figures(counts: ProtocolCounts) -> dict[str, Any]:
+    """Return the figures of summed counts, as papers print them."""
+    geometry, classes = counts.geometry, counts.classes
+    return {
+        "iou": geometry.iou,
+        "precision": geometry.precision,
+        "recall": geometry.recall,
+        "miou": classes.miou,
+        "miou_present_classes": classes.miou_present,
+        "class_iou": _by_class(counts.class_iou),
+    }
+
+
+def macro_figures(frames: Sequence[FrameScore]) -> dict[str, Any]:
+    """Return the means over frames."""
+    geometry = [frame.counts.geometry for frame in frames]
+    classes = [frame.counts.classes for frame in frames]
+    occupied = [one for one in geometry if one.table.sum() > one.table[0, 0]]
+    held = np.array([one.present for one in classes]).reshape(-1, len(CLASS_NAMES))
+    ious = np.array([frame.counts.class_iou for frame in frames]).reshape(-1, len(CLASS_NAMES))
+    times = held.sum(axis=0)
+    means = np.divide((ious * held).sum(axis=0), times, out=np.zeros(len(times)), where=times > 0)
+    there = times[1:] > 0
+    return {
+        "iou": _mean(occupied, lambda one: one.iou),
+        "precision": _mean(occupied, lambda one: one.precision),
+        "recall": _mean(occupied, lambda one: one.recall),
+        "miou": float(means[1:].mean()),
+        "miou_present_classes": float(means[1:][there].mean()) if there.any() else 0.0,
+        "class_iou": _by_class(means),
+    }
+
+
+def scene_tables(frames: Sequence[FrameScore]) -> list[ProtocolCounts]:
+    """Return the summed counts of each scene, in the order of their names."""
+    scenes: dict[str, ProtocolCounts] = {}
+    for frame in frames:
+        scenes[frame.scene_id] = scenes.get(frame.scene_id, ProtocolCounts()) + frame.counts
+    return [scenes[name] for name in sorted(scenes)]
+
+
+def bootstrap(
+    scenes: Sequence[ProtocolCounts], *, draws: int = DRAWS, seed: int = 0
+) -> dict[str, Any]:
+    """Return [low, high] of each micro figure over redrawn scenes.
+
+    Example:
+        >>> table = np.zeros((12, 12), np.int64)
+        >>> table[2, 2] = table[0, 2] = 1
+        >>> one = OccupancyCounts(table)
+        >>> bootstrap([ProtocolCounts(one, one)] * 3)["iou"]
+        [0.5, 0.5]
+    """
+    rng = np.random.default_rng(seed)
+    times = rng.multinomial(len(scenes), np.full(len(scenes), 1 / len(scenes)), size=draws)
+    drawn = [
+        np.tensordot(times, np.array([getattr(one, part).table for one in scenes]), axes=1)
+        for part in ("geometry", "classes")
+    ]
+    found = [
+        micro_figures(ProtocolCounts(OccupancyCounts(geometry), OccupancyCounts(classes)))
+        for geometry, classes in zip(*drawn, strict=True)
+    ]
+    result: dict[str, Any] = {name: _middle([one[name] for one in found]) for name in FIGURES}
+    result["class_iou"] = {
+        name: _middle([one["class_iou"][name] for one in found]) for name in CLASS_NAMES
+    }
+    return result
+
+
+def _middle(values: Sequence[float]) -> list[float]:
+    low, high = np.quantile(values, [(1 - SHARE) / 2, (1 + SHARE) / 2])
+    return [float(low), float(high)]
+
+
+def _mean(counts: Sequence[OccupancyCounts], of: Callable[[OccupancyCounts], float]) -> float:
+    return float(np.mean([of(one) for one in counts])) if counts else 0.0
+
+
+def _by_class(values: np.ndarray) -> dict[str, float]:
+    return dict(zip(CLASS_NAMES, values.tolist(), strict=True))

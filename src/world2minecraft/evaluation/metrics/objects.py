@@ -1,0 +1,150 @@
+"""Object scores: which objects were found where they are, as what they are, and turned right.
+
+In: two lists of objects (ObjectInstance, LayoutObject, Placement or anything with a class and a
+centre). Out: counts that add up over scenes, object F1 and the share of right orientations.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from world2minecraft.core.classes import CLASS_COUNT, SemanticClass
+from world2minecraft.evaluation.metrics.occupancy import ratio
+
+MATCH_DISTANCE_M = 0.3  # The issue's rule; less than half a chair.
+TURN_TOLERANCE_DEG = 45.0  # The nearest quarter turn is the right one.
+TURNED_CLASSES = (SemanticClass.CHAIR, SemanticClass.SOFA, SemanticClass.BED)
+
+
+class LocatedObject(Protocol):
+    """What an object must say to be scored."""
+
+    @property
+    def class_id(self) -> int:
+        """The class, 5 to 11."""
+        ...
+
+    @property
+    def center_m(self) -> np.ndarray:
+        """The middle of its box, float64 [3]."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class ObjectCounts:
+    """Objects found, true and matched, int64 [12] each, and the turns of the matched ones."""
+
+    found: np.ndarray = field(default_factory=lambda: np.zeros(CLASS_COUNT, np.int64))
+    true: np.ndarray = field(default_factory=lambda: np.zeros(CLASS_COUNT, np.int64))
+    matched: np.ndarray = field(default_factory=lambda: np.zeros(CLASS_COUNT, np.int64))
+    turns_asked: int = 0
+    turns_right: int = 0
+
+    def __add__(self, other: "ObjectCounts") -> "ObjectCounts":
+        return ObjectCounts(
+            self.found + other.found,
+            self.true + other.true,
+            self.matched + other.matched,
+            self.turns_asked + other.turns_asked,
+            self.turns_right + other.turns_right,
+        )
+
+    @property
+    def precision(self) -> float:
+        """The share of found objects that match a true one."""
+        return ratio(int(self.matched.sum()), int(self.found.sum()))
+
+    @property
+    def recall(self) -> float:
+        """The share of true objects that were found."""
+        return ratio(int(self.matched.sum()), int(self.true.sum()))
+
+    @property
+    def f1(self) -> float:
+        """Object F1 over all classes together; 0 where there is nothing to find or found."""
+        return ratio(2 * int(self.matched.sum()), int(self.found.sum() + self.true.sum()))
+
+    @property
+    def class_f1(self) -> np.ndarray:
+        """F1 of each class, float64 [12]; 0 where the class is in neither list."""
+        both = self.found + self.true
+        return np.divide(2 * self.matched, both, out=np.zeros(CLASS_COUNT), where=both > 0)
+
+    @property
+    def orientation_right(self) -> float:
+        """Of the matched chairs, sofas and beds, the share turned right; 0 where there are none."""
+        return ratio(self.turns_right, self.turns_asked)
+
+
+def count_objects(
+    found: Sequence[LocatedObject],
+    true: Sequence[LocatedObject],
+    *,
+    distance_m: float = MATCH_DISTANCE_M,
+) -> ObjectCounts:
+    """Match the objects of one scene and count.
+
+    Each found object matches at most one true object of its class whose centre lies within
+    ``distance_m``; among all such pairings that with the most matches counts, then that with
+    the least summed distance.
+
+    Args:
+        found: the objects of the reconstruction. Orientation is read from ``yaw_deg``, or from
+            ``quarter_turns`` where an object has no yaw.
+        true: the objects of the truth, in the same frame.
+        distance_m: how far two centres may lie apart.
+    """
+    matches = match_objects(found, true, distance_m=distance_m)
+    counts = np.zeros((3, CLASS_COUNT), np.int64)
+    for row, classes in enumerate(
+        (
+            [item.class_id for item in found],
+            [item.class_id for item in true],
+            [true[n].class_id for _, n in matches],
+        )
+    ):
+        counts[row] = np.bincount(np.array(classes, np.int64), minlength=CLASS_COUNT)
+    asked = [(found[m], true[n]) for m, n in matches if true[n].class_id in TURNED_CLASSES]
+    right = sum(turn_between_deg(_yaw_deg(a), _yaw_deg(b)) <= TURN_TOLERANCE_DEG for a, b in asked)
+    return ObjectCounts(*counts, turns_asked=len(asked), turns_right=int(right))
+
+
+def match_objects(
+    found: Sequence[LocatedObject],
+    true: Sequence[LocatedObject],
+    *,
+    distance_m: float = MATCH_DISTANCE_M,
+) -> list[tuple[int, int]]:
+    """Return the pairs (index in ``found``, index in ``true``) that match, sorted."""
+    if not found or not true:
+        return []
+    places = np.array([item.center_m for item in found], np.float64)
+    true_places = np.array([item.center_m for item in true], np.float64)
+    apart_m = np.linalg.norm(places[:, None] - true_places[None], axis=2)
+    classes = np.array([item.class_id for item in found])
+    same = classes[:, None] == np.array([item.class_id for item in true])[None]
+    allowed = same & (apart_m <= distance_m)
+    # A pair that may not match costs more than all that may, so that most matches come first.
+    cost = np.where(allowed, apart_m, distance_m * (len(found) + len(true) + 1) + 1.0)
+    rows, columns = linear_sum_assignment(cost)
+    kept = allowed[rows, columns]
+    return sorted(zip(rows[kept].tolist(), columns[kept].tolist(), strict=True))
+
+
+def turn_between_deg(yaw_deg: float, other_deg: float) -> float:
+    """Return the angle between two yaws, 0 to 180.
+
+    Example:
+        >>> turn_between_deg(350, 10)
+        20.0
+    """
+    return float(abs((yaw_deg - other_deg + 180.0) % 360.0 - 180.0))
+
+
+def _yaw_deg(item: Any) -> float:
+    if hasattr(item, "yaw_deg"):
+        return float(item.yaw_deg)
+    return 90.0 * item.quarter_turns

@@ -1,0 +1,79 @@
+"""What draws the report's pictures, compiled by a second process beside the first stages.
+
+After an installation a third of a run would wait for these kernels, at its very end. The process is
+``python -m world2minecraft.evaluation.report.jit_warmup``: it draws a box of a few blocks as the report draws a
+room, and what numba then keeps in its folder is found there by the run. Where it fails, the run
+compiles for itself.
+"""
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from world2minecraft.core.coordinates import look_at
+from world2minecraft.core.jit import is_compiled
+from world2minecraft.core.machine import usable_cores
+from world2minecraft.core.types import BlockVolume, Camera, Scan, View
+from world2minecraft.evaluation.report.comparison_pictures import make_pairs
+from world2minecraft.rendering.preview import plan_view, preview
+
+LAST = "pixels.draw_rows"  # Kept last, when all that it calls is compiled.
+PATIENCE_S = 120.0  # For the process to end by itself, once the run needs what it makes.
+
+
+@contextmanager
+def pictures_compiled_meanwhile() -> Iterator[None]:
+    """Compile what the report needs while the body runs, once after an installation.
+
+    A machine with one core has nobody to do it. If the body fails, the process is ended.
+    """
+    if is_compiled(LAST) or usable_cores() < 2:
+        yield
+        return
+    nowhere = subprocess.DEVNULL
+    words = [sys.executable, "-m", "world2minecraft.evaluation.report.jit_warmup"]
+    process = subprocess.Popen(words, stdin=nowhere, stdout=nowhere, stderr=nowhere)
+    try:
+        yield
+        process.wait(PATIENCE_S)
+    except subprocess.TimeoutExpired:
+        pass
+    finally:
+        process.kill()
+        process.wait()
+
+
+def draw_a_box() -> None:
+    """Draw a box of blocks in all the ways in which the report draws a room."""
+    volume = _box()
+    make_pairs(_look_at_it(), volume)
+    plan_view(volume, px_per_block=2)
+    preview(volume, width_px=64, height_px=48)
+
+
+def _box() -> BlockVolume:
+    """Return a room of 6x4x6 blocks with a stair, a metre a block."""
+    states = np.zeros((6, 4, 6), np.uint16)
+    states[:, 0], states[0], states[:, :, 0] = 1, 1, 1
+    states[3, 1, 3] = 2
+    semantic = np.where(states > 0, np.uint8(3), np.uint8(0))
+    semantic[:, 0], semantic[3, 1, 3] = 2, 5
+    turned = np.array([[1, 0, 0, 0], [0, 0, -1, 6], [0, 1, 0, 0], [0, 0, 0, 1]], np.float64)
+    palette = ("minecraft:air", "minecraft:stone", "minecraft:oak_stairs[facing=east]")
+    return BlockVolume(states, palette, semantic, states // 2, (0, 0, 0), turned)
+
+
+def _look_at_it() -> Scan:
+    """Return one view of the box, with colour and depth."""
+    camera = Camera(64, 48, 40.0, 40.0, 31.5, 23.5)
+    pose = look_at(np.array([5.0, 1.0, 3.0]), np.array([3.0, 3.0, 1.0]))
+    colour, depth_m = np.zeros((48, 64, 3), np.uint8), np.ones((48, 64), np.float32)
+    view = View("view", pose, colour, camera, depth_m, camera)
+    return Scan((view,), np.eye(4), np.array([6.0, 6.0, 4.0]), ("view",))
+
+
+if __name__ == "__main__":
+    draw_a_box()

@@ -1,0 +1,211 @@
+"""A finished run against its truth: every figure that needs one.
+
+Scored are the cells that a noise-free ray of a used frame reached or crossed, because nobody can
+know the others. Truth becomes occupancy by SSCNet's rule in the estimated frame; the frame's own
+error is told apart.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_COUNT, CLASS_NAMES, UNKNOWN
+from world2minecraft.core.types import OBSERVED, OccupancyGrid
+from world2minecraft.evaluation.metrics.calibration import count_calibration
+from world2minecraft.evaluation.metrics.occupancy import count_occupancy
+from world2minecraft.evaluation.metrics.surface import (
+    SurfaceCounts,
+    count_surface,
+    free_space_recall,
+)
+from world2minecraft.evaluation.metrics.truth import carry_truth
+from world2minecraft.evaluation.scoring.frame_error import frame_error
+from world2minecraft.evaluation.scoring.layout import in_room, layout_facts
+from world2minecraft.evaluation.scoring.objects import (
+    TrueObjects,
+    object_counts,
+    object_facts,
+    true_objects,
+)
+from world2minecraft.evaluation.scoring.openings import opening_facts
+from world2minecraft.evaluation.scoring.poses import pose_facts
+from world2minecraft.evaluation.scoring.truth import Truth
+from world2minecraft.evaluation.scoring.used_frames import UsedFrame, truth_of_run, used_frames
+from world2minecraft.evaluation.scoring.visibility import CROSSED, Reached, reached_cells
+from world2minecraft.evaluation.scoring.world import world_facts
+from world2minecraft.formats.layout import read_layouts
+from world2minecraft.formats.objects import read_objects
+from world2minecraft.formats.room import read_room
+
+HOW = (
+    "Scored on the cells that a noise-free ray of a used frame reached or crossed; truth occupied "
+    "by SSCNet's rule (4 of 64 sub-cells). Objects match within 0.3 m."
+)
+
+
+@dataclass(frozen=True, eq=False)
+class TrueRoom:
+    """The truth as it looks in the estimated frame, in a box of cells that holds all of it."""
+
+    truth: Truth
+    frames: tuple[UsedFrame, ...]
+    truth_to_room: np.ndarray  # float64 [4, 4]
+    reached: Reached
+    labels: np.ndarray  # uint8 of the shape of ``reached.flags``
+    objects: TrueObjects
+
+
+def evaluate_reconstruction(out: Path, truth: Path) -> dict[str, Any]:
+    """Return the scores of a finished run, and the few of them that a page shows first.
+
+    Args:
+        out: the folder of the run.
+        truth: the folder of the capture with its ``truth.npz`` and ``truth.json``.
+
+    Raises:
+        InputError: a file of the run or of the truth is missing or damaged.
+    """
+    known = truth_of_run(out, truth)
+    grid, scan_to_room = read_room(out / "room.npz")
+    return score_run(out, see_truth(known, used_frames(out, known), scan_to_room, grid.voxel_m))
+
+
+def see_truth(
+    truth: Truth, frames: Sequence[UsedFrame], scan_to_room: np.ndarray, voxel_m: float
+) -> TrueRoom:
+    """Carry the truth into an estimated frame.
+
+    Args:
+        truth: the room.
+        frames: the used ones, whose rays tell which cells can be known.
+        scan_to_room: 4x4 rigid, as the run estimated it.
+        voxel_m: the cells to carry it into.
+    """
+    truth_to_room = scan_to_room @ truth.truth_to_scan
+    reached = reached_cells(truth, frames, truth_to_room, voxel_m)
+    x, y, z = reached.flags.shape
+    labels = carry_truth(
+        truth.labels,
+        truth.voxel_m,
+        truth.origin_m,
+        truth_to_room,
+        (x, y, z),
+        reached.low * voxel_m,
+        voxel_m,
+    )
+    objects = true_objects(truth, truth_to_room, reached)
+    return TrueRoom(truth, tuple(frames), truth_to_room, reached, labels, objects)
+
+
+def score_run(out: Path, room: TrueRoom) -> dict[str, Any]:
+    """Return the scores of a run whose truth was already carried into its frame."""
+    grid, _ = read_room(out / "room.npz")
+    facts = cell_facts(grid, room)
+    instances = read_objects(out / "objects.json", grid)
+    facts["objects"] = object_facts(object_counts(instances, room.objects))
+    facts["frame_error"] = frame_error(room.truth_to_room, room.truth.layouts)
+    facts["poses"] = pose_facts(out, room.truth, room.frames)
+    true_rooms = in_room(room.truth.layouts, room.truth_to_room)
+    facts["layout"] = layout_facts(out, grid, true_rooms, room.objects)
+    if (out / "layout.json").is_file() and room.truth.layouts:
+        rooms = read_layouts(out / "layout.json")
+        facts["openings"] = opening_facts(
+            rooms, room.truth.layouts, room.truth_to_room, room.reached
+        )
+    facts["world"] = world_facts(out, room.labels, room.reached)
+    return {"how": HOW, "headline": headline(facts)} | facts
+
+
+def cell_facts(grid: OccupancyGrid, room: TrueRoom) -> dict[str, Any]:
+    """Return the scores of a grid's cells."""
+    labels = placed(grid.labels, grid, room.reached, UNKNOWN)
+    source = placed(grid.source, grid, room.reached, 0)
+    confidence = placed(grid.confidence, grid, room.reached, 0)
+    true, flags = room.labels, room.reached.flags
+    scored = room.reached.scored & (true != UNKNOWN)
+    # Of a scanned surface nobody knows what lies behind it: that is no fault of what was found.
+    judged = true != UNKNOWN if room.truth.is_partial else np.ones(true.shape, bool)
+    found_here, true_here = (labels > 0) & (labels != UNKNOWN), (true > 0) & (true != UNKNOWN)
+    surface = count_surface(
+        found_here,
+        true_here,
+        found_mask=(source == OBSERVED) & judged,
+        true_mask=room.reached.met,
+    )
+    if not room.truth.is_partial:  # What was found beyond the truth's box is near nothing true.
+        beyond = int((grid.occupied & (grid.source == OBSERVED)).sum()) - surface.found
+        surface += SurfaceCounts(found=beyond)
+    observed = scored & (source == OBSERVED)
+    return {
+        "surface_within_one_voxel": {"precision": surface.precision, "recall": surface.recall},
+        "free_recall": free_space_recall(labels == 0, true == 0, flags == CROSSED),
+        "occupancy": count_occupancy(labels, true, scored).figures(),
+        "errors": error_facts(labels, true, scored),
+        "calibration": {
+            name: _calibration(confidence[cells], (labels == true)[cells])
+            for name, cells in (("all", observed), ("occupied", observed & found_here))
+        },
+    }
+
+
+def error_facts(labels: np.ndarray, true: np.ndarray, scored: np.ndarray) -> dict[str, Any]:
+    """Return where exact IoU is lost: how many scored cells were missed and added, by class.
+
+    A missed cell was called free or left unknown; an added one is empty and was called occupied.
+    """
+    missed = scored & (true > 0) & ((labels == 0) | (labels == UNKNOWN))
+    added = scored & (true == 0) & (labels > 0) & (labels != UNKNOWN)
+    return {
+        "called_free": int((missed & (labels == 0)).sum()),
+        "left_unknown": int((missed & (labels == UNKNOWN)).sum()),
+        "called_occupied": int(added.sum()),
+        "missed_by_class": _by_class(true[missed]),
+        "added_by_class": _by_class(labels[added]),
+    }
+
+
+def _by_class(labels: np.ndarray) -> dict[str, int]:
+    """Return how many of some labels are of each class; classes without any are left out."""
+    counts = np.bincount(labels, minlength=CLASS_COUNT)
+    return {CLASS_NAMES[n]: int(counts[n]) for n in range(1, CLASS_COUNT) if counts[n]}
+
+
+def _calibration(confidence: np.ndarray, right: np.ndarray) -> dict[str, Any]:
+    counts = count_calibration(confidence, right)
+    return {"error": counts.error, "cells": int(counts.cells.sum()), "bins": counts.rows()}
+
+
+def placed(values: np.ndarray, grid: OccupancyGrid, reached: Reached, fill: int) -> np.ndarray:
+    """Return values [X, Y, Z] of a grid in the box of ``reached``; ``fill`` where it has none.
+
+    Cells of the grid outside of the box are left out: no ray came there.
+    """
+    result = np.full(reached.flags.shape, fill, values.dtype)
+    start = np.round(grid.origin_m / grid.voxel_m).astype(np.int64) - reached.low
+    stop = start + values.shape
+    first, last = np.maximum(start, 0), np.minimum(stop, result.shape)
+    if (first < last).all():
+        inside = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
+        source = tuple(slice(a, b) for a, b in zip(first - start, last - start, strict=True))
+        result[inside] = values[source]
+    return result
+
+
+def headline(facts: dict[str, Any]) -> dict[str, str]:
+    """Return the few scores that a page shows first, as text."""
+    surface, occupancy, objects = (
+        facts[name] for name in ("surface_within_one_voxel", "occupancy", "objects")
+    )
+    shown = {
+        "precision within one voxel": f"{surface['precision']:.3f}",
+        "recall within one voxel": f"{surface['recall']:.3f}",
+        "IoU": f"{occupancy['iou']:.2f}",
+        "mIoU of the classes present": f"{occupancy['miou_present_classes']:.2f}",
+        "object F1": f"{objects['f1']:.2f}",
+    }
+    if objects["orientation_asked"]:
+        shown["orientation right"] = f"{objects['orientation_right']:.2f}"
+    return shown

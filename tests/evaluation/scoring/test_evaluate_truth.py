@@ -1,0 +1,35 @@
+"""The truth that is read, and the frame's error told apart from occupancy."""
+
+import numpy as np
+import pytest
+
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.evaluation.scoring import read_truth
+from world2minecraft.evaluation.scoring.frame_error import frame_error
+
+
+@pytest.mark.parametrize("turns", [0, 1, 2, 3])
+def test_frame_error_forgives_quarter_turns_only(turns):
+    exact = rotation_about_z(90 * turns)
+    exact[:3, 3] = [3, -2, 0.004]
+    error = frame_error(exact)
+    assert error["yaw_deg"] < 1e-6 and error["tilt_deg"] < 1e-4
+    assert error["floor_m"] == pytest.approx(0.004)
+    assert frame_error(exact @ rotation_about_z(-1.5))["yaw_deg"] == pytest.approx(1.5)
+    tilt = np.eye(4)
+    tilt[1:3, 1:3] = [[np.cos(0.01), -np.sin(0.01)], [np.sin(0.01), np.cos(0.01)]]
+    assert frame_error(exact @ tilt)["tilt_deg"] == pytest.approx(np.degrees(0.01), rel=1e-3)
+
+
+def test_a_damaged_truth_is_named(tmp_path):
+    np.savez(
+        tmp_path / "truth.npz",
+        labels=np.zeros((2, 2, 2), np.uint8),
+        voxel_m=0.02,
+        origin_m=np.zeros(3),
+        truth_room_to_scan=np.eye(4),
+    )
+    (tmp_path / "truth.json").write_text('{"objects": [{"class": "chair"}]}')
+    with pytest.raises(DamagedFileError, match="is no truth"):
+        read_truth(tmp_path)

@@ -1,0 +1,69 @@
+"""``w2m evaluate reconstruction``: its tables, its file, its errors."""
+
+import json
+
+import numpy as np
+import pytest
+
+from world2minecraft.cli import run as w2m
+from world2minecraft.cli.evaluate_reconstruction import next_steps, score_rows, stage_table
+from world2minecraft.evaluation.scoring import evaluate_reconstruction
+
+
+def test_the_table_and_the_file_hold_the_scores(perfect, capture, tmp_path, capsys):
+    file = tmp_path / "scores.json"
+    words = ["evaluate", "reconstruction", str(perfect), str(capture), "--json", str(file)]
+    assert w2m(words) == 0
+    text = capsys.readouterr().out
+    for line in ("IoU, exact", "object F1 (precision, recall)", "1.000 (1.000, 1.000)", "0.9 to 1"):
+        assert line in text
+    assert text.rstrip().endswith(f"next: w2m evaluate reconstruction {perfect} {capture} --stages")
+    assert json.loads(file.read_text()) == json.loads(
+        json.dumps(evaluate_reconstruction(perfect, capture))
+    )
+
+
+def test_openings_and_placements_stand_in_the_table_where_they_are_known(perfect, capture):
+    facts = evaluate_reconstruction(perfect, capture)
+    names = dict(score_rows(facts))
+    assert "collisions" not in names and "poses, stated" in names
+    rates = {"f1": 0.5, "precision": 1.0, "recall": 0.333}
+    layout = {"collisions": 2, "out_of_bounds": 1, "semantic_integrity": 0.5}
+    names = dict(score_rows(facts | {"openings": rates, "layout": layout}))
+    assert names["openings F1 (precision, recall)"] == "0.500 (1.000, 0.333)"
+    assert names["collisions"] == "2"
+
+
+def test_another_methods_labels_are_scored_by_the_same_verb(capture, tmp_path, capsys):
+    np.savez(tmp_path / "labels.npz", labels=np.zeros((2, 2, 2), np.uint8))
+    words = ["evaluate", "reconstruction", str(tmp_path), str(capture)]
+    assert w2m(words) == 0
+    text = capsys.readouterr().out
+    assert "IoU, exact" in text and "0 of 1, 0 found" in text
+    assert "confidence" not in text and "next:" not in text
+    assert w2m([*words, "--stages"]) == 2
+    assert "is no run of w2m reconstruct, whose stages" in capsys.readouterr().err
+
+
+def test_the_stages_are_rows_after_the_run_itself(perfect, capture):
+    facts = evaluate_reconstruction(perfect, capture)
+    table = stage_table(facts | {"stages": {"fusion": facts}})
+    assert list(table.columns[0].cells) == ["none", "fusion"]
+    assert next_steps(perfect, capture, True) == [
+        f"next: open {perfect / 'report.html'} in a browser"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("what", "message"),
+    [
+        ("nothing", "is no folder; w2m reconstruct CAPTURE --out OUT makes one"),
+        ("empty", "has no scan.json; finish the run first: w2m reconstruct CAPTURE --out "),
+        ("no truth", "truth.npz: is not there; a truth lies beside what `w2m rooms scan` writes"),
+    ],
+)
+def test_what_is_missing_is_named_with_what_to_do(what, message, perfect, tmp_path, capsys):
+    out = {"nothing": tmp_path / "none", "empty": tmp_path, "no truth": perfect}[what]
+    assert w2m(["evaluate", "reconstruction", str(out), str(tmp_path)]) == 3
+    error = capsys.readouterr().err
+    assert message in error and error.count("\n") == 1
