@@ -54,10 +54,10 @@ def run(
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
     from world2minecraft.construction import BuildParameters
-    from world2minecraft.making import make_run
     from world2minecraft.procgen import generate_room, scan_room
     from world2minecraft.reconstruction.parameters import Parameters
     from world2minecraft.reconstruction.run_folder import check_writable
+    from world2minecraft.runs import make_run
 
     check_figures(seed, frames)
     plaque = BuildParameters(plaque=f"A {kind} room")

@@ -126,8 +126,8 @@ def run(
     """
     from world2minecraft.cli.outcome import compiling_note, say_where
     from world2minecraft.cli.progress import shown
-    from world2minecraft.making import make_run
     from world2minecraft.reconstruction.parameters import Parameters, with_method, with_settings
+    from world2minecraft.runs import make_run
 
     chosen = Parameters(
         voxel,
@@ -184,8 +184,8 @@ def built_from_plan(
     from world2minecraft.cli.from_plan import say_plan
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.making import make_from_plan
     from world2minecraft.reconstruction.opening import scene_name
+    from world2minecraft.runs import make_from_plan
 
     drawn = plan_in(capture)
     if drawn is None:

@@ -14,11 +14,11 @@ from world2minecraft.capture.telling import as_data, plan_lines, summary_lines
 from world2minecraft.construction import BuildParameters
 from world2minecraft.core.files import write_bytes, write_json
 from world2minecraft.core.progress import Progress
-from world2minecraft.making import make_from_plan, make_run
 from world2minecraft.procgen import generate_room, scan_room
 from world2minecraft.reconstruction.floorplans import read_roomplan
 from world2minecraft.reconstruction.opening import scene_name
 from world2minecraft.reconstruction.parameters import Parameters, with_settings
+from world2minecraft.runs import make_from_plan, make_run
 
 SURVEY, PICTURE = "survey.json", "survey.png"
 DEMO_SEED, DEMO_FRAMES = 5, 40  # Those of ``w2m demo``.

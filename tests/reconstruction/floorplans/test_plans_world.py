@@ -19,7 +19,6 @@ from world2minecraft.formats.layout import read_layouts
 from world2minecraft.formats.objects import read_objects, read_placements
 from world2minecraft.formats.room import read_room
 from world2minecraft.geometry.connected_components import connected_parts
-from world2minecraft.making import make_from_plan
 from world2minecraft.reconstruction.floorplans import (
     PlanMismatchError,
     build_plan,
@@ -34,6 +33,7 @@ from world2minecraft.reconstruction.floorplans.cells import cells_of_plan
 from world2minecraft.reconstruction.floorplans.furniture_categories import template_of
 from world2minecraft.reconstruction.floorplans.room_outlines import moved_plan
 from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.runs import make_from_plan
 
 SESSION = session_of(21.0, (3.0, -1.4, 0.7))
 

@@ -16,9 +16,9 @@ from world2minecraft.capture.telling import summary_lines
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.errors import CaptureError, UsageError
 from world2minecraft.core.types import Camera
-from world2minecraft.making import make_run
 from world2minecraft.reconstruction.opening import one_photo, open_prepared
 from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.runs import make_run
 
 CAMERA = Camera(320, 240, 260.0, 260.0, 160.0, 120.0)
 FOV_DEG = 2 * np.degrees(np.arctan(120 / 260))
