@@ -5,9 +5,9 @@ from collections.abc import Callable
 from typing import Any
 
 from benchmarks.rows import Row
-from world2minecraft.dataset.tours import plan_views
 from world2minecraft.minecraft.physics.graph import walk_graph
 from world2minecraft.minecraft.physics.shortest_paths import distances_m
+from world2minecraft.minecraftocc.tours import plan_views
 from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import prepare_scene
 

@@ -19,11 +19,11 @@ from pathlib import Path
 
 from world2minecraft.core.files import write_json
 from world2minecraft.core.machine import usable_cores
-from world2minecraft.dataset.building import TITLES, BuildReport, build_dataset
-from world2minecraft.dataset.building.scenes import SceneTask, survey
-from world2minecraft.dataset.engine import opened_engine
-from world2minecraft.dataset.plan import Recipe, house_scenes, plan_dataset
-from world2minecraft.dataset.tours import paper_camera
+from world2minecraft.minecraftocc.building import TITLES, BuildReport, build_dataset
+from world2minecraft.minecraftocc.building.scenes import SceneTask, survey
+from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.plan import Recipe, house_scenes, plan_dataset
+from world2minecraft.minecraftocc.tours import paper_camera
 
 PAPER_IMAGES = 100_165
 BUDGET_MS = {"render": 120, "encode": 65, "labels": 60}

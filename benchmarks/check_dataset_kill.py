@@ -21,11 +21,11 @@ import tempfile
 import time
 from pathlib import Path
 
-from world2minecraft.dataset.building import build_dataset
-from world2minecraft.dataset.engine import opened_engine
-from world2minecraft.dataset.plan import DatasetPlan, Recipe, house_scenes, plan_dataset
-from world2minecraft.dataset.store import verify_store
-from world2minecraft.dataset.store.stored import stored_samples
+from world2minecraft.minecraftocc.building import build_dataset
+from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.plan import DatasetPlan, Recipe, house_scenes, plan_dataset
+from world2minecraft.minecraftocc.store import verify_store
+from world2minecraft.minecraftocc.store.stored import stored_samples
 from world2minecraft.rendering.views import camera_of
 
 HOUSES, IMAGES = 2, 40

@@ -4,7 +4,7 @@
 
 A data set (by default 40 views of four generated houses) is exported and read again by a loader
 written only from the published description of the formats
-(``tests/dataset/exchange/page_loader.py``): their axis orders, their ``vox2pix``, their
+(``tests/minecraftocc/exchange/page_loader.py``): their axis orders, their ``vox2pix``, their
 intrinsics. Reported are the cells whose label or projection differs from the store's (the box of
 NYUv2 is the region; that of OccScanNet follows the room's axes), and the share of the region's
 pixels whose depth leads, by the loader's arithmetic, to the label given by the store's own
@@ -21,16 +21,16 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from tests.dataset.exchange import page_loader
+from tests.minecraftocc.exchange import page_loader
 
 from world2minecraft.core.files import read_json, write_json
-from world2minecraft.dataset.building import build_dataset
-from world2minecraft.dataset.engine import opened_engine
-from world2minecraft.dataset.exporters import export_samples
-from world2minecraft.dataset.plan import house_scenes, plan_dataset
-from world2minecraft.dataset.showing import cells_behind
-from world2minecraft.dataset.store import open_store
-from world2minecraft.dataset.values import OccSample
+from world2minecraft.minecraftocc.building import build_dataset
+from world2minecraft.minecraftocc.engine import opened_engine
+from world2minecraft.minecraftocc.exporters import export_samples
+from world2minecraft.minecraftocc.plan import house_scenes, plan_dataset
+from world2minecraft.minecraftocc.showing import cells_behind
+from world2minecraft.minecraftocc.store import open_store
+from world2minecraft.minecraftocc.values import OccSample
 
 HOUSES, IMAGES = 4, 40
 NUDGE_M = 0.02  # Behind a surface, as far as ``cells_behind`` looks.

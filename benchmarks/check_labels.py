@@ -4,7 +4,7 @@
 
 Cameras are at the eyes of people standing in generated houses. Each frame is rendered and
 labelled; a float64 ray caster independent of the kernels (``tests/rendering/oracle.py``) casts each
-pixel again, and ``tests/dataset/label_reference.py`` derives from its depth, cell by cell, what
+pixel again, and ``tests/minecraftocc/label_reference.py`` derives from its depth, cell by cell, what
 is hit, what lies in the frustum and, for a sample, which cells are crossed by a ray. The exit
 code is 1 if any cell of any frame differs; ``--spoil`` shifts the labels by a millimetre to show
 that the check can fail.
@@ -24,22 +24,22 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 from scipy.ndimage import minimum_filter
-from tests.dataset import label_reference as reference
+from tests.minecraftocc import label_reference as reference
 from tests.rendering.oracle import oracle_picture
 
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.files import write_json
 from world2minecraft.core.types import BlockVolume, Camera
-from world2minecraft.dataset.labels import (
+from world2minecraft.minecraftocc.labels.labels import (
     cells_of_pixels,
     label_image,
     resized,
 )
-from world2minecraft.dataset.region import RegionRule, region_in
-from world2minecraft.dataset.tours import nyu_camera
-from world2minecraft.dataset.values import LabelRegion, OccLabels, SceneVoxels
-from world2minecraft.dataset.voxels import scene_voxels
+from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
+from world2minecraft.minecraftocc.labels.voxels import scene_voxels
+from world2minecraft.minecraftocc.tours import nyu_camera
+from world2minecraft.minecraftocc.values import LabelRegion, OccLabels, SceneVoxels
 from world2minecraft.procgen.worlds import generate_world
 from world2minecraft.rendering import BlockScene, Picture, prepare_scene, render_volume
 from world2minecraft.rendering.block_models import OwnLooks

@@ -28,7 +28,6 @@ from world2minecraft.cli.progress import shown
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.files import read_json, write_json, write_text
 from world2minecraft.core.progress import Progress
-from world2minecraft.dataset.importers import open_occupancy
 from world2minecraft.evaluation.metrics.confidence_intervals import micro_figures
 from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts
 from world2minecraft.evaluation.metrics.protocols import PROTOCOLS, ProtocolCounts, count_frame
@@ -47,6 +46,7 @@ from world2minecraft.learn.training import (
     trained_network,
 )
 from world2minecraft.learn.validation import said_labels
+from world2minecraft.minecraftocc.importers import open_occupancy
 
 SCENE_COUNTS = "scene_counts.json"
 

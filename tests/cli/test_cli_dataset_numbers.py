@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 from PIL import Image
-from tests.dataset.samples import random_labels, sample
+from tests.minecraftocc.samples import random_labels, sample
 
 from world2minecraft.cli import run
-from world2minecraft.dataset.store import write_store
+from world2minecraft.minecraftocc.store import write_store
 
 
 @pytest.fixture

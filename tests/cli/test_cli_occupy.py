@@ -12,10 +12,10 @@ from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotat
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.files import write_npz
 from world2minecraft.core.types import View
-from world2minecraft.dataset.formats.depth_codes import depth_png
-from world2minecraft.dataset.frame_completion import GridPlace
-from world2minecraft.dataset.saved_cells import SaidCells, cells_in_grid
 from world2minecraft.formats.room import read_room
+from world2minecraft.minecraftocc.cell_predictions import SaidCells, cells_in_grid
+from world2minecraft.minecraftocc.formats.depth_codes import depth_png
+from world2minecraft.minecraftocc.frame_completion import GridPlace
 
 POSE = look_at(np.array([2.2, 0.5, 1.5]), np.array([2.2, 3.0, 1.2]))
 ORIGIN_M = np.array([-0.2, 0.48, -0.08])

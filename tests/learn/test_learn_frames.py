@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.dataset.exchange.synthetic import sample
 from tests.learn.toy_sets import CAMERA, WIDE
+from tests.minecraftocc.exchange.synthetic import sample
 
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Camera
-from world2minecraft.dataset.formats.sscnet import downsampled
 from world2minecraft.learn.config import GRIDS
 from world2minecraft.learn.data.augment import augmented, flipped, jittered
 from world2minecraft.learn.data.frames import FrameRule, frame_of
+from world2minecraft.minecraftocc.formats.sscnet import downsampled
 
 LARGE = Camera(160, 120, 130.0, 130.0, 80.0, 60.0)
 COARSE, FINE = GRIDS["0.16"], GRIDS["0.08"]

@@ -9,7 +9,6 @@ import torch
 from tests.learn.toy_sets import toy_config, toy_set, write_toy_store
 
 from world2minecraft.core.coordinates import apply, invert_rigid
-from world2minecraft.dataset.formats.sscnet import downsampled
 from world2minecraft.learn import memory
 from world2minecraft.learn.config import GRIDS
 from world2minecraft.learn.data.cache import StreamedFrames
@@ -19,6 +18,7 @@ from world2minecraft.learn.memory import add_memory_scores, memory_scores, true_
 from world2minecraft.learn.networks import make_network
 from world2minecraft.learn.scoring import MEMORY
 from world2minecraft.learn.training import score_run, train_run
+from world2minecraft.minecraftocc.formats.sscnet import downsampled
 
 torch.set_num_threads(1)
 

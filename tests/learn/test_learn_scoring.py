@@ -12,13 +12,13 @@ from tests.reconstruction.occupancy.tiny_network import write_network
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import DamagedFileError, InputError, UsageError
 from world2minecraft.core.files import write_npz
-from world2minecraft.dataset.formats.sscnet import bin_bytes
 from world2minecraft.learn import training
 from world2minecraft.learn.config import GRIDS
 from world2minecraft.learn.data.frames import known_cells
 from world2minecraft.learn.predictions import SavedPredictions
 from world2minecraft.learn.scenes import SceneFrame, scene_scores
 from world2minecraft.learn.scoring import SCENES, SaidOfFrame, keys_to_score, protocol_scores
+from world2minecraft.minecraftocc.formats.sscnet import bin_bytes
 
 FINE = GRIDS["0.08"]
 SAMPLES = list(toy_samples(6, 3))

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from room_frames import SHAPE, VOXEL_M, room_batch
 
 from world2minecraft.core.coordinates import look_at
-from world2minecraft.dataset.label_kernels import mark_in_frustum
 from world2minecraft.learn.batch import OccInput
 from world2minecraft.learn.networks.parts.projection import lift, sight_of
+from world2minecraft.minecraftocc.labels.label_kernels import mark_in_frustum
 
 
 def seen(seed, shape=(7, 9, 5), voxel_m=0.3, size=(13, 18)):

@@ -7,10 +7,10 @@ import pytest
 
 from world2minecraft.cli import run as w2m
 from world2minecraft.core.errors import DamagedFileError, InputError
-from world2minecraft.dataset.formats.pickling import pickle_bytes
-from world2minecraft.dataset.importers.embodied import open_scenes
 from world2minecraft.learn.predictions import SavedPredictions
 from world2minecraft.learn.scoring import SCENES, saved_scene_scores, scenes_to_score
+from world2minecraft.minecraftocc.formats.pickling import pickle_bytes
+from world2minecraft.minecraftocc.importers.embodied import open_scenes
 
 SHAPE = (6, 13, 4)  # A side of 13, as many as their channels are.
 NAMES = ("scene0000_00", "scene0001_00")

@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
-from tests.dataset.exchange.synthetic import sample
+from tests.minecraftocc.exchange.synthetic import sample
 
 from world2minecraft.core.types import Camera
-from world2minecraft.dataset.importers.source import ImportedSet
-from world2minecraft.dataset.store import write_store
 from world2minecraft.learn.config import DataSource, RunConfig
+from world2minecraft.minecraftocc.importers.source import ImportedSet
+from world2minecraft.minecraftocc.store import write_store
 
 CAMERA = Camera(80, 60, 65.0, 65.0, 40.0, 30.0)
 WIDE = Camera(192, 120, 130.0, 130.0, 94.0, 61.0)

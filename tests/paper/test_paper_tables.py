@@ -7,8 +7,11 @@ import pytest
 from tests.evaluation.metrics.paper_occupancy import MINECRAFTOCC, NYU
 
 from world2minecraft.cli.verbs import VERBS, load
-from world2minecraft.dataset.statistics.paper import PUBLISHED_QUALITY, PUBLISHED_SETS
 from world2minecraft.evaluation.metrics.effort import PAPER_REFINED, PAPER_SCRATCH
+from world2minecraft.minecraftocc.statistics.other_data_sets import (
+    PUBLISHED_QUALITY,
+    PUBLISHED_SETS,
+)
 from world2minecraft.paper import filled, read_table, table_names
 from world2minecraft.paper.reading import measured
 from world2minecraft.vln.data.statistics import PAPER_LENGTHS

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from world2minecraft.cli import dataset_options as option
 
 if TYPE_CHECKING:
-    from world2minecraft.dataset.building import BuildReport
-    from world2minecraft.dataset.plan import DatasetPlan
+    from world2minecraft.minecraftocc.building import BuildReport
+    from world2minecraft.minecraftocc.plan import DatasetPlan
 
 EXAMPLES = """\
 w2m dataset build DATA --houses 4 --images 40            a small one, to look at
@@ -58,9 +58,9 @@ def run(
         UsageError: the words contradict each other. ConflictError: the folder has another data
         set, or another run works there. InputError: a scene cannot be read, the disk is full.
     """
-    from world2minecraft.dataset.plan import Recipe, plan_dataset
-    from world2minecraft.dataset.region import RegionRule
-    from world2minecraft.dataset.store.sample_files import SampleFiles
+    from world2minecraft.minecraftocc.labels.region import RegionRule
+    from world2minecraft.minecraftocc.plan import Recipe, plan_dataset
+    from world2minecraft.minecraftocc.store.sample_files import SampleFiles
 
     option.check_seed(seed, hour)
     given, recorded = option.given_named(tour, screenshots, at, fov)
@@ -89,8 +89,8 @@ def build(folder: Path, plan: "DatasetPlan", engine: str, jobs: int | None) -> N
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.machine import usable_cores
-    from world2minecraft.dataset.building import build_dataset
-    from world2minecraft.dataset.engine import opened_engine
+    from world2minecraft.minecraftocc.building import build_dataset
+    from world2minecraft.minecraftocc.engine import opened_engine
 
     compiling_note()
     processes = usable_cores() if jobs is None else jobs
@@ -101,7 +101,7 @@ def build(folder: Path, plan: "DatasetPlan", engine: str, jobs: int | None) -> N
 
 def _say(folder: Path, report: "BuildReport") -> None:
     from world2minecraft.cli.progress import spoken
-    from world2minecraft.dataset.building import TITLES
+    from world2minecraft.minecraftocc.building import TITLES
 
     for note in report.notes:
         print(f"note: {note}")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.dataset.exporters import ExportReport
+    from world2minecraft.minecraftocc.exporters import ExportReport
 
 EXAMPLES = """\
 w2m dataset export DATA --format nyu --out NYU             for MonoScene, NDC-Scene, ISO, Symphonies
@@ -53,9 +53,9 @@ def run(
     stopped goes on when the same command is given again. docs/occupancy-formats.md has every file.
     """
     from world2minecraft.cli.progress import shown
-    from world2minecraft.dataset.exporters import ExportRule, export_samples
-    from world2minecraft.dataset.exporters.rules import DATA_ROOT, FRAMES_PER_SCENE
-    from world2minecraft.dataset.importers import open_occupancy
+    from world2minecraft.minecraftocc.exporters import ExportRule, export_samples
+    from world2minecraft.minecraftocc.exporters.rules import DATA_ROOT, FRAMES_PER_SCENE
+    from world2minecraft.minecraftocc.importers import open_occupancy
 
     rule = ExportRule(
         unknown=unknown,

@@ -43,8 +43,8 @@ def run(
 
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.dataset.importers import open_occupancy
-    from world2minecraft.dataset.store import write_store
+    from world2minecraft.minecraftocc.importers import open_occupancy
+    from world2minecraft.minecraftocc.store import write_store
 
     found = open_occupancy(source, format, labels=labels)
     count = len(found.keys(split)) if limit is None else min(limit, len(found.keys(split)))

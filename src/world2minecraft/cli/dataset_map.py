@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.dataset.blockmap import BlockMap
+    from world2minecraft.minecraftocc.block_map import BlockMap
 
 EXAMPLES = """\
 w2m dataset map                                  the map nyu, class by class
@@ -42,8 +42,8 @@ def run(blocks: Blocks = None, block_map: MapName = "nyu", json_out: Json = None
         UsageError: a block is no block state.
     """
     from world2minecraft.core.files import write_json
-    from world2minecraft.dataset.blockmap import block_map_json, load_block_map
     from world2minecraft.minecraft.block_states import parse_state
+    from world2minecraft.minecraftocc.block_map import block_map_json, load_block_map
 
     rules = load_block_map(block_map)
     states = [str(parse_state(block)) for block in blocks or []]

@@ -9,7 +9,7 @@ from world2minecraft.core.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import Camera
-    from world2minecraft.dataset.plan import GivenViews, SceneSpec
+    from world2minecraft.minecraftocc.plan import GivenViews, SceneSpec
 
 IMAGES_A_SCENE = 50  # Where nobody says how many.
 
@@ -94,7 +94,7 @@ def camera_named(name: str, size: str, fov_deg: float | None) -> "Camera":
     """Return the camera that the options mean. Raises UsageError or UnknownNameError."""
     from world2minecraft.cli.render_options import camera_choice
     from world2minecraft.core.errors import UnknownNameError
-    from world2minecraft.dataset.tours import nyu_camera, paper_camera
+    from world2minecraft.minecraftocc.tours import nyu_camera, paper_camera
     from world2minecraft.rendering.views import vertical_fov_deg_of
 
     cameras = {"nyu": nyu_camera, "paper": paper_camera}
@@ -123,7 +123,7 @@ def scenes_named(
     """
     from dataclasses import replace
 
-    from world2minecraft.dataset.plan import house_scenes, preset_named, source_scenes
+    from world2minecraft.minecraftocc.plan import house_scenes, preset_named, source_scenes
 
     places = list(world or [])
     if worlds is not None:
@@ -155,7 +155,7 @@ def given_named(
     Raises:
         UsageError: the words contradict each other. InputError: they cannot be read.
     """
-    from world2minecraft.dataset.plan import GivenViews
+    from world2minecraft.minecraftocc.plan import GivenViews
 
     if tour is not None and screenshots is not None:
         raise UsageError("--tour and --screenshots are two kinds of views; give one of them")
@@ -164,7 +164,7 @@ def given_named(
 
         return GivenViews(str(tour)), len(read_tour(tour))
     if screenshots is not None:
-        from world2minecraft.dataset.building.recorded import recorded
+        from world2minecraft.minecraftocc.building.recorded_views import recorded
 
         words = {} if fov_deg is None else {"vertical_fov_deg": fov_deg}
         given = GivenViews(str(screenshots), True, said_at(at), **words)  # type: ignore[arg-type]

@@ -62,16 +62,16 @@ def run(
     """
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.files import write_json
-    from world2minecraft.dataset.picture_sources import pictures_at
-    from world2minecraft.dataset.quality import (
+    from world2minecraft.evaluation.metrics.image_quality import niqe_model
+    from world2minecraft.evaluation.metrics.image_quality.niqe_models import available_variants
+    from world2minecraft.minecraftocc.picture_sources import pictures_at
+    from world2minecraft.minecraftocc.quality import (
         choose,
         measure_quality,
         quality_json,
         quality_text,
         size_of,
     )
-    from world2minecraft.evaluation.metrics.image_quality import niqe_model
-    from world2minecraft.evaluation.metrics.image_quality.niqe_models import available_variants
 
     size = size_of(resize)
     models = [niqe_model(name) for name in variant or available_variants()]

@@ -32,8 +32,8 @@ def run(
     from world2minecraft.cli.dataset_options import camera_named
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.dataset.photo_rooms import PhotoRooms, photo_samples
-    from world2minecraft.dataset.store import write_store
+    from world2minecraft.minecraftocc.photo_rooms import PhotoRooms, photo_samples
+    from world2minecraft.minecraftocc.store import write_store
 
     plan = PhotoRooms(rooms, images, test_share, seed, camera_named("nyu", size, None))
     compiling_note()

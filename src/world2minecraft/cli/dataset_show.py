@@ -32,8 +32,8 @@ def run(
     Where the labels' colours lie on the things that they name, camera, axes and labels fit.
     """
     from world2minecraft.core.files import write_bytes
-    from world2minecraft.dataset.importers import open_occupancy
-    from world2minecraft.dataset.showing import sample_picture, seen_in_cells
+    from world2minecraft.minecraftocc.importers import open_occupancy
+    from world2minecraft.minecraftocc.showing import sample_picture, seen_in_cells
     from world2minecraft.rendering.output.images import colour_bytes
 
     found = open_occupancy(source, format, labels=labels)

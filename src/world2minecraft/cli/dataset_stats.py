@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.dataset.statistics import DatasetStatistics
+    from world2minecraft.minecraftocc.statistics import DatasetStatistics
 
 EXAMPLES = """\
 w2m dataset stats DATA                             the paper's table, with DATA below it
@@ -67,11 +67,11 @@ def run(
     """
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.machine import usable_cores
-    from world2minecraft.dataset.statistics import statistics_text
-    from world2minecraft.dataset.statistics.reading import statistics_of
+    from world2minecraft.minecraftocc.statistics import statistics_text
+    from world2minecraft.minecraftocc.statistics.reading import statistics_of
 
     if plots is not None:
-        from world2minecraft.dataset.statistics.plots import need_matplotlib
+        from world2minecraft.minecraftocc.statistics.plots import need_matplotlib
 
         need_matplotlib()
     with shown() as progress:
@@ -93,8 +93,8 @@ def _written(
 ) -> list[Path]:
     """Write what is asked for, and return where it lies."""
     from world2minecraft.core.files import write_json, write_text
-    from world2minecraft.dataset.statistics import statistics_json, statistics_latex
-    from world2minecraft.dataset.statistics.plots import write_plots
+    from world2minecraft.minecraftocc.statistics import statistics_json, statistics_latex
+    from world2minecraft.minecraftocc.statistics.plots import write_plots
 
     written = []
     if json_file is not None:

@@ -21,8 +21,8 @@ from world2minecraft.cli.dataset_options import (
 )
 
 if TYPE_CHECKING:
-    from world2minecraft.dataset.source import SceneSource
-    from world2minecraft.dataset.tours import PlannedView
+    from world2minecraft.minecraftocc.source import SceneSource
+    from world2minecraft.minecraftocc.tours import PlannedView
 
 EXAMPLES = """\
 w2m dataset tour WORLDS/house_0001                        100 views, to tour.jsonl
@@ -85,8 +85,8 @@ def run(
         InputError: the world or a screenshot cannot be read.
     """
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.dataset.source import open_scene_source
-    from world2minecraft.dataset.tours import write_views
+    from world2minecraft.minecraftocc.source import open_scene_source
+    from world2minecraft.minecraftocc.tours import write_views
 
     if screenshots is None and (at or poses is not None or pattern is not None):
         raise UsageError("--at, --poses and --pattern tell of --screenshots DIR; name them")
@@ -109,7 +109,7 @@ def _planned(
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.dataset.tours import TourRule, layouts_beside, plan_views
+    from world2minecraft.minecraftocc.tours import TourRule, layouts_beside, plan_views
 
     start = source.start()
     if reachable and start is None:
@@ -134,8 +134,8 @@ def _write_recorded(
     fov_deg: float | None,
     out: Path,
 ) -> None:
-    from world2minecraft.dataset.screenshots import read_screenshots
-    from world2minecraft.dataset.tours.recorded import write_recorded
+    from world2minecraft.minecraftocc.screenshots import read_screenshots
+    from world2minecraft.minecraftocc.tours.recorded import write_recorded
 
     told = said_at(at)
     views = read_screenshots(

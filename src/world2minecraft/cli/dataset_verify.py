@@ -16,7 +16,7 @@ def run(folder: option.Folder) -> None:
     """
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.errors import DamagedFileError
-    from world2minecraft.dataset.store import verify_store
+    from world2minecraft.minecraftocc.store import verify_store
 
     with shown() as progress:
         verdict = verify_store(folder, progress)

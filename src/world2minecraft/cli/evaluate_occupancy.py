@@ -78,8 +78,8 @@ def run(
 
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.files import write_json, write_text
-    from world2minecraft.dataset.importers import open_occupancy
     from world2minecraft.learn.tables import latex_rows
+    from world2minecraft.minecraftocc.importers import open_occupancy
 
     if not said.exists():
         from world2minecraft.core.errors import InputError
@@ -207,7 +207,7 @@ class _Asked:
 
         if self.found.format != "embodied":
             return None
-        from world2minecraft.dataset.importers.embodied import open_scenes
+        from world2minecraft.minecraftocc.importers.embodied import open_scenes
 
         scenes = open_scenes(self.found.path)
         if not (names := scenes_to_score(saved, scenes, self.split)):

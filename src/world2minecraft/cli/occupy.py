@@ -8,8 +8,8 @@ import typer
 
 if TYPE_CHECKING:
     from world2minecraft.core.types import Camera
-    from world2minecraft.dataset.frame_completion import GridPlace
-    from world2minecraft.dataset.saved_cells import SaidCells
+    from world2minecraft.minecraftocc.cell_predictions import SaidCells
+    from world2minecraft.minecraftocc.frame_completion import GridPlace
 
 EXAMPLES = """\
 w2m occupy NYU0001_0000.png --grid NYU0001_0000.bin --out pred.npz       SSCNet's NYUv2
@@ -78,7 +78,7 @@ def run(
     """
     from world2minecraft.capture.readers.photos import PHOTO_SUFFIXES
     from world2minecraft.core.errors import InputError
-    from world2minecraft.dataset.frame_completion import read_grid_place
+    from world2minecraft.minecraftocc.frame_completion import read_grid_place
 
     if not source.exists():
         raise InputError(source, "is not there; give a depth PNG, a photo or a capture")
@@ -126,8 +126,12 @@ class _Frame:
         from world2minecraft.capture.depth_images import check_depth_kind
         from world2minecraft.capture.images import read_colour, read_header, read_raw
         from world2minecraft.core.errors import CaptureError
-        from world2minecraft.dataset.frame_completion import VOXEL_M, complete_frame, depth_of_png
-        from world2minecraft.dataset.saved_cells import SaidCells
+        from world2minecraft.minecraftocc.cell_predictions import SaidCells
+        from world2minecraft.minecraftocc.frame_completion import (
+            VOXEL_M,
+            complete_frame,
+            depth_of_png,
+        )
 
         header = read_header(self.source)
         if header.mode in ("RGB", "RGBA", "CMYK", "YCbCr"):
@@ -151,7 +155,7 @@ class _Frame:
         """Return what a monocular network says."""
         from world2minecraft.capture.images import read_colour, read_header
         from world2minecraft.core.errors import CaptureError
-        from world2minecraft.dataset.saved_cells import cells_by_network
+        from world2minecraft.minecraftocc.cell_predictions import cells_by_network
         from world2minecraft.reconstruction.occupancy.monocular import MonoPredictor
 
         photo = self.colour or self.source
@@ -182,8 +186,12 @@ def _of_capture(
     """Run a capture as far as its labels, and write what they are."""
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.dataset.saved_cells import cells_in_grid, cells_of_room, write_cells
     from world2minecraft.formats.room import read_room
+    from world2minecraft.minecraftocc.cell_predictions import (
+        cells_in_grid,
+        cells_of_room,
+        write_cells,
+    )
     from world2minecraft.reconstruction.parameters import Parameters, with_settings
     from world2minecraft.reconstruction.pipeline import reconstruct
 
@@ -205,7 +213,7 @@ def _of_capture(
 
 def _write_frame(out: Path, cells: "SaidCells", place: "GridPlace") -> None:
     """Write a frame in its file's own axes."""
-    from world2minecraft.dataset.saved_cells import write_cells
+    from world2minecraft.minecraftocc.cell_predictions import write_cells
 
     write_cells(out, cells, "xzy", camera_to_world=place.camera_to_world)
 

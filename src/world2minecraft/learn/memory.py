@@ -14,8 +14,6 @@ from torch import nn
 
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.dataset.formats.sscnet import downsampled
-from world2minecraft.dataset.importers.source import ImportedSet
 from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore
 from world2minecraft.evaluation.metrics.protocols import count_scene
 from world2minecraft.learn.config import GRIDS, RunConfig
@@ -25,6 +23,8 @@ from world2minecraft.learn.networks.embodied import Embodied
 from world2minecraft.learn.networks.stream import SceneStream
 from world2minecraft.learn.scenes import SceneFrame, assembled, lattice_of
 from world2minecraft.learn.scoring import MEMORY, of_scenes
+from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.importers.source import ImportedSet
 
 FINE = GRIDS["0.08"]
 

@@ -15,8 +15,8 @@ import numpy as np
 from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
 from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError
 from world2minecraft.core.files import array_names, read_npy, read_npz
-from world2minecraft.dataset.formats.unpickling import read_pickle
 from world2minecraft.learn.config import GRIDS, Grid
+from world2minecraft.minecraftocc.formats.unpickling import read_pickle
 
 # How an array's axes lie: which of them are our x, y, z.
 ORDERS = {"xyz": (0, 1, 2), "xzy": (0, 2, 1), "yxz": (1, 0, 2)}

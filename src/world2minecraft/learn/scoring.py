@@ -12,8 +12,6 @@ import numpy as np
 
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.dataset.importers.embodied import SceneSet
-from world2minecraft.dataset.importers.source import ImportedSet
 from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore, summarise
 from world2minecraft.evaluation.metrics.protocols import (
     PROTOCOLS,
@@ -27,6 +25,8 @@ from world2minecraft.learn.data.cache import Frames
 from world2minecraft.learn.data.frames import known_cells
 from world2minecraft.learn.predictions import SavedPredictions, grid_like
 from world2minecraft.learn.scenes import SceneFrame, scene_scores
+from world2minecraft.minecraftocc.importers.embodied import SceneSet
+from world2minecraft.minecraftocc.importers.source import ImportedSet
 
 SCENES = "embodied scenes"  # The scene level of ``embodied``, beside its frames.
 MEMORY = "embodied memory"  # The same of a network that fuses frames by itself.

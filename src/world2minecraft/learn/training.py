@@ -32,7 +32,6 @@ from world2minecraft.core.errors import ConflictError, DamagedFileError, UsageEr
 from world2minecraft.core.files import write_json
 from world2minecraft.core.locks import Lock
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.dataset.importers import open_occupancy
 from world2minecraft.learn.checkpoints import (
     load_checkpoint,
     load_weights,
@@ -56,6 +55,7 @@ from world2minecraft.learn.validation import (
     said_labels,
     validated,
 )
+from world2minecraft.minecraftocc.importers import open_occupancy
 
 RUN, FACTS, SCORES = "run.yaml", "run.json", "scores.json"
 LAST_SCORES = "scores_last.json"  # Of the last step's weights, where somebody asks for them.

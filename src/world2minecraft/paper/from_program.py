@@ -6,9 +6,9 @@ from typing import Any
 
 import yaml
 
-from world2minecraft.dataset.blockmap import load_block_map
-from world2minecraft.dataset.plan import PRESETS
 from world2minecraft.minecraft.block_states import known_blocks
+from world2minecraft.minecraftocc.block_map import load_block_map
+from world2minecraft.minecraftocc.plan import PRESETS
 from world2minecraft.paper.values import Ours, PaperTable
 from world2minecraft.vln.data.quotas import PAPER_HELD, PAPER_SIZE
 from world2minecraft.vln.handoff import easyr1, llamafactory, steps

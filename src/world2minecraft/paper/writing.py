@@ -4,7 +4,7 @@ import textwrap
 from collections.abc import Mapping
 from typing import Any
 
-from world2minecraft.dataset.statistics.tables import escape
+from world2minecraft.minecraftocc.statistics.tables import escape
 from world2minecraft.paper.layout import Grid, grid_of
 from world2minecraft.paper.values import Ours, PaperTable
 from world2minecraft.vln.running.tables import markdown_of

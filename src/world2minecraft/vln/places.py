@@ -10,8 +10,8 @@ from scipy.spatial import KDTree
 
 from world2minecraft.core.coordinates import apply
 from world2minecraft.core.types import BlockVolume, Layout
-from world2minecraft.dataset.tours.rooms import TourRoom
 from world2minecraft.minecraft.physics.graph import WalkGraph
+from world2minecraft.minecraftocc.tours.rooms import TourRoom
 from world2minecraft.procgen.sensors.navmesh import is_inside
 
 NEAR_M = 1.5  # A place farther from all rooms than this is in none.

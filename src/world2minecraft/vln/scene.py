@@ -16,9 +16,6 @@ from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import apply, focal_px_of_fov, invert
 from world2minecraft.core.errors import InputError, UnknownNameError, UsageError
 from world2minecraft.core.types import BlockVolume, Camera, Layout
-from world2minecraft.dataset.source import SceneSource, open_scene_source
-from world2minecraft.dataset.tours.rooms import TourRoom, find_rooms
-from world2minecraft.dataset.tours.values import TourRule
 from world2minecraft.formats.labelled import place_of_blocks
 from world2minecraft.formats.layout import read_layouts
 from world2minecraft.furniture.library import TEMPLATES
@@ -32,6 +29,9 @@ from world2minecraft.minecraft.physics.columns import Solid
 from world2minecraft.minecraft.physics.doors import doors_opened
 from world2minecraft.minecraft.physics.graph import WalkGraph, WalkRule, solid_of, walk_graph
 from world2minecraft.minecraft.physics.shortest_paths import parts
+from world2minecraft.minecraftocc.source import SceneSource, open_scene_source
+from world2minecraft.minecraftocc.tours.rooms import TourRoom, find_rooms
+from world2minecraft.minecraftocc.tours.values import TourRule
 from world2minecraft.rendering.light import LookLight
 from world2minecraft.rendering.light_parameters import DAY
 from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture, render_volume

@@ -11,8 +11,8 @@ from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.coordinates import apply, invert_rigid, look_at, rotation_about_z
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.types import Camera, Scan, View
-from world2minecraft.dataset.region import RegionRule, region_of
 from world2minecraft.geometry.unprojection import lift_depth, project
+from world2minecraft.minecraftocc.labels.region import RegionRule, region_of
 from world2minecraft.reconstruction.fusion import extract_grid as read_out
 from world2minecraft.reconstruction.fusion import fuse_views
 from world2minecraft.reconstruction.occupancy import monocular as mono

@@ -19,8 +19,8 @@ from world2minecraft.core.files import read_json, write_json
 from world2minecraft.core.jit import user_cache_dir
 from world2minecraft.core.locks import Lock
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.dataset.importers.source import ImportedSet
 from world2minecraft.learn.data.frames import Frame, FrameRule, frame_of
+from world2minecraft.minecraftocc.importers.source import ImportedSet
 
 VERSION = 1  # Of what lies in the folder.
 ARRAYS = ("image", "depth", "intrinsics", "camera_to_grid", "grid_to_room", "labels", "masks")

@@ -14,11 +14,11 @@ from PIL import Image
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Camera
-from world2minecraft.dataset.formats.boxes import cells_in_image
-from world2minecraft.dataset.formats.sscnet import downsampled
-from world2minecraft.dataset.values import OccSample
 from world2minecraft.evaluation.metrics.protocols import KnownCells
 from world2minecraft.learn.config import Grid
+from world2minecraft.minecraftocc.formats.boxes import cells_in_image
+from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.values import OccSample
 
 SAME_SURFACE = 0.05  # Of the depth: neighbours farther apart are of two surfaces.
 

@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.dataset.importers import open_occupancy
-from world2minecraft.dataset.importers.source import ImportedSet
 from world2minecraft.learn.config import RunConfig
 from world2minecraft.learn.data.batches import TrainingPart
 from world2minecraft.learn.data.cache import Frames, StreamedFrames, cached_frames
 from world2minecraft.learn.data.classes import class_counts
 from world2minecraft.learn.data.frames import FrameRule
 from world2minecraft.learn.data.splits import Split, counted, evenly, split_rows
+from world2minecraft.minecraftocc.importers import open_occupancy
+from world2minecraft.minecraftocc.importers.source import ImportedSet
 
 COUNTED_FRAMES = 1000  # Of each set, for the classes' frequencies; spread evenly.
 

@@ -16,7 +16,7 @@ from world2minecraft import __version__
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import write_json
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.dataset.source import scene_id_of
+from world2minecraft.minecraftocc.source import scene_id_of
 from world2minecraft.vln.data.asking import items_of
 from world2minecraft.vln.data.crew import SceneJob, work_jobs
 from world2minecraft.vln.data.leaks import Leaks, leaks_of, without_shared_pictures

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.dataset.engine import opened_engine
+from world2minecraft.minecraftocc.engine import opened_engine
 from world2minecraft.vln.data.recorded import At, recorded_tours
 from world2minecraft.vln.data.scene_work import SceneWork, Tick, WorkRule, work_scene
 from world2minecraft.vln.scene import open_scene

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress, silent
-from world2minecraft.dataset.engine import opened_engine
+from world2minecraft.minecraftocc.engine import opened_engine
 from world2minecraft.procgen import BASE_KINDS, generate_room, scan_room
 from world2minecraft.procgen.worlds import house_of, write_house
 from world2minecraft.reconstruction.parameters import Parameters

@@ -13,11 +13,11 @@ import numpy as np
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.errors import InputError, UsageError
 from world2minecraft.core.types import BlockVolume, Layout
-from world2minecraft.dataset.source import open_scene_source, source_of_blocks
 from world2minecraft.formats.build_source import Source, Start
 from world2minecraft.formats.labelled import labelled
 from world2minecraft.formats.scene import read_scene
 from world2minecraft.formats.volume_crop import trimmed
+from world2minecraft.minecraftocc.source import open_scene_source, source_of_blocks
 from world2minecraft.rendering.editable_scene import LiveScene
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.vln.scene import VlnScene, layouts_beside

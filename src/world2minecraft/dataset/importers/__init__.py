@@ -1,6 +1,0 @@
-"""Occupancy data sets of others, and our exports of the same formats, read as samples."""
-
-from world2minecraft.dataset.importers.opening import IMPORTED, open_occupancy
-from world2minecraft.dataset.importers.source import ImportedSet
-
-__all__ = ["IMPORTED", "ImportedSet", "open_occupancy"]

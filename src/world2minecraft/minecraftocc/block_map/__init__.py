@@ -1,0 +1,28 @@
+"""Block maps: from the blocks of any world to the 12 classes, by name and by where they are.
+
+``load_block_map`` gives a shipped map or one of a YAML file, ``classify`` labels a volume by it,
+and ``remapped`` gives what is labelled already other classes.
+"""
+
+from world2minecraft.minecraftocc.block_map.classify import classify
+from world2minecraft.minecraftocc.block_map.export import block_map_json
+from world2minecraft.minecraftocc.block_map.fine import class_of_fine, remapped
+from world2minecraft.minecraftocc.block_map.parser import (
+    MAPS,
+    block_map_of,
+    load_block_map,
+    read_block_map,
+)
+from world2minecraft.minecraftocc.block_map.rules import BlockMap
+
+__all__ = [
+    "MAPS",
+    "BlockMap",
+    "block_map_json",
+    "block_map_of",
+    "class_of_fine",
+    "classify",
+    "load_block_map",
+    "read_block_map",
+    "remapped",
+]

@@ -1,0 +1,148 @@
+"""A block map as a value: what a block stands for by its name, and else by where it is.
+
+A block's name says its class, or a kind. A kind has rules, of which the first that holds at a
+block counts. So a map is a table that a person can read and edit, and nothing in code.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fnmatch import translate
+from functools import cached_property
+from typing import NamedTuple
+
+from world2minecraft.core.classes import CLASS_NAMES
+
+Span = tuple[float, float]
+ANY = "*"  # The namespace of words that speak of every mod.
+
+
+class Pattern(NamedTuple):
+    """Names of blocks, with the properties that they must have: ``*_slab[type=double]``."""
+
+    name: re.Pattern[str]
+    properties: tuple[str, ...]  # "type=double"
+    text: str
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A class, and what must hold at a block that it counts for."""
+
+    class_name: str
+    where: tuple[str, ...] = ()  # names of conditions; "not NAME" turns one round
+    spans: Mapping[str, Span] = field(default_factory=dict)  # of the thing that it is part of
+    shares: Mapping[str, Span] = field(default_factory=dict)  # of that thing's blocks, by kind
+
+    @property
+    def always(self) -> bool:
+        """Whether it holds everywhere."""
+        return not (self.where or self.spans or self.shares)
+
+
+@dataclass(frozen=True)
+class Words:
+    """Words in the names of blocks of mods; ``namespaces`` are beginnings of theirs, or ``*``."""
+
+    namespaces: tuple[str, ...]
+    meanings: Mapping[str, str]  # a word -> a class or a kind
+
+    @cached_property
+    def _by_length(self) -> list[str]:
+        return sorted(self.meanings, key=len, reverse=True)
+
+    def of(self, namespace: str, name: str) -> str | None:
+        """Return what the longest word in a name means, of two as long the last; None for none."""
+        spoken = any(
+            namespace != "minecraft" if start == ANY else namespace.startswith(start)
+            for start in self.namespaces
+        )
+        found = [word for word in self._by_length if word in name] if spoken else []
+        if not found:
+            return None
+        alike = [word for word in found if len(word) == len(found[0])]
+        return self.meanings[max(alike, key=name.rfind)]
+
+
+@dataclass(frozen=True, eq=False)
+class BlockMap:
+    """What blocks stand for. See ``docs/block-maps.md`` for the file that it is read from."""
+
+    name: str
+    about: str
+    blocks: Mapping[str, str]  # a full id -> a class or a kind
+    words: tuple[Words, ...]
+    kinds: Mapping[str, tuple[Pattern, ...]]  # in the order in which they are asked
+    whole: str  # what a full block is that nothing names; a class or a kind
+    other: str  # and one that is not full
+    structure: frozenset[str]  # the kinds that floors, walls and ceilings can be of
+    apart: frozenset[str]  # the kinds and classes that are no part of the thing they touch
+    sheets: frozenset[str]  # the kinds that curtains are of
+    plates: frozenset[str]  # the kinds that pictures are of
+    rules: Mapping[str, tuple[Rule, ...]]  # of each kind
+    designs: tuple[tuple[Pattern, str], ...]  # our furniture designs -> a class
+    unless_known: frozenset[str]  # kinds whose class gives way to what is known already
+    entities: tuple[tuple[Pattern, str], ...]  # what stands free of the grid -> a class
+    _found: dict[str, str] = field(default_factory=dict, init=False, repr=False)
+
+    def meaning(self, state: str) -> str:
+        """Return the class or the kind of a block state by its name alone.
+
+        Example:
+            >>> from world2minecraft.minecraftocc.block_map import load_block_map
+            >>> load_block_map("nyu").meaning("minecraft:bookshelf")
+            'furn'
+        """
+        if state not in self._found:  # Scene after scene is built of the same states.
+            self._found[state] = self._meaning_of(state)
+        return self._found[state]
+
+    def _meaning_of(self, state: str) -> str:
+        full, _, rest = state.partition("[")
+        full = full if ":" in full else f"minecraft:{full}"
+        if full in self.blocks:
+            return self.blocks[full]
+        namespace, _, name = full.partition(":")
+        for words in self.words:
+            said = words.of(namespace, name)
+            if said is not None:
+                return said
+        stated = frozenset(rest[:-1].split(","))
+        for kind, patterns in self.kinds.items():
+            if any(matches(pattern, full, name, stated) for pattern in patterns):
+                return kind
+        return self.whole if _is_whole(state) else self.other
+
+    def rules_of(self, meaning: str) -> tuple[Rule, ...]:
+        """Return the rules of a class or kind: a class has one, itself."""
+        return (Rule(meaning),) if meaning in CLASS_NAMES else self.rules[meaning]
+
+    def classes_of(self, state: str) -> tuple[str, ...]:
+        """Return the classes that a block can be of, likeliest first where it is by itself.
+
+        Example:
+            >>> from world2minecraft.minecraftocc.block_map import load_block_map
+            >>> load_block_map("nyu").classes_of("oak_planks")[:3]
+            ('floor', 'ceiling', 'wall')
+        """
+        rules = self.rules_of(self.meaning(state))
+        return tuple(dict.fromkeys(rule.class_name for rule in rules))
+
+
+def pattern_of(text: str) -> Pattern:
+    """Return the pattern of a text; without a namespace it speaks of all."""
+    name, _, rest = text.partition("[")
+    properties = tuple(part for part in rest.removesuffix("]").split(",") if part)
+    return Pattern(re.compile(translate(name)), properties, text)
+
+
+def matches(pattern: Pattern, full: str, name: str, stated: frozenset[str]) -> bool:
+    """Whether a block's full id, or its name alone, and its properties fit a pattern."""
+    asked = full if ":" in pattern.text.partition("[")[0] else name
+    return bool(pattern.name.match(asked)) and stated.issuperset(pattern.properties)
+
+
+def _is_whole(state: str) -> bool:
+    from world2minecraft.minecraft.collision_shapes import is_full_cube  # noqa: PLC0415
+
+    return is_full_cube(state)

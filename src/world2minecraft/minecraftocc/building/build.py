@@ -1,0 +1,284 @@
+"""A whole data set, from its plan: begun or gone on with, by one run at a time."""
+
+import json
+import shutil
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.errors import ConflictError, OutputError, UsageError
+from world2minecraft.core.files import write_json
+from world2minecraft.core.locks import Lock
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.minecraftocc.building.cpu_clock import STAGES, milliseconds_an_image
+from world2minecraft.minecraftocc.building.process_registry import dismiss, wait_for_others
+from world2minecraft.minecraftocc.building.scenes import SceneFacts, SceneTask, survey
+from world2minecraft.minecraftocc.building.shards import in_order, index_shard, make_shard, units_of
+from world2minecraft.minecraftocc.building.shares import shared_views
+from world2minecraft.minecraftocc.building.warming import is_cold, warm
+from world2minecraft.minecraftocc.engine import Engine
+from world2minecraft.minecraftocc.plan import DatasetPlan, SceneSpec
+from world2minecraft.minecraftocc.store.folder import (
+    CLASSES,
+    INDEX,
+    KIND,
+    LEFTOVER,
+    LOCK,
+    META,
+    SHARDS,
+    SPLITS,
+    WORLDS,
+    read_meta,
+    write_classes,
+)
+from world2minecraft.minecraftocc.store.index import arrow_modules
+from world2minecraft.minecraftocc.store.sample_files import FORMAT, FineTable
+from world2minecraft.minecraftocc.store.shard import PART
+from world2minecraft.minecraftocc.store.writer import finish_store
+from world2minecraft.minecraftocc.values import FineClass
+
+EMPTY = FineClass("minecraft:air")
+
+
+@dataclass(frozen=True)
+class BuildReport:
+    """What a build has made: the images of each split, how many now, and CPU by stage."""
+
+    images: dict[str, int]
+    made: int
+    shards: int
+    sha256: str
+    seconds: float
+    cpu_seconds: dict[str, float]
+    notes: tuple[str, ...] = ()
+    milliseconds: dict[str, float] = field(default_factory=dict)
+
+
+def build_dataset(
+    folder: str | Path, plan: DatasetPlan, engine: Engine, progress: Progress = silent
+) -> BuildReport:
+    """Make a data set, or what is missing of it, and finish it.
+
+    Args:
+        folder: where; the same plan there is gone on with.
+        plan: what it is made of.
+        engine: who does the work.
+        progress: told of scenes, images and the index.
+
+    Raises:
+        ConflictError: the folder has another data set, or another run is at work there.
+        UsageError: the scenes do not give as many views as a preset needs.
+        OutputError: the disk is full. InputError: a scene cannot be read.
+        WorkerError: a process has died again and again.
+    """
+    root, began = Path(folder), time.monotonic()
+    arrow_modules()
+    _make_folder(root)
+    lock = Lock(root / LOCK, "built")
+    lock.take()
+    try:
+        wait_for_others(root)
+        begin(root, plan)
+        sweep(root)
+        report = _finished(root) or _Build(root, plan, engine, progress).run()
+    except BaseException:
+        lock.let_go()
+        raise
+    dismiss(root)
+    lock.remove()
+    return replace(report, seconds=time.monotonic() - began)
+
+
+def begin(folder: Path, plan: DatasetPlan) -> None:
+    """Write what the data set will be, or check that it is the same that was begun.
+
+    Raises:
+        ConflictError: it is another.
+    """
+    told = plan.facts()
+    if not (folder / META).exists():
+        if (folder / SHARDS).exists():
+            raise ConflictError(folder, "holds shards and no dataset.json; choose another folder")
+        write_json(folder / META, {"kind": KIND, "format": FORMAT, "complete": False, "plan": told})
+        return
+    before = read_meta(folder, finished=False).get("plan")
+    if not isinstance(before, dict):
+        raise ConflictError(folder, "holds a data set that was not built; choose another folder")
+    wrong = _differences(before, told)
+    if wrong:
+        raise ConflictError(
+            folder, f"holds a data set of another {', '.join(wrong)}; choose another folder"
+        )
+
+
+def sweep(folder: Path) -> None:
+    """Take away what an interrupted run has left half written, but for the parts of shards."""
+    for place in (folder, folder / "scenes", folder / WORLDS, *(folder / SHARDS).glob("*")):
+        for path in place.glob(".*") if place.is_dir() else ():
+            if not LEFTOVER.fullmatch(path.name):
+                continue  # Somebody's own, such as .git.
+            shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
+    for path in (folder / SHARDS).glob(f"*/*{PART}"):
+        if path.with_name(path.name.removesuffix(PART)).exists():
+            path.unlink(missing_ok=True)
+
+
+def _finished(folder: Path) -> BuildReport | None:
+    """Return the report of a data set of which all files are there; what they hold is not read."""
+    meta = read_meta(folder, finished=False)
+    shards = meta.get("shards") if meta.get("complete") else None
+    if not shards or not all((folder / name).is_file() for name in (*shards, INDEX, CLASSES)):
+        return None
+    images = {split: meta["images"][split] for split in SPLITS if split in meta["images"]}
+    return BuildReport(images, 0, len(shards), str(meta["sha256"]), 0.0, {})
+
+
+@dataclass(eq=False)
+class _Build:
+    """A build at work."""
+
+    folder: Path
+    plan: DatasetPlan
+    engine: Engine
+    progress: Progress
+    cpu: dict[str, float] = field(default_factory=lambda: dict.fromkeys(STAGES, 0.0))
+    notes: list[str] = field(default_factory=list)
+
+    def run(self) -> BuildReport:
+        """Look at the scenes, make the shards, write the index."""
+        facts: dict[str, SceneFacts] = {}
+        if is_cold():
+            first = SceneTask(str(self.folder), self.plan.scenes[0], self.plan.recipe)
+            list(self.engine.run(warm, [first], self._ticker("compile", 1)))
+        scenes = self._settled(shared_views(self.plan.scenes, partial(self._look, facts)))
+        _refuse_twins(scenes, facts)
+        plan = replace(self.plan, scenes=scenes)
+        classes = {one for fact in facts.values() for one in fact.fine} - {EMPTY}
+        write_classes(self.folder, FineTable((EMPTY, *sorted(classes))))
+        units, total = units_of(self.folder, plan), sum(plan.images.values())
+        made = 0
+        tick = self._ticker("images", total)
+        for _, (count, seconds) in self.engine.run(make_shard, units, tick):
+            made += count
+            for stage, value in seconds.items():
+                self.cpu[stage] += value
+        meta = {
+            "images": plan.images,
+            "scenes": [_told(scene, facts[scene.scene_id]) for scene in scenes],
+            "plan": self.plan.facts(),
+        }
+        rows = in_order(self.engine.run(index_shard, units, self._ticker("index", total)))
+        whole = finish_store(
+            self.folder, [unit.name for unit in units], meta, (self._counted(one) for one in rows)
+        )
+        return BuildReport(
+            images=plan.images,
+            made=made,
+            shards=len(units),
+            sha256=whole["sha256"],
+            seconds=0.0,
+            cpu_seconds=dict(self.cpu),
+            notes=(*self.notes, *self.engine.notes),
+            milliseconds=milliseconds_an_image(self.cpu, made),
+        )
+
+    def _look(self, facts: dict[str, SceneFacts], scenes: list[SceneSpec]) -> list[int]:
+        """Look at scenes; return how many views each has."""
+        tasks = [SceneTask(str(self.folder), scene, self.plan.recipe) for scene in scenes]
+        found = [0] * len(tasks)
+        for number, (fact, seconds) in self.engine.run(
+            survey, tasks, self._ticker("scenes", len(tasks))
+        ):
+            facts[fact.scene_id] = fact
+            found[number] = fact.found(scenes[number].images) or 0
+            self.cpu["scenes"] += seconds
+        return found
+
+    def _settled(self, scenes: list[SceneSpec]) -> tuple[SceneSpec, ...]:
+        """Check that there are as many views as were asked for; leave scenes without any out.
+
+        Raises:
+            UsageError: a preset's numbers cannot be kept.
+        """
+        for split, wanted in self.plan.images.items():
+            found = sum(scene.images for scene in scenes if scene.split == split)
+            if found < wanted:
+                told = (
+                    f"the {split} scenes give {found:,} views worth a picture, not {wanted:,}; "
+                    "take more scenes"
+                )
+                if self.plan.preset:
+                    raise UsageError(told)
+                self.notes.append(f"{told[0].upper()}{told[1:]}.")
+        if not any(scene.images for scene in scenes):
+            raise UsageError("the scenes give no view worth a picture; take other scenes")
+        return tuple(scene for scene in scenes if scene.images)
+
+    def _ticker(self, stage: str, total: int) -> Callable[[int], None]:
+        """Return what counts images as they are done, and tells of their rate."""
+        done, began, first = 0, time.monotonic(), 0
+        self.progress(stage, 0, total)
+
+        def tick(count: int) -> None:
+            nonlocal done, first
+            if done == 0 and count > 1:
+                first = count  # Found, not made.
+            done += count
+            seconds = time.monotonic() - began
+            rate = (done - first) / seconds if seconds > 0 else 0.0
+            self.progress(stage, done, total, f"{rate:.1f} a second" if rate else "")
+
+        return tick
+
+    def _counted(self, result: tuple[list[dict[str, Any]], float]) -> list[dict[str, Any]]:
+        rows, seconds = result
+        self.cpu["write"] += seconds
+        return rows
+
+
+def _refuse_twins(scenes: Sequence[SceneSpec], facts: Mapping[str, SceneFacts]) -> None:
+    """Raise UsageError where a world, under two names, is both trained and tested on."""
+    first: dict[str, SceneSpec] = {}
+    for scene in scenes:
+        twin = first.setdefault(facts[scene.scene_id].digest, scene)
+        if twin.split != scene.split:
+            raise UsageError(
+                f"{twin.path} (for {twin.split}) and {scene.path} (for {scene.split}) are the same "
+                "world, block by block: give one of them alone"
+            )
+
+
+def _differences(before: dict[str, Any], now: dict[str, Any]) -> list[str]:
+    """Name what two plans differ in."""
+    old, new = before.get("recipe", {}), now["recipe"]
+    wrong = [key for key in new if old.get(key) != _plain(new[key])]
+    if before.get("scenes") != _plain(now["scenes"]):
+        wrong.append("set of scenes or number of images")
+    return wrong
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as it comes back from JSON."""
+    return json.loads(json.dumps(value))
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(folder, f"cannot be made: {error.strerror or error}") from error
+
+
+def _told(scene: SceneSpec, facts: SceneFacts) -> dict[str, Any]:
+    return {
+        "scene_id": scene.scene_id,
+        "source": scene.path,
+        "split": scene.split,
+        "images": scene.images,
+        "blocks": list(facts.blocks),
+        "metres_per_block": facts.metres_per_block,
+        "digest": facts.digest,
+    }

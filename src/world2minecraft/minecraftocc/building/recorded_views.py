@@ -1,0 +1,77 @@
+"""Views that were recorded: the poses of a tour file, or the game's own screenshots."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.types import Camera
+from world2minecraft.minecraftocc.plan import GivenViews
+from world2minecraft.minecraftocc.screenshots import RecordedView, read_screenshots
+from world2minecraft.minecraftocc.tours import PlannedView, read_views
+
+LONGEST_NAME = 30  # Of a tour, in the keys of its samples.
+
+
+def given_views(given: GivenViews, block_to_room: np.ndarray, camera: Camera) -> list[PlannedView]:
+    """Return the views that were recorded, in their order, with names that differ.
+
+    Args:
+        given: where they are.
+        block_to_room: of their world.
+        camera: of poses that say none.
+
+    Raises:
+        InputError: they cannot be read. UsageError: it is not said how.
+    """
+    if not given.is_screenshots:
+        return _named(read_views(given.path, block_to_room, camera))
+    return _named(
+        [
+            PlannedView(
+                one.tour_id, one.frame, one.camera, one.camera_to_room(block_to_room), one.pose,
+                one.t_s,
+            )
+            for one in recorded(given)
+        ]
+    )  # fmt: skip
+
+
+def recorded(given: GivenViews) -> list[RecordedView]:
+    """Return the screenshots of a folder. Raises as ``read_screenshots``."""
+    return read_screenshots(
+        given.path,
+        at=given.at,
+        pattern=given.pattern,
+        vertical_fov_deg=given.vertical_fov_deg,
+    )
+
+
+def screenshot(path: Path, camera: Camera) -> np.ndarray:
+    """Return a screenshot, uint8 [H, W, 3], as large as its camera says.
+
+    Raises:
+        DamagedFileError: it cannot be read.
+    """
+    try:
+        with Image.open(path, formats=("PNG",)) as image:
+            if image.size != (camera.width_px, camera.height_px):
+                raise DamagedFileError(path, "has changed its size")
+            return np.array(image.convert("RGB"))
+    except (OSError, ValueError, SyntaxError) as error:
+        raise DamagedFileError(path, f"cannot be read ({error})") from error
+
+
+def _named(views: list[PlannedView]) -> list[PlannedView]:
+    """Give tours names that keys may hold, and count frames anew where two are one."""
+    plain = [
+        replace(view, tour_id=re.sub(r"[^A-Za-z0-9_]+", "_", view.tour_id)[:LONGEST_NAME] or "t000")
+        for view in views
+    ]
+    names = {(view.tour_id, view.frame) for view in plain}
+    if len(names) == len(plain) and all(0 <= view.frame < 1_000_000 for view in plain):
+        return plain
+    return [replace(view, frame=number) for number, view in enumerate(plain)]

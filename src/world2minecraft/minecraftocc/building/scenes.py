@@ -1,0 +1,207 @@
+"""The first look at a scene: its world is there, its classes are known, its views are planned.
+
+``scenes/ID.json`` tells what was found, ``scenes/ID.poses.jsonl`` has the views, in the one format
+of tours. Both are made once; a build that was broken off finds them.
+"""
+
+import hashlib
+import os
+import shutil
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.errors import ConflictError, DamagedFileError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraftocc.building.process_registry import of_the_crew
+from world2minecraft.minecraftocc.building.recorded_views import given_views
+from world2minecraft.minecraftocc.labels.materials import fine_names
+from world2minecraft.minecraftocc.plan import Recipe, SceneSpec
+from world2minecraft.minecraftocc.source import SceneSource, open_scene_source
+from world2minecraft.minecraftocc.store.folder import SCENES
+from world2minecraft.minecraftocc.tours import TourRule, layouts_beside, plan_views, write_views
+from world2minecraft.minecraftocc.values import FineClass
+from world2minecraft.procgen.worlds import house_of, write_house
+from world2minecraft.rendering import LookLight, prepare_scene
+
+USUAL_HOUR = 12.0
+
+
+@dataclass(frozen=True)
+class SceneTask:
+    """A scene to look at, with ``images`` views to plan."""
+
+    folder: str
+    spec: SceneSpec
+    recipe: Recipe
+
+
+@dataclass(frozen=True)
+class SceneFacts:
+    """What is known of a scene. ``plans`` are the numbers of views asked for and found."""
+
+    scene_id: str
+    digest: str
+    fine: tuple[FineClass, ...]
+    plans: tuple[tuple[int, int], ...]
+    hour: float
+    blocks: tuple[int, int, int]
+    metres_per_block: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def views(self) -> int:
+        """How many views the last plan found."""
+        return self.plans[-1][1]
+
+    def found(self, asked: int) -> int | None:
+        """Return how many views a plan for so many found, None where none was made."""
+        return dict(self.plans).get(asked)
+
+
+@of_the_crew
+def survey(task: SceneTask, tick: Callable[[int], None]) -> tuple[SceneFacts, float]:
+    """Look at a scene and plan its views, unless that was done; return what is known, and CPU.
+
+    Raises:
+        InputError: the scene cannot be read. UsageError: nobody can stand in it.
+        ConflictError: it has changed since it was looked at first.
+    """
+    began = time.process_time()
+    folder, spec = Path(task.folder), task.spec
+    known = (
+        read_facts(folder, spec.scene_id) if facts_path(folder, spec.scene_id).exists() else None
+    )
+    if known is None or known.found(spec.images) is None:
+        known = _surveyed(folder, spec, task.recipe, known)
+    tick(1)
+    return known, time.process_time() - began
+
+
+def facts_path(folder: Path, scene_id: str) -> Path:
+    """Return where the facts of a scene lie."""
+    return folder / SCENES / f"{scene_id}.json"
+
+
+def poses_path(folder: Path, scene_id: str) -> Path:
+    """Return where the views of a scene lie."""
+    return folder / SCENES / f"{scene_id}.poses.jsonl"
+
+
+def read_facts(folder: Path, scene_id: str) -> SceneFacts:
+    """Read what ``survey`` wrote. Raises InputError or DamagedFileError."""
+    path = facts_path(folder, scene_id)
+    told = read_json(path)
+    try:
+        return SceneFacts(
+            scene_id=str(told["scene_id"]),
+            digest=str(told["digest"]),
+            fine=tuple(FineClass(str(block), str(design)) for block, design in told["fine"]),
+            plans=tuple((int(asked), int(got)) for asked, got in told["plans"]),
+            hour=float(told["hour"]),
+            blocks=tuple(told["blocks"]),
+            metres_per_block=float(told["metres_per_block"]),
+            notes=tuple(told["notes"]),
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise DamagedFileError(path, f"tells of no scene ({error!r})") from error
+
+
+def source_of(folder: Path, spec: SceneSpec, recipe: Recipe) -> SceneSource:
+    """Return where the blocks of a scene come from."""
+    place = folder / spec.path if spec.house else Path(spec.path)
+    return open_scene_source(
+        place,
+        box=spec.box,
+        blocks_per_metre=spec.blocks_per_metre,
+        block_map=recipe.block_map,
+        scene_id=spec.scene_id,
+    )
+
+
+def digest_of(volume: BlockVolume) -> str:
+    """Return a sum of all that pictures and labels of a volume depend on."""
+    total = hashlib.sha256()
+    for part in (volume.states, volume.semantic, volume.instance, volume.block_to_room):
+        total.update(repr(part.shape).encode() + np.ascontiguousarray(part).tobytes())
+    told = (volume.palette, volume.corner, volume.block_entities, volume.entities)
+    total.update(repr(told).encode())
+    return total.hexdigest()
+
+
+def check_digest(facts: SceneFacts, volume: BlockVolume, spec: SceneSpec) -> None:
+    """Raise ConflictError where a scene is no longer what its views were planned in."""
+    if digest_of(volume) != facts.digest:
+        raise ConflictError(
+            spec.path, "has changed since this data set was begun; make another data set of it"
+        )
+
+
+def _surveyed(
+    folder: Path, spec: SceneSpec, recipe: Recipe, known: SceneFacts | None
+) -> SceneFacts:
+    if spec.house:
+        _make_house(folder / spec.path, recipe.seed, spec.house)
+    source = source_of(folder, spec, recipe)
+    volume = source.volume()
+    if known is not None:
+        check_digest(known, volume, spec)
+    hour = recipe.hour if recipe.hour is not None else _hour_beside(source.path)
+    if spec.given is not None:
+        views = given_views(spec.given, volume.block_to_room, recipe.camera)[: spec.images]
+    else:
+        rule = TourRule(
+            camera=recipe.camera,
+            light=LookLight(hour=hour),
+            layouts=layouts_beside(source.path),
+        )
+        views = plan_views(volume, spec.images, recipe.seed, rule, scene=prepare_scene(volume))
+    write_views(poses_path(folder, spec.scene_id), views, volume.block_to_room, spec.scene_id)
+    east, up, south = volume.states.shape
+    facts = SceneFacts(
+        scene_id=spec.scene_id,
+        digest=digest_of(volume),
+        fine=fine_names(volume, source.designs()).classes,
+        plans=(*(known.plans if known else ()), (spec.images, len(views))),
+        hour=hour,
+        blocks=(east, up, south),
+        metres_per_block=1 / volume.blocks_per_metre,
+        notes=tuple(source.notes()),
+    )
+    _write_facts(folder, facts)
+    return facts
+
+
+def _make_house(target: Path, seed: int, number: int) -> None:
+    """Write a generated house, whole or not at all."""
+    if target.exists():
+        return
+    part = target.with_name(f".{target.name}.part")
+    shutil.rmtree(part, ignore_errors=True)
+    write_house(house_of(seed, number), part, name=target.name.replace("_", " "))
+    os.replace(part, target)
+
+
+def _hour_beside(path: Path) -> float:
+    """Return the hour that a scene says it is lit at; noon where it says none."""
+    for place in (path, path / "build", path.parent):
+        if (place / "scene.json").is_file():
+            told = read_json(place / "scene.json")
+            light = told.get("light") if isinstance(told, dict) else None
+            hour = light.get("hour") if isinstance(light, dict) else None
+            return float(hour) % 24 if isinstance(hour, (int, float)) else USUAL_HOUR
+    return USUAL_HOUR
+
+
+def _write_facts(folder: Path, facts: SceneFacts) -> None:
+    write_json(
+        facts_path(folder, facts.scene_id),
+        {
+            **facts.__dict__,
+            "fine": [[one.block, one.design] for one in facts.fine],
+        },
+    )

@@ -1,0 +1,96 @@
+"""The engine for many machines: Ray calls the same task there.
+
+The data set's folder and its worlds lie on a disk that all machines share. Without ``RAY_ADDRESS``
+a cluster of this machine alone is started, and ended again.
+"""
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
+from typing import Any
+
+from world2minecraft.core.errors import MissingExtraError, WorkerError
+from world2minecraft.minecraftocc.engine.worker import one_thread
+
+AHEAD = 2  # Items in Ray's hands for each process, so that none waits.
+STORE_BYTES = 128 << 20  # Of shared memory: results are small.
+RETRIES = 3
+
+
+class RayEngine:
+    """Calls a task on a Ray cluster; a context manager."""
+
+    def __init__(self, jobs: int):
+        """Join the cluster that ``RAY_ADDRESS`` names, or start one of ``jobs`` processes here.
+
+        Raises:
+            MissingExtraError: Ray is not installed.
+        """
+        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # Nothing is sent to anyone.
+        os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
+        try:
+            self._ray = import_module("ray")
+        except ImportError as error:
+            raise MissingExtraError("--engine ray", "data") from error
+        self.notes: list[str] = []
+        self._jobs, self._is_ours = jobs, False
+
+    def __enter__(self) -> "RayEngine":
+        """Join or start the cluster."""
+        ray = self._ray
+        if not ray.is_initialized():
+            words: dict[str, Any] = {"include_dashboard": False, "log_to_driver": False}
+            if "RAY_ADDRESS" not in os.environ:
+                words |= {"num_cpus": self._jobs, "object_store_memory": STORE_BYTES}
+            ray.init(logging_level="error", **words)
+            self._is_ours = True
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End the cluster, where it was started here."""
+        if self._is_ours:
+            self._ray.shutdown()
+
+    def run(
+        self,
+        task: Callable[[Any, Callable[[int], None]], Any],
+        items: Sequence[Any],
+        tick: Callable[[int], None],
+    ) -> Iterator[tuple[int, Any]]:
+        """Give each item's number and result as they are done.
+
+        Raises:
+            WorkerError: a process has died again and again. Whatever the task raises.
+        """
+        ray = self._ray
+        remote = ray.remote(num_cpus=1, max_retries=RETRIES)(_called)
+        most = AHEAD * max(1, int(ray.cluster_resources().get("CPU", 1)))
+        pending: dict[Any, int] = {}
+        numbers = iter(range(len(items)))
+        while True:
+            while len(pending) < most and (number := next(numbers, None)) is not None:
+                pending[remote.remote(task, items[number])] = number
+            if not pending:
+                return
+            (ready,), _ = ray.wait(list(pending), num_returns=1)
+            number = pending.pop(ready)
+            result, done = self._got(ready)
+            tick(done)
+            yield number, result
+
+    def _got(self, ready: Any) -> tuple[Any, int]:
+        errors = self._ray.exceptions
+        try:
+            return self._ray.get(ready)
+        except errors.RayTaskError as error:
+            raise (error.cause if isinstance(error.cause, Exception) else error) from None
+        except errors.RayError as error:
+            told = str(error).splitlines()[0]
+            raise WorkerError(f"Ray gave up on a part: {told}") from error
+
+
+def _called(task: Callable[[Any, Callable[[int], None]], Any], item: Any) -> tuple[Any, int]:
+    """Call a task; return its result, and how many images it told of."""
+    one_thread()
+    told: list[int] = []
+    return task(item, told.append), sum(told)

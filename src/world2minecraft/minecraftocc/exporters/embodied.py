@@ -1,0 +1,151 @@
+"""EmbodiedOcc-ScanNet: whole scenes, and which of their cells each frame sees.
+
+OUT stands for the loader's ``data`` folder: ``occscannet/`` holds the frames, ``scene_occ/`` the
+packages of scenes and the masks. A scene is put together from the boxes of its frames, all of
+which lie in one world, cell by cell: the first frame that knows a cell says what it is.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import write_bytes, write_text
+from world2minecraft.minecraftocc.exporters.occscannet import OccScanNetExporter
+from world2minecraft.minecraftocc.exporters.rules import ExportRule
+from world2minecraft.minecraftocc.exporters.scene_names import NamedSample
+from world2minecraft.minecraftocc.formats.pickling import pickle_bytes
+from world2minecraft.minecraftocc.formats.scene_grid import SceneGrid, StoredFrame, stored_frame
+from world2minecraft.minecraftocc.values import USUAL_VOXEL_M, OccSample
+
+OFFICIAL_CELLS = (200, 220, 90)  # EmbodiedOcc's compiled operation holds no larger scene.
+
+
+class EmbodiedExporter:
+    """Writes the frames as they come, and the scenes when all are there."""
+
+    def __init__(self, root: Path, rule: ExportRule):
+        self.root, self.rule = root, rule
+        self.frames = OccScanNetExporter(root / "occscannet", rule, only_room=True)
+        self._large: list[str] = []
+
+    def is_done(self, key: str) -> bool:
+        """Return whether the frame is there; scenes are made anew where frames were added."""
+        return self.frames.is_done(key)
+
+    def write(self, sample: OccSample) -> None:
+        """Write a frame. Raises as ``Exporter.write`` says."""
+        self.frames.write(sample)
+
+    def pause(self) -> None:
+        """Write the table of names."""
+        self.frames.pause()
+
+    def finish(self, keys: Sequence[str]) -> None:
+        """Write a package for each scene, the masks of its frames, and the lists of scenes.
+
+        Scenes of which this run exported no frame stay as they are, and in their lists.
+        """
+        self.frames.finish(keys)
+        named = self.frames.names.samples
+        exported = {named[key].scene for key in keys if key in named}
+        scenes: dict[str, list[NamedSample]] = {}
+        for key, row in named.items():
+            if row.occupied and self.frames.is_done(key):
+                scenes.setdefault(row.scene, []).append(row)
+        splits: dict[str, list[str]] = {"train": [], "test": []}
+        for scene in sorted(scenes):
+            rows = sorted(scenes[scene], key=lambda row: row.frame)
+            splits[_split_of(rows)].append(scene)
+            if scene in exported or not self._package_path(scene).is_file():
+                self._write_scene(scene, _evenly(rows, self.rule.frames_per_scene))
+        for split, names in splits.items():
+            lines = "".join(f"{name}\n" for name in names)
+            write_text(self.root / "scene_occ" / f"{split}_online.txt", lines)
+
+    def notes(self) -> list[str]:
+        """Say what the format did not take as it was."""
+        told = self.frames.notes()
+        if self._large:
+            size = "x".join(str(side) for side in OFFICIAL_CELLS)
+            told.append(
+                f"{len(self._large)} scenes are larger than {size} cells, which EmbodiedOcc's "
+                f"own operation holds: {', '.join(self._large[:3])}"
+            )
+        return told
+
+    def _write_scene(self, scene: str, rows: list[NamedSample]) -> None:
+        """Write the masks of a scene's frames, then its package: that says it is finished."""
+        frames = [self._stored(row) for row in rows]
+        grid = SceneGrid.around([frame.origin_m for frame in frames], USUAL_VOXEL_M)
+        if any(side > most for side, most in zip(grid.shape, OFFICIAL_CELLS, strict=True)):
+            self._large.append(scene)
+        labels = np.full(grid.shape, UNKNOWN, np.uint8)
+        seen = np.zeros(grid.shape, bool)
+        for row, frame in zip(rows, frames, strict=True):
+            place = grid.slices(frame.origin_m)
+            part = labels[place]
+            part[part == UNKNOWN] = frame.labels[part == UNKNOWN]
+            mask = np.zeros(grid.shape, bool)
+            mask[place] = frame.in_image
+            seen |= mask
+            self._write_mask(row, frame, mask)
+        self._sweep_masks(scene, rows)
+        write_bytes(self._package_path(scene), self._package(grid, labels, seen, rows))
+
+    def _sweep_masks(self, scene: str, rows: list[NamedSample]) -> None:
+        """Take away the masks of frames that are no longer taken: they are of another grid."""
+        taken = {self._mask_path(row) for row in rows}
+        for path in self._mask_path(rows[0]).parent.glob(f"{scene}_*_new.pkl"):
+            if path not in taken:
+                path.unlink()
+
+    def _package_path(self, scene: str) -> Path:
+        return self.root / "scene_occ" / "global_occ_package" / f"{scene}.pkl"
+
+    def _mask_path(self, row: NamedSample) -> Path:
+        folder = self.root / "scene_occ" / "streme_occ_new_package" / row.split
+        return folder / f"{row.scene}_{row.frame}_new.pkl"
+
+    def _write_mask(self, row: NamedSample, frame: StoredFrame, mask: np.ndarray) -> None:
+        path = self._mask_path(row)
+        stored = np.ascontiguousarray(frame.labels.transpose(1, 0, 2))
+        write_bytes(path, pickle_bytes({"local_label": stored, "mask_in_global": mask}))
+
+    def _package(
+        self, grid: SceneGrid, labels: np.ndarray, seen: np.ndarray, rows: list[NamedSample]
+    ) -> bytes:
+        return pickle_bytes(
+            {
+                "scene_dim": list(grid.shape),
+                "global_labels": labels,
+                "global_pts": grid.centers_m().astype(np.float32),
+                "valid_img_paths": [
+                    f"{self.rule.data_root}/posed_images/{row.path}.jpg" for row in rows
+                ],
+                "global_mask": seen,
+            }
+        )
+
+    def _stored(self, row: NamedSample) -> StoredFrame:
+        return stored_frame(self.frames.root / "gathered_data" / f"{row.path}.pkl")
+
+
+def _split_of(rows: list[NamedSample]) -> str:
+    splits = {row.split for row in rows}
+    if len(splits) > 1:
+        raise UsageError(
+            f"scene {rows[0].scene_id} has frames in train and in test; embodied splits by whole "
+            "scenes: split the data set so"
+        )
+    return splits.pop()
+
+
+def _evenly(rows: list[NamedSample], count: int) -> list[NamedSample]:
+    """Return ``count`` frames from the first to the last, or all where they are fewer."""
+    if not count or len(rows) <= count:
+        return rows
+    chosen = np.linspace(0, len(rows) - 1, count).round().astype(int)
+    return [rows[index] for index in chosen]

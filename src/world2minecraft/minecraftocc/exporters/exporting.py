@@ -1,0 +1,159 @@
+"""The way from samples to a folder: what is done is passed over, what is left is written."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol, runtime_checkable
+
+from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.minecraftocc.exporters.rules import FORMATS, Exporter, ExportRule
+from world2minecraft.minecraftocc.values import OccSample
+
+RECORD = "export.json"  # What was chosen, in the folder's root,
+SOURCE = "sha256"  # and the sum of the data set that is exported.
+
+
+@runtime_checkable
+class Keyed(Protocol):
+    """Samples that are read by their keys, such as a store: finished ones need no reading."""
+
+    def keys(self, split: str | None = None) -> Iterable[str]:
+        """Return the keys, of one split or of all."""
+        ...
+
+    def __getitem__(self, key: str) -> OccSample:
+        """Read one sample."""
+        ...
+
+
+@dataclass
+class ExportReport:
+    """What an export did."""
+
+    out: Path
+    written: int = 0
+    passed_over: int = 0  # Finished by an earlier run.
+    keys: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+def export_samples(
+    samples: Iterable[OccSample] | Keyed,
+    format: str,
+    out: str | Path,
+    rule: ExportRule | None = None,
+    *,
+    split: str | None = None,
+    limit: int | None = None,
+    progress: Progress = silent,
+) -> ExportReport:
+    """Write samples in one of ``FORMATS`` into a folder, new or begun by the same choices.
+
+    Args:
+        samples: a store, or any samples; their ``split`` says where they go.
+        format: nyu, occscannet, embodied or npz.
+        out: the folder.
+        rule: the choices that the format leaves open.
+        split: train or test alone; all by default.
+        limit: at most so many samples.
+        progress: told of each sample.
+
+    Raises:
+        UnknownNameError: there is no such format. UsageError: there is nothing to export.
+        ConflictError: the folder holds an export by other choices, or of another data set.
+        InputError: the format cannot hold a sample.
+    """
+    root, chosen = Path(out), rule or ExportRule()
+    exporter = _exporter(format, root, chosen)
+    _claim(root, {"format": format, **chosen.as_data()}, str(getattr(samples, "sha256", "")))
+    entries, total = _entries(samples, split)
+    total = total if limit is None or not total else min(total, limit)
+    report = ExportReport(root)
+    try:
+        for key, load in entries:
+            if limit is not None and len(report.keys) >= limit:
+                break
+            if exporter.is_done(key):
+                report.passed_over += 1
+            else:
+                exporter.write(load())
+                report.written += 1
+            report.keys.append(key)
+            progress("export", len(report.keys), total, key)
+    except BaseException:
+        exporter.pause()
+        raise
+    if not report.keys:
+        raise UsageError(f"there is no sample to export{f' in {split}' if split else ''}")
+    exporter.finish(report.keys)
+    if not total:
+        progress("export", len(report.keys), len(report.keys))
+    report.notes = exporter.notes()
+    return report
+
+
+def _entries(
+    samples: Iterable[OccSample] | Keyed, split: str | None
+) -> tuple[Iterator[tuple[str, Callable[[], OccSample]]], int]:
+    """Return keys with how to read their samples, and how many there are (0 = not known)."""
+    if isinstance(samples, Keyed):
+        keys = list(samples.keys(split))
+        store = samples
+        return ((key, lambda key=key: store[key]) for key in keys), len(keys)
+    kept = (sample for sample in samples if split in (None, sample.split))
+    total = len(samples) if split is None and hasattr(samples, "__len__") else 0  # type: ignore[arg-type]
+    return ((sample.key, lambda sample=sample: sample) for sample in kept), total
+
+
+def _exporter(format: str, root: Path, rule: ExportRule) -> Exporter:
+    """Return the exporter of a format; only its own module is imported."""
+    if format == "nyu":
+        from world2minecraft.minecraftocc.exporters.nyu import NyuExporter  # noqa: PLC0415
+
+        return NyuExporter(root, rule)
+    if format == "occscannet":
+        from world2minecraft.minecraftocc.exporters.occscannet import (  # noqa: PLC0415
+            OccScanNetExporter,
+        )
+
+        return OccScanNetExporter(root, rule)
+    if format == "embodied":
+        from world2minecraft.minecraftocc.exporters.embodied import (  # noqa: PLC0415
+            EmbodiedExporter,
+        )
+
+        return EmbodiedExporter(root, rule)
+    if format == "npz":
+        from world2minecraft.minecraftocc.exporters.npz import NpzExporter  # noqa: PLC0415
+
+        return NpzExporter(root, rule)
+    raise UnknownNameError("format", format, FORMATS)
+
+
+def _claim(root: Path, choices: dict[str, Any], sha256: str) -> None:
+    """Write down what was chosen, or check that it is what was chosen before.
+
+    Args:
+        root: the folder.
+        choices: the format and its rule.
+        sha256: the sum of the data set, "" where it has none: samples of another set may have the
+            same keys, and would be passed over as finished.
+    """
+    record = root / RECORD
+    whole = {**choices, SOURCE: sha256} if sha256 else choices
+    if not record.is_file():
+        write_json(record, whole)
+        return
+    before = read_json(record)
+    known = before if isinstance(before, dict) else {}
+    names = [name for name in choices if name not in known or known[name] != choices[name]]
+    if names:
+        told = ", ".join(f"{name} {known.get(name)!r}" for name in names)
+        raise ConflictError(root, f"holds an export with {told}; choose the same, or another --out")
+    if sha256 and known.get(SOURCE, sha256) != sha256:
+        raise ConflictError(
+            root, "holds an export of another data set, or of this one before it was made anew; "
+            "choose another --out"
+        )  # fmt: skip

@@ -1,0 +1,76 @@
+"""Plain ``.npz``, one a sample: every array of it under its own name, nothing to unpickle."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.files import write_json, write_npz
+from world2minecraft.minecraftocc.exporters.rules import ExportRule
+from world2minecraft.minecraftocc.formats.boxes import cells_in_image, chosen_labels
+from world2minecraft.minecraftocc.values import OccSample
+
+SPLITS = ("train", "test", "val", "all")
+
+
+class NpzExporter:
+    """Writes ``SPLIT/KEY.npz`` and ``index.json``."""
+
+    def __init__(self, root: Path, rule: ExportRule):
+        self.root, self.rule = root, rule
+
+    def is_done(self, key: str) -> bool:
+        """Return whether the file is there."""
+        return any((self.root / split / f"{key}.npz").is_file() for split in SPLITS)
+
+    def write(self, sample: OccSample) -> None:
+        """Write a sample."""
+        write_npz(self.root / (sample.split or "all") / f"{sample.key}.npz", self._arrays(sample))
+
+    def pause(self) -> None:
+        """Do nothing: the files themselves say which samples are finished."""
+
+    def finish(self, keys: Sequence[str]) -> None:
+        """Write the list of all samples that lie there, those of earlier runs too."""
+        rows = {path.stem: split for split in SPLITS for path in (self.root / split).glob("*.npz")}
+        write_json(self.root / "index.json", {"format": "world2minecraft-occ-npz", "keys": rows})
+
+    def notes(self) -> list[str]:
+        """Say nothing: the format takes all as it is."""
+        return []
+
+    def _arrays(self, sample: OccSample) -> dict[str, np.ndarray]:
+        occ, camera, region = sample.occ, sample.camera, sample.occ.region
+        lens = (camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, *camera.distortion)
+        told = {
+            "key": sample.key, "scene_id": sample.scene_id, "tour_id": sample.tour_id,
+            "frame": sample.frame, "split": sample.split, "region_kind": region.kind,
+            "facts": sample.facts,
+        }  # fmt: skip
+        in_view = None
+        if self.rule.in_view:
+            to_camera = invert_rigid(sample.camera_to_room) @ region.region_to_room
+            in_view = cells_in_image(region.shape, region.voxel_m, to_camera, camera)[0]
+        arrays = {
+            "labels": chosen_labels(occ.labels, in_view, self.rule.unknown),
+            "fine": occ.fine,
+            "instance": occ.instance,
+            "in_frustum": occ.in_frustum,
+            "hits": occ.hits,
+            "free": occ.free,
+            "fine_blocks": np.array([kind.block for kind in sample.fine_classes], np.str_),
+            "fine_designs": np.array([kind.design for kind in sample.fine_classes], np.str_),
+            "voxel_m": np.float64(region.voxel_m),
+            "region_to_room": region.region_to_room,
+            "camera_to_room": sample.camera_to_room,
+            "camera_size_px": np.array([camera.width_px, camera.height_px], np.int64),
+            "camera_lens": np.array(lens, np.float64),
+            "meta": np.array(json.dumps(told, sort_keys=True), np.str_),
+        }
+        if sample.colour is not None:
+            arrays["colour"] = sample.colour
+        if sample.depth_m is not None:
+            arrays["depth_m"] = sample.depth_m
+        return arrays

@@ -1,0 +1,105 @@
+"""NYUv2 as MonoScene, NDC-Scene, ISO and Symphonies read it.
+
+``NYUtrain/`` and ``NYUtest/`` hold NAME_color.jpg, NAME.png and NAME.bin; ``base/NYUtrain/`` and
+``base/NYUtest/`` hold NAME.pkl. The world of each file is its region's: z up, the minimum corner
+at 0, where the loaders' own arithmetic (a division that is rounded up) makes 60 cells of 4.8 m
+whatever the machine.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.files import write_bytes
+from world2minecraft.minecraftocc.exporters.pictures import colour_of, jpeg_bytes, split_of
+from world2minecraft.minecraftocc.exporters.rules import ExportRule
+from world2minecraft.minecraftocc.formats.boxes import (
+    LabelledBox,
+    box_in_image,
+    check_usual,
+    chosen_labels,
+    region_box,
+)
+from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA, Resampler
+from world2minecraft.minecraftocc.formats.depth_codes import depth_png
+from world2minecraft.minecraftocc.formats.pickling import pickle_bytes
+from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES, bin_bytes, downsampled
+from world2minecraft.minecraftocc.values import OccSample
+
+FOLDERS = {"train": "NYUtrain", "test": "NYUtest"}
+AXES = (0, 2, 1)  # Ours x, y, z; theirs x, z, y. The same swap leads back.
+
+
+class NyuExporter:
+    """Writes the NYUv2 layout."""
+
+    def __init__(self, root: Path, rule: ExportRule):
+        self.root, self.rule = root, rule
+        self._counts = {"resampled": 0, "no depth": 0, "no split": 0}
+
+    def is_done(self, key: str) -> bool:
+        """Return whether the ``.bin``, a sample's last file, is there."""
+        return any((self.root / folder / f"{key}.bin").is_file() for folder in FOLDERS.values())
+
+    def write(self, sample: OccSample) -> None:
+        """Write the four files of a sample. Raises as ``Exporter.write`` says."""
+        check_usual(sample)
+        resampler = Resampler(sample.key, sample.camera, NYU_CAMERA)
+        folder = FOLDERS[split_of(sample)]
+        stem = self.root / folder / sample.key
+        jpeg = jpeg_bytes(resampler.colour(colour_of(sample)))
+        write_bytes(stem.with_name(f"{sample.key}_color.jpg"), jpeg)
+        if sample.depth_m is not None:
+            depth = resampler.depth(sample.depth_m)
+            write_bytes(stem.with_name(f"{sample.key}.png"), depth_png(depth, "nyu"))
+        box = region_box(sample)
+        in_image = box_in_image(box, NYU_CAMERA) if self.rule.in_view else None
+        labels = chosen_labels(box.labels, in_image, self.rule.unknown).transpose(AXES)
+        labels = np.ascontiguousarray(labels)
+        write_bytes(
+            self.root / "base" / folder / f"{sample.key}.pkl", _pickle(sample.key, labels, box)
+        )
+        data = bin_bytes(labels, box.origin_m, box.camera_to_world)
+        if self.rule.short_bin:
+            data = data[:HEADER_BYTES]
+        write_bytes(stem.with_name(f"{sample.key}.bin"), data)
+        self._count(sample, resampler)
+
+    def pause(self) -> None:
+        """Do nothing: the files themselves say which samples are finished."""
+
+    def finish(self, keys: Sequence[str]) -> None:
+        """Write nothing: the loaders list the folders."""
+
+    def notes(self) -> list[str]:
+        """Say what the format did not take as it was."""
+        told = {
+            "resampled": "pictures were resampled to 640x480, f = 518.8579",
+            "no depth": "samples have no depth: MonoScene and NDC-Scene read them, "
+            "ISO and Symphonies do not",
+            "no split": "samples have no split and lie in NYUtrain",
+        }
+        return [f"{count} {told[name]}" for name, count in self._counts.items() if count]
+
+    def _count(self, sample: OccSample, resampler: Resampler) -> None:
+        self._counts["resampled"] += not resampler.same
+        self._counts["no depth"] += sample.depth_m is None
+        self._counts["no split"] += not sample.split
+
+
+def _pickle(name: str, labels: np.ndarray, box: LabelledBox) -> bytes:
+    """Return what MonoScene's preprocessing makes of the ``.bin``.
+
+    The 32 cm grid is made of the 8 cm one: its 4 x 4 x 4 cells stand for 16 x 16 x 16 voxels, of
+    which the rule of 95 % asks the same.
+    """
+    return pickle_bytes(
+        {
+            "cam_pose": box.camera_to_world.astype(np.float32),
+            "voxel_origin": box.origin_m.astype(np.float32),
+            "name": name,
+            "target_1_4": labels,
+            "target_1_16": downsampled(labels, 4),
+        }
+    )

@@ -1,0 +1,138 @@
+"""OccScanNet as ISO, EmbodiedOcc and GPOcc read it.
+
+``gathered_data/SCENE/NNNNN.pkl``, ``posed_images/SCENE/NNNNN.jpg`` and ``.png``, and the lists.
+Labels are stored as [y, x, z]: EmbodiedOcc and GPOcc swap the first two axes when they load, and
+their projected cells then meet the picture. ISO does not swap; docs/occupancy-formats.md tells.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.files import write_bytes, write_text
+from world2minecraft.core.types import Camera
+from world2minecraft.minecraftocc.exporters.pictures import colour_of, jpeg_bytes, split_of
+from world2minecraft.minecraftocc.exporters.rules import ExportRule
+from world2minecraft.minecraftocc.exporters.scene_names import NamedSample, SceneNames
+from world2minecraft.minecraftocc.formats.boxes import (
+    LabelledBox,
+    box_in_image,
+    check_usual,
+    chosen_labels,
+    region_box,
+    room_box,
+)
+from world2minecraft.minecraftocc.formats.cameras import HALF_PX, Resampler, vga_camera
+from world2minecraft.minecraftocc.formats.depth_codes import depth_png
+from world2minecraft.minecraftocc.formats.pickling import pickle_bytes
+from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.values import OccSample
+
+AXES = (1, 0, 2)  # Ours x, y, z; theirs y, x, z. The same swap leads back.
+ORIGIN_DECIMALS = 4  # EmbodiedOcc's loader rounds to them, so that all loaders see one box.
+LISTS = {
+    "train": ("train_subscenes.txt", "train_final.txt"),
+    "test": ("val_subscenes.txt", "test_final.txt"),
+}
+
+
+class OccScanNetExporter:
+    """Writes the OccScanNet layout."""
+
+    def __init__(self, root: Path, rule: ExportRule, *, only_room: bool = False):
+        self.root, self.rule, self._only_room = root, rule, only_room
+        self.names = SceneNames(root)
+        self._resampled = self._turned = self._no_depth = 0
+
+    def is_done(self, key: str) -> bool:
+        """Return whether the sample is in the table and its pickle, its last file, is there."""
+        row = self.names.samples.get(key)
+        return row is not None and (self.root / "gathered_data" / f"{row.path}.pkl").is_file()
+
+    def write(self, sample: OccSample) -> None:
+        """Write the three files of a sample. Raises as ``Exporter.write`` says."""
+        check_usual(sample)
+        camera = vga_camera(sample.camera)
+        resampler = Resampler(sample.key, sample.camera, camera)
+        camera = sample.camera if resampler.same else camera
+        box = self._box(sample)
+        in_image = box_in_image(box, camera) if self.rule.in_view else None
+        labels = chosen_labels(box.labels, in_image, self.rule.unknown)
+        occupied = int(np.count_nonzero((labels > 0) & (labels < 255)))
+        row = self.names.name(sample.key, sample.scene_id, split_of(sample), occupied)
+        picture = self.root / "posed_images" / row.path
+        write_bytes(picture.with_suffix(".jpg"), jpeg_bytes(resampler.colour(colour_of(sample))))
+        if sample.depth_m is not None:
+            depth = resampler.depth(sample.depth_m)
+            write_bytes(picture.with_suffix(".png"), depth_png(depth, "mm"))
+        data = self._pickle(row, labels, box, camera)
+        write_bytes(self.root / "gathered_data" / f"{row.path}.pkl", data)
+        self.names.keep(sample.key, row)
+        self._resampled += not resampler.same
+        self._no_depth += sample.depth_m is None
+
+    def pause(self) -> None:
+        """Write the table of names."""
+        self.names.save()
+
+    def finish(self, keys: Sequence[str]) -> None:
+        """Write the table of names and the lists of ISO and of EmbodiedOcc.
+
+        They name all that lies there, so that a split exported after another leaves its list alone.
+        """
+        self.names.save()
+        rows = [row for key, row in self.names.samples.items() if self.is_done(key)]
+        rows.sort(key=lambda row: row.path)
+        for split, (all_frames, with_content) in LISTS.items():
+            of_split = [row for row in rows if row.split == split]
+            self._write_list(all_frames, of_split)
+            self._write_list(with_content, [row for row in of_split if row.occupied])
+
+    def notes(self) -> list[str]:
+        """Say what the format did not take as it was."""
+        told = {
+            "pictures were cropped and resampled to 640x480": self._resampled,
+            "samples have no depth, which every loader of this format opens": self._no_depth,
+            "regions are turned with the view: each has a world of its own": self._turned,
+        }
+        return [f"{count} {words}" for words, count in told.items() if count]
+
+    def _box(self, sample: OccSample) -> LabelledBox:
+        """Return the box along the room's axes, so that all frames of a scene share one world."""
+        box = room_box(sample)
+        if box is None:
+            if self._only_room:
+                raise InputError(
+                    sample.key,
+                    "its region is turned with the view, and scene packages lie along the room's "
+                    "axes; build the data set with regions of the kind paper",
+                )
+            self._turned += 1
+            box = region_box(sample)
+        return LabelledBox(box.labels, np.round(box.origin_m, ORIGIN_DECIMALS), box.camera_to_world)
+
+    def _pickle(
+        self, row: NamedSample, labels: np.ndarray, box: LabelledBox, camera: Camera
+    ) -> bytes:
+        stored = np.ascontiguousarray(labels.transpose(AXES))
+        intrinsic = np.eye(4)
+        intrinsic[:3, :3] = camera.matrix
+        intrinsic[:2, 2] -= HALF_PX
+        picture = f"{self.rule.data_root}/posed_images/{row.path}"
+        return pickle_bytes(
+            {
+                "img": f"{picture}.jpg",
+                "depth_gt": f"{picture}.png",
+                "cam_pose": box.camera_to_world.astype(np.float64),
+                "intrinsic": intrinsic,
+                "voxel_origin": box.origin_m,
+                "target_1_4": stored,
+                "target_1_16": downsampled(stored, 4),
+            }
+        )
+
+    def _write_list(self, name: str, rows: list[NamedSample]) -> None:
+        lines = "".join(f"gathered_data/{row.path}.pkl\n" for row in rows)
+        write_text(self.root / name, lines)

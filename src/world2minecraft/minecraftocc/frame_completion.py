@@ -1,0 +1,215 @@
+"""One depth picture in the grid of its frame, named and completed: SSCNet's task.
+
+The grid is that of a file: of a ``.bin`` of SSCNet only its first 76 bytes are read, where the grid
+begins and where the camera stands; its labels never are. The picture is fused by our own fusion in
+the grid's own cells, and the completion network says what each is. Observed surface stays
+occupied; everything else is what the network finds likelier.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
+from world2minecraft.core.files import array_names, read_npz
+from world2minecraft.core.types import Camera, FusedEvidence, PointEvidence, View
+from world2minecraft.core.types.checks import transform
+from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
+from world2minecraft.minecraftocc.formats.depth_codes import metres_of
+from world2minecraft.minecraftocc.formats.sscnet import HEADER_BYTES
+from world2minecraft.reconstruction.fusion import CleanParameters, EvidenceMap, remove_floaters
+from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
+from world2minecraft.reconstruction.semantics.completion_channels import sight_of
+from world2minecraft.reconstruction.semantics.completion_net import CompletionModel, likeliest
+
+SHAPE = (60, 60, 36)  # x, y, z; a file's own order is x, z up, y.
+FILE_AXES = (0, 2, 1)
+VOXEL_M = 0.08
+FAR_M = 8.0
+PLAUSIBLE_M = (0.4, 10.0)  # Where the middle of a room's depths lies, and its farthest.
+CODES = ("auto", "rotated", "mm", "8000")
+UP_COSINE = 0.9  # A floor's normal.
+FLOOR_SHARE = 0.2  # Of the largest level's points: as much as a floor half hidden shows.
+
+
+@dataclass(frozen=True, eq=False)
+class GridPlace:
+    """Where a frame's grid of 60 x 60 x 36 cells of 8 cm lies, and where its camera stands."""
+
+    origin_m: np.ndarray  # float64 [3], minimum corner of cell (0, 0, 0) in the world, z up
+    camera_to_world: np.ndarray  # float64 [4, 4]
+
+
+@dataclass(frozen=True, eq=False)
+class CompletedFrame:
+    """What is said of a frame's grid, in our axes x, y, z up."""
+
+    labels: np.ndarray  # uint8 [60, 60, 36], 0 to 11
+    confidence: np.ndarray  # float32 [60, 60, 36], the chance of the label
+    observed: np.ndarray  # bool [60, 60, 36], the cells that the picture saw, occupied or free
+
+
+def read_grid_place(path: Path) -> GridPlace:
+    """Read where a frame's grid lies.
+
+    Args:
+        path: an SSCNet ``.bin``, or an npz with ``origin_m`` (or ``voxel_origin``) and
+            ``camera_to_world`` (or ``cam_pose``).
+
+    Raises:
+        InputError: it is missing. DamagedFileError: it holds no such geometry.
+    """
+    if not path.is_file():
+        raise InputError(path, "is not there; give an SSCNet .bin, or an npz with the geometry")
+    if path.suffix == ".npz":
+        names = array_names(path)
+        origin = "origin_m" if "origin_m" in names else "voxel_origin"
+        pose = "camera_to_world" if "camera_to_world" in names else "cam_pose"
+        held = read_npz(path, (origin, pose))
+        numbers = np.concatenate([np.ravel(held[origin]), np.ravel(held[pose])])
+    else:
+        with path.open("rb") as stream:
+            head = stream.read(HEADER_BYTES)
+        numbers = np.frombuffer(head[: len(head) // 4 * 4], "<f4")
+    if len(numbers) != 19 or not np.isfinite(numbers).all():
+        raise DamagedFileError(path, "does not begin with 3 numbers of origin and 16 of a pose")
+    try:
+        pose = transform("camera_to_world", _rigid(numbers[3:].reshape(4, 4)))
+    except ValueError as error:
+        raise DamagedFileError(path, str(error)) from error
+    return GridPlace(numbers[:3].astype(np.float64), pose)
+
+
+def _rigid(pose: np.ndarray) -> np.ndarray:
+    """Return a pose in float64 whose turn is one: float32 leaves it off by 1e-7."""
+    result = pose.astype(np.float64)
+    u, _, v = np.linalg.svd(result[:3, :3])
+    result[:3, :3] = u @ v
+    return result
+
+
+def depth_of_png(path: Path, raw: np.ndarray, code: str = "auto") -> np.ndarray:
+    """Return float32 [H, W] metres of stored values.
+
+    Args:
+        path: for messages.
+        raw: uint16 [H, W].
+        code: ``rotated`` (SSCNet's: millimetres, their bits turned by three), ``mm``, ``8000``
+            (1/8000 m), or ``auto``: turned bits leave nothing in the low three, and of the two
+            others the one by which the picture shows a room.
+
+    Raises:
+        UnknownNameError: no such code. CaptureError: the values are no depths of a room.
+    """
+    if code not in CODES:
+        raise UnknownNameError("depth code", code, CODES)
+    if raw.ndim != 2 or raw.dtype != np.uint16 or not raw.any():
+        raise CaptureError(path, "is no depth picture: it must have one channel of 16 bits")
+    if code == "auto":
+        return depth_of_png(path, raw, _likely(raw))
+    depth_m = {
+        "rotated": lambda: ((raw >> 3) | (raw << 13)) / np.float32(1000),
+        "mm": lambda: metres_of(raw, "mm"),
+        "8000": lambda: raw / np.float32(8000),
+    }[code]()
+    depth_m = np.where(raw > 0, depth_m, 0).astype(np.float32)
+    middle = float(np.median(depth_m[depth_m > 0]))
+    if not PLAUSIBLE_M[0] <= middle <= PLAUSIBLE_M[1]:
+        raise CaptureError(
+            path, f"shows {middle:.2f} m in the middle as {code}; try --depth-code mm or 8000"
+        )
+    return depth_m
+
+
+def _likely(raw: np.ndarray) -> str:
+    seen = raw[raw > 0]
+    if np.mean((seen & 7) > 1) < 0.01:
+        return "rotated"
+    return "mm" if np.percentile(seen, 99) / 1000 <= PLAUSIBLE_M[1] else "8000"
+
+
+def complete_frame(
+    depth_m: np.ndarray,
+    place: GridPlace,
+    *,
+    colour: np.ndarray | None = None,
+    camera: Camera = NYU_CAMERA,
+    model: CompletionModel | None = None,
+) -> CompletedFrame:
+    """Return what each cell of a frame's grid is.
+
+    Args:
+        depth_m: float32 [H, W], z-depth, 0 = hole.
+        place: the grid and the camera.
+        colour: uint8 [H, W, 3] of the same camera, where there is one.
+        camera: of the picture; NYUv2's by default.
+        model: the network; the shipped one by default.
+
+    Raises:
+        CaptureError: nothing of the grid was seen.
+    """
+    world_to_grid = np.eye(4)
+    world_to_grid[:3, 3] = -place.origin_m
+    view = View(
+        name="frame",
+        camera_to_scan=place.camera_to_world,
+        colour=colour,
+        colour_camera=None if colour is None else camera,
+        depth_m=depth_m.astype(np.float32),
+        depth_camera=camera,
+    )
+    points = DepthPredictor(FAR_M).lift(view)
+    evidence = _in_grid(points, world_to_grid)
+    grid = remove_floaters(read_out(evidence), CleanParameters())
+    sight = sight_of(grid, evidence, floor_m=floor_of(points, world_to_grid))
+    chance = (model or CompletionModel()).chances(sight)
+    labels = likeliest(chance, sight.log_odds)
+    confidence = np.take_along_axis(chance, labels[None].astype(np.int64), axis=0)[0]
+    return CompletedFrame(labels, confidence, grid.source > 0)
+
+
+def _in_grid(points: PointEvidence, world_to_grid: np.ndarray) -> FusedEvidence:
+    """Return the evidence of one view on exactly the grid's cells, unseen ones unknown."""
+    evidence = EvidenceMap(world_to_grid)
+    evidence.add(points)
+    fused = evidence.fused()
+    start = np.round(fused.origin_m / VOXEL_M).astype(np.int64)
+    first, last = np.maximum(start, 0), np.minimum(start + fused.log_odds.shape, SHAPE)
+    if (first >= last).any():
+        raise CaptureError("depth picture", "shows nothing of the grid; are both of one frame?")
+    source = tuple(slice(a, b) for a, b in zip(first - start, last - start, strict=True))
+    target = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
+    arrays = {}
+    for name in ("log_odds", "votes", "colour_sum", "offset_sum", "hits"):
+        values = getattr(fused, name)
+        arrays[name] = np.zeros((*SHAPE, *values.shape[3:]), values.dtype)
+        arrays[name][target] = values[source]
+    return FusedEvidence(
+        **arrays, voxel_m=VOXEL_M, origin_m=np.zeros(3), scan_to_room=world_to_grid
+    )
+
+
+def floor_of(points: PointEvidence, world_to_grid: np.ndarray) -> float:
+    """Return the floor's height over the grid's lowest face, in metres.
+
+    It is the lowest level that faces up with a fair share of the points of the largest; where none
+    does, the world's z = 0, on which frames of NYUv2 stand.
+    """
+    turn, shift = world_to_grid[:3, :3], world_to_grid[:3, 3]
+    world_floor_m = float(shift[2])
+    if points.normals is None:
+        return world_floor_m
+    up = points.normals @ turn[2].astype(np.float32) >= UP_COSINE
+    heights = points.points_m[up] @ turn[2].astype(np.float32) + np.float32(shift[2])
+    eye_m = float(turn[2] @ points.camera_m + shift[2])
+    heights = heights[heights < eye_m - 0.5]
+    if len(heights) < 200:
+        return world_floor_m
+    edges = np.arange(heights.min() - 0.02, heights.max() + 0.06, 0.04)
+    counts = np.histogram(heights, edges)[0]
+    counts = counts + np.append(counts[1:], 0)
+    lowest = int(np.flatnonzero(counts >= FLOOR_SHARE * counts.max())[0])
+    within = heights[(heights >= edges[lowest]) & (heights < edges[lowest] + 0.08)]
+    return float(np.median(within))

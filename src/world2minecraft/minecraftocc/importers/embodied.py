@@ -1,0 +1,146 @@
+"""EmbodiedOcc-ScanNet: frames of whole scenes, and the scenes themselves.
+
+``scene_occ`` holds the packages; the frames' poses and pictures are those of ``occscannet`` beside
+it, as the loaders of the format have them.
+"""
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.minecraftocc.formats.unpickling import read_pickle
+from world2minecraft.minecraftocc.importers.labelled import (
+    checked_labels,
+    checked_numbers,
+    sample_of,
+)
+from world2minecraft.minecraftocc.importers.occscannet import read_frame
+from world2minecraft.minecraftocc.importers.source import ImportedSet
+from world2minecraft.minecraftocc.values import USUAL_VOXEL_M, OccSample
+
+_FRAME = re.compile(r"([\w-]{1,100})_(\d{1,9})_new", re.ASCII)
+MAX_SCENE_BYTES = 2 << 30
+
+
+@dataclass(frozen=True, eq=False)
+class ScenePackage:
+    """A whole scene: ``labels[x, y, z]``, z up, in the world that its frames share."""
+
+    labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
+    seen: np.ndarray  # bool [X, Y, Z], by any frame
+    origin_m: np.ndarray  # float64 [3], minimum corner of cell (0, 0, 0)
+    voxel_m: float
+    images: tuple[str, ...]  # As they are written there; they name scene and number.
+
+
+def is_embodied(path: Path) -> bool:
+    """Return whether a folder, or its ``scene_occ``, holds packages of scenes."""
+    return _packages(path).joinpath("global_occ_package").is_dir()
+
+
+def open_embodied(path: Path) -> ImportedSet:
+    """List the frames of all scenes. Raises InputError where they, or their poses, are missing."""
+    packages = _packages(path)
+    frames = packages.parent / "occscannet"
+    if not (frames / "gathered_data").is_dir():
+        raise InputError(frames, "is not there; the frames' poses lie in its gathered_data")
+    files: dict[str, tuple[Path, str]] = {}
+    for split in ("train", "test"):
+        folder = packages / "streme_occ_new_package" / split
+        for file in sorted(folder.glob("*_new.pkl")):
+            if match := _FRAME.fullmatch(file.stem):
+                files[f"{match[1]}-{match[2]}"] = file, split
+    if not files:
+        raise InputError(packages, "holds no streme_occ_new_package/train/SCENE_NNNNN_new.pkl")
+    splits = {key: split for key, (_, split) in files.items()}
+    return ImportedSet(
+        path, "embodied", splits, lambda key: _read(frames, key, files[key][0], splits[key])
+    )
+
+
+def read_scene(path: Path) -> ScenePackage:
+    """Read one ``global_occ_package/SCENE.pkl``.
+
+    Raises:
+        InputError: it is missing. DamagedFileError: it is none.
+    """
+    stored = read_pickle(path, MAX_SCENE_BYTES)
+    wanted = ("scene_dim", "global_labels", "global_pts", "global_mask", "valid_img_paths")
+    if missing := [name for name in wanted if name not in stored]:
+        raise DamagedFileError(path, f"has no {', '.join(missing)}")
+    sides = checked_numbers(stored["scene_dim"], (3,), "scene_dim", path).astype(int)
+    shape = (int(sides[0]), int(sides[1]), int(sides[2]))
+    labels = checked_labels(stored["global_labels"], shape, path)
+    centres = np.asarray(stored["global_pts"])
+    seen = np.asarray(stored["global_mask"])
+    if centres.shape != (*shape, 3) or centres.dtype.kind != "f" or seen.shape != shape:
+        raise DamagedFileError(path, "has centres or a mask of another shape than its labels")
+    first = centres.reshape(-1, 3).min(axis=0).astype(np.float64)
+    origin_m = first - USUAL_VOXEL_M / 2  # Theirs are centres.
+    images = stored["valid_img_paths"]
+    names = tuple(str(name) for name in images) if isinstance(images, list) else ()
+    return ScenePackage(labels, seen.astype(bool), origin_m, USUAL_VOXEL_M, names)
+
+
+@dataclass(frozen=True)
+class SceneSet:
+    """The scenes of a folder, by name, each with its split and its frames' packages."""
+
+    path: Path
+    splits: dict[str, str]  # scene to train or test
+    frames: dict[str, tuple[Path, ...]]
+
+    def read(self, scene: str) -> ScenePackage:
+        """Read a scene. What is ``seen`` is what its frames say, as published scores have it.
+
+        Raises:
+            InputError: it is missing. DamagedFileError: it, or a frame's mask, is none.
+        """
+        package = read_scene(self.path / "global_occ_package" / f"{scene}.pkl")
+        seen = np.zeros(package.labels.shape, bool)
+        for file in self.frames[scene]:
+            mask = np.asarray(read_pickle(file, MAX_SCENE_BYTES).get("mask_in_global"))
+            if mask.shape != seen.shape or mask.dtype.kind not in ("b", "u"):
+                raise DamagedFileError(
+                    file, f"has a mask_in_global of {mask.shape}, its scene {seen.shape} cells"
+                )
+            seen |= mask.astype(bool)
+        return replace(package, seen=seen)
+
+
+def open_scenes(path: Path) -> SceneSet:
+    """List the scenes that have a package and frames. Raises InputError where there are none."""
+    packages = _packages(path)
+    frames: dict[str, list[Path]] = {}
+    splits: dict[str, str] = {}
+    for split in ("train", "test"):
+        for file in sorted((packages / "streme_occ_new_package" / split).glob("*_new.pkl")):
+            if match := _FRAME.fullmatch(file.stem):
+                splits.setdefault(match[1], split)
+                frames.setdefault(match[1], []).append(file)
+    there = {one.stem for one in (packages / "global_occ_package").glob("*.pkl")}
+    names = sorted(there & set(splits))
+    if not names:
+        raise InputError(packages, "holds no scene with a global_occ_package and frames")
+    return SceneSet(
+        packages, {name: splits[name] for name in names}, {n: tuple(frames[n]) for n in names}
+    )
+
+
+def _packages(path: Path) -> Path:
+    return path / "scene_occ" if (path / "scene_occ").is_dir() else path
+
+
+def _read(frames: Path, key: str, file: Path, split: str) -> OccSample:
+    scene, _, number = key.rpartition("-")
+    stored: dict[str, Any] = read_pickle(file)
+    if "local_label" not in stored:
+        raise DamagedFileError(file, "has no local_label")
+    found = read_frame(frames, f"{scene}/{number}", stored["local_label"])
+    return sample_of(
+        found, key, scene_id=scene, tour_id="", frame=int(number), split=split, format="embodied"
+    )

@@ -1,0 +1,140 @@
+"""NYUv2 in the layout of MonoScene and all after it.
+
+The labels are in ``NAME.pkl`` where MonoScene's preprocessing has run, under ``base/`` here or in
+another folder; else ``NAME.bin`` is read and made coarse the same way.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.minecraftocc.formats.cameras import HEIGHT_PX, NYU_CAMERA, WIDTH_PX
+from world2minecraft.minecraftocc.formats.sscnet import downsampled, read_bin
+from world2minecraft.minecraftocc.formats.unpickling import read_pickle
+from world2minecraft.minecraftocc.importers.labelled import (
+    Found,
+    as_large_as,
+    checked_labels,
+    sample_of,
+)
+from world2minecraft.minecraftocc.importers.pictures import colour_at, depth_at, resized_colour
+from world2minecraft.minecraftocc.importers.source import ImportedSet
+from world2minecraft.minecraftocc.values import OccSample
+
+FOLDERS = {"NYUtrain": "train", "NYUtest": "test"}
+AXES = (0, 2, 1)  # Theirs x, z up, y; ours x, y, z. The same swap leads back.
+STORED_SHAPE = (60, 36, 60)
+SAME_SHAPE = 0.01  # So far a picture's sides may be from 4:3 and still be one made smaller.
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where one frame's files are."""
+
+    name: str
+    folder: Path  # of its pictures and its .bin
+    labels: Path | None  # its .pkl
+    split: str
+
+
+def is_nyu(path: Path) -> bool:
+    """Return whether a path is a ``.bin``, or a folder of them or with NYUtrain or NYUtest."""
+    if path.suffix == ".bin":
+        return path.is_file()
+    if path.name in FOLDERS or any((path / name).is_dir() for name in FOLDERS):
+        return True
+    return path.is_dir() and any(path.glob("*.bin"))
+
+
+def open_nyu(path: Path, labels: Path | None = None) -> ImportedSet:
+    """List the frames.
+
+    Args:
+        path: the folder of NYUtrain and NYUtest, any folder of ``.bin``, or one ``.bin``.
+        labels: the folder that ``base/`` of the preprocessing lies in, where it is elsewhere.
+
+    Raises:
+        InputError: there are no frames.
+    """
+    places: dict[str, _Place] = {}
+    for folder in _folders(path):
+        split = _split_of(folder)
+        names = [path.stem] if path.suffix == ".bin" else _names(folder, path, labels)
+        for name in names:
+            key = name if name not in places else f"{split or folder.name}-{name}"
+            places[key] = _Place(name, folder, _pickle_of(folder, name, path, labels), split)
+    if not places:
+        raise InputError(path, "holds no NAME.bin and no base/NYUtrain/NAME.pkl")
+    splits = {key: place.split for key, place in places.items()}
+    return ImportedSet(path, "nyu", splits, lambda key: _read(key, places[key]))
+
+
+def _split_of(folder: Path) -> str:
+    """Return the split in a folder's name: SSCNet's are NYUCADtest, SUNCGtrain_1 and such."""
+    if folder.name in FOLDERS:
+        return FOLDERS[folder.name]
+    return next((split for split in ("train", "test") if split in folder.name.lower()), "")
+
+
+def _folders(path: Path) -> list[Path]:
+    if path.suffix == ".bin":
+        return [path.parent]
+    known = [path / name for name in FOLDERS if (path / name).is_dir()]
+    return known if known and path.name not in FOLDERS else [path]
+
+
+def _names(folder: Path, path: Path, labels: Path | None) -> list[str]:
+    """Return the frames of a folder, which the loaders list by their ``.bin``."""
+    names = {file.stem for file in folder.glob("*.bin")}
+    if not names:
+        for base in _bases(folder, path, labels):
+            names |= {file.stem for file in base.glob("*.pkl")}
+    return sorted(names)
+
+
+def _bases(folder: Path, path: Path, labels: Path | None) -> list[Path]:
+    """Return where pickles of a folder may lie, the likeliest first."""
+    roots = [labels / "base", labels] if labels is not None else []
+    roots += [folder.parent / "base", path / "base", folder.parent / "preprocess" / "base"]
+    return [root / folder.name for root in roots if (root / folder.name).is_dir()]
+
+
+def _pickle_of(folder: Path, name: str, path: Path, labels: Path | None) -> Path | None:
+    for base in _bases(folder, path, labels):
+        if (base / f"{name}.pkl").is_file():
+            return base / f"{name}.pkl"
+    return None
+
+
+def _read(key: str, place: _Place) -> OccSample:
+    stored, origin_m, pose, source = _labels(place)
+    picture = place.folder / f"{place.name}_color.jpg"
+    colour = colour_at(picture)
+    if colour is not None:
+        height, width = colour.shape[:2]
+        if abs(width * HEIGHT_PX / (height * WIDTH_PX) - 1) > SAME_SHAPE:
+            raise DamagedFileError(picture, f"is {width}x{height}; NYUv2's pictures are 640x480")
+        colour = resized_colour(colour, WIDTH_PX, HEIGHT_PX)
+    depth_m = depth_at(place.folder / f"{place.name}.png", "nyu")
+    if depth_m is not None:
+        depth_m = as_large_as(depth_m, NYU_CAMERA)
+    labels = np.ascontiguousarray(checked_labels(stored, STORED_SHAPE, source).transpose(AXES))
+    found = Found(source, labels, origin_m, pose, NYU_CAMERA, colour, depth_m)
+    return sample_of(
+        found, key, scene_id=place.name, tour_id="", frame=0, split=place.split, format="nyu"
+    )
+
+
+def _labels(place: _Place) -> tuple[np.ndarray, np.ndarray, np.ndarray, Path]:
+    """Return the stored 8 cm labels, the origin, the pose, and the file that held them."""
+    if place.labels is None:
+        path = place.folder / f"{place.name}.bin"
+        frame = read_bin(path)
+        return downsampled(frame.labels, 4), frame.origin_m, frame.camera_to_world, path
+    found = read_pickle(place.labels)
+    missing = [name for name in ("target_1_4", "voxel_origin", "cam_pose") if name not in found]
+    if missing:
+        raise DamagedFileError(place.labels, f"has no {', '.join(missing)}")
+    return found["target_1_4"], found["voxel_origin"], found["cam_pose"], place.labels

@@ -1,0 +1,131 @@
+"""OccScanNet: ``gathered_data/SCENE/NNNNN.pkl`` with pictures in ``posed_images``.
+
+Labels are stored as [y, x, z], as EmbodiedOcc and GPOcc read them. The paths inside the pickles are
+those of the machine that wrote them, and are not followed: pictures are found by scene and number.
+"""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.types import Camera
+from world2minecraft.minecraftocc.formats.cameras import HALF_PX, HEIGHT_PX, WIDTH_PX
+from world2minecraft.minecraftocc.formats.unpickling import read_pickle
+from world2minecraft.minecraftocc.importers.labelled import (
+    Found,
+    as_large_as,
+    checked_labels,
+    checked_numbers,
+    sample_of,
+)
+from world2minecraft.minecraftocc.importers.pictures import colour_at, depth_at, resized_colour
+from world2minecraft.minecraftocc.importers.source import ImportedSet
+from world2minecraft.minecraftocc.values import USUAL_SHAPE, OccSample
+
+AXES = (1, 0, 2)  # Theirs y, x, z; ours x, y, z. The same swap leads back.
+LISTS = {
+    "train": ("train_subscenes.txt", "train_final.txt"),
+    "test": ("val_subscenes.txt", "test_final.txt"),
+}
+_LINE = re.compile(r"(?:.*/)?([\w-]{1,100}/\d{1,9})\.pkl", re.ASCII)
+
+
+def is_occscannet(path: Path) -> bool:
+    """Return whether a folder holds ``gathered_data``."""
+    return (path / "gathered_data").is_dir()
+
+
+def open_occscannet(path: Path) -> ImportedSet:
+    """List the frames, with their splits by the lists. Raises InputError where there are none."""
+    names = sorted(
+        f"{file.parent.name}/{file.stem}"
+        for file in path.glob("gathered_data/*/*.pkl")
+        if file.stem.isdecimal()
+    )
+    if not names:
+        raise InputError(path, "holds no gathered_data/SCENE/NNNNN.pkl")
+    listed = {name: split for split in LISTS for name in _listed(path, split)}
+    of_key = {name.replace("/", "-"): name for name in names}
+    splits = {key: listed.get(name, "") for key, name in of_key.items()}
+    return ImportedSet(
+        path, "occscannet", splits, lambda key: _read(path, key, of_key[key], splits[key])
+    )
+
+
+def _listed(path: Path, split: str) -> set[str]:
+    """Return the frames that any list of a split names."""
+    found: set[str] = set()
+    for name in LISTS[split]:
+        file = path / name
+        if file.is_file():
+            lines = file.read_text(errors="replace").splitlines()
+            found |= {match[1] for line in lines if (match := _LINE.fullmatch(line.strip()))}
+    return found
+
+
+def _read(root: Path, key: str, name: str, split: str) -> OccSample:
+    scene, frame = name.split("/")
+    return sample_of(
+        read_frame(root, name),
+        key,
+        scene_id=scene,
+        tour_id="",
+        frame=int(frame),
+        split=split,
+        format="occscannet",
+    )
+
+
+def read_frame(root: Path, name: str, labels: Any = None) -> Found:
+    """Read one frame, ``scene0000_00/00000``, at 640x480 as all its loaders do.
+
+    Args:
+        root: the folder of ``gathered_data``.
+        name: scene and number.
+        labels: other labels than the pickle's, [60, 60, 36] as it stores them.
+
+    Raises:
+        InputError: the pickle is missing. DamagedFileError: it is none of this format.
+    """
+    path = root / "gathered_data" / f"{name}.pkl"
+    stored = read_pickle(path)
+    wanted = ("target_1_4", "voxel_origin", "cam_pose", "intrinsic")
+    if missing := [word for word in wanted if word not in stored]:
+        raise DamagedFileError(path, f"has no {', '.join(missing)}")
+    shape = (USUAL_SHAPE[1], USUAL_SHAPE[0], USUAL_SHAPE[2])
+    held = checked_labels(stored["target_1_4"] if labels is None else labels, shape, path)
+    picture = root / "posed_images" / name
+    colour = colour_at(picture.with_suffix(".jpg"))
+    camera = _camera(stored["intrinsic"], colour, path)
+    depth_m = depth_at(picture.with_suffix(".png"), "mm")
+    return Found(
+        name=path,
+        labels=np.ascontiguousarray(held.transpose(AXES)),
+        origin_m=stored["voxel_origin"],
+        camera_to_world=stored["cam_pose"],
+        camera=camera,
+        colour=None if colour is None else resized_colour(colour, WIDTH_PX, HEIGHT_PX),
+        depth_m=None if depth_m is None else as_large_as(depth_m, camera),
+    )
+
+
+def _camera(stored: Any, colour: np.ndarray | None, path: Path) -> Camera:
+    """Return the 640x480 camera; the stored matrix is that of the picture as it lies there."""
+    numbers = np.asarray(stored)
+    matrix = checked_numbers(numbers[:3, :3] if numbers.ndim == 2 else [], (3, 3), "matrix", path)
+    height, width = (HEIGHT_PX, WIDTH_PX) if colour is None else colour.shape[:2]
+    across, down = WIDTH_PX / width, HEIGHT_PX / height
+    try:
+        return Camera(
+            WIDTH_PX,
+            HEIGHT_PX,
+            matrix[0, 0] * across,
+            matrix[1, 1] * down,
+            (matrix[0, 2] + HALF_PX) * across,
+            (matrix[1, 2] + HALF_PX) * down,
+        )
+    except ValueError as error:
+        raise DamagedFileError(path, f"has an intrinsic that is no camera ({error})") from error

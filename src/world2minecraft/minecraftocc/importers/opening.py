@@ -1,0 +1,74 @@
+"""Which format a folder is in, and its samples."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from world2minecraft.core.errors import InputError, UnknownNameError
+from world2minecraft.minecraftocc.importers.embodied import is_embodied, open_embodied
+from world2minecraft.minecraftocc.importers.npz import is_npz, open_npz
+from world2minecraft.minecraftocc.importers.nyu import is_nyu, open_nyu
+from world2minecraft.minecraftocc.importers.occscannet import is_occscannet, open_occscannet
+from world2minecraft.minecraftocc.importers.source import ImportedSet
+
+
+class Kind(NamedTuple):
+    """How a format is found out and opened."""
+
+    is_at: Callable[[Path], bool]
+    open: Callable[[Path], ImportedSet]
+
+
+def _is_store(path: Path) -> bool:
+    return (path / "dataset.json").is_file()
+
+
+def _open_store(path: Path) -> ImportedSet:
+    """Open a data set of ours; only then what reads it is loaded."""
+    from world2minecraft.minecraftocc.store import open_store  # noqa: PLC0415
+
+    store = open_store(path)
+    columns = store.index()
+    splits = dict(zip(columns["key"].tolist(), columns["split"].tolist(), strict=True))
+    return ImportedSet(path, "store", splits, store.sample, sha256=store.sha256)
+
+
+# In the order in which they are tried: embodied holds occscannet.
+IMPORTED: dict[str, Kind] = {
+    "store": Kind(_is_store, _open_store),
+    "embodied": Kind(is_embodied, open_embodied),
+    "nyu": Kind(is_nyu, open_nyu),
+    "occscannet": Kind(is_occscannet, open_occscannet),
+    "npz": Kind(is_npz, open_npz),
+}
+
+
+def open_occupancy(
+    path: str | Path, format: str | None = None, *, labels: str | Path | None = None
+) -> ImportedSet:
+    """Open an occupancy data set: of others, an export of ours, or a store of ours.
+
+    Args:
+        path: a folder in one of the formats; a single ``.bin`` or ``.npz`` does as well.
+        format: store, nyu, occscannet, embodied or npz; found out by default.
+        labels: nyu: where MonoScene's preprocessed ``base/`` lies, if not beside the frames.
+
+    Raises:
+        UnknownNameError: there is no such format. InputError: the folder is in none, or is empty.
+    """
+    place = Path(path)
+    if not place.exists():
+        raise InputError(place, "is not there")
+    if format is None:
+        format = next((name for name, kind in IMPORTED.items() if kind.is_at(place)), None)
+        if format is None:
+            raise InputError(
+                place,
+                "is no occupancy data set: it has no dataset.json, NYUtrain/, gathered_data/, "
+                "scene_occ/ or train/KEY.npz",
+            )
+    if format not in IMPORTED:
+        raise UnknownNameError("format", format, IMPORTED)
+    if format == "nyu":
+        return open_nyu(place, None if labels is None else Path(labels))
+    return IMPORTED[format].open(place)

@@ -1,0 +1,1 @@
+"""Labels of an image: which cells its region holds, and what the image shows of them."""

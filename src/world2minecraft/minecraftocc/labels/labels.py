@@ -1,0 +1,263 @@
+"""The labels of one image: what its region holds, and what of it the image shows.
+
+In: the cells of a scene, a region, a camera and the depth of its image. Out: ``OccLabels``. The
+labels are the scene's own. Masks follow from them, the camera and the depth as it was drawn:
+
+- in the frustum: the cell's middle is before the camera and falls into the image (the paper's);
+- hit: how many pixels' points lie in the cell. Along a pixel's ray, from ``AROUND_M`` before its
+  point to as much behind it, the first solid cell that is entered counts, else the one that it was
+  in; where none of them is solid, the nearest to the point within ``REACH_M``;
+- free: empty, and some pixel's ray was in it over more than a millimetre before its surface.
+
+The first surface counts, be it glass: what lies behind a window is occluded.
+
+A region that does not stand on the scene's cells, as one that turns with the view, has them sampled
+at its own cells' middles, labels and hits alike. Pixels of a scene's cell that none samples count
+for the region's nearest cell that holds something.
+"""
+
+import numpy as np
+
+from world2minecraft.core.coordinates import apply, invert
+from world2minecraft.core.types import Camera
+from world2minecraft.minecraftocc.labels.free_space_kernels import TILE, greatest_depths, mark_free
+from world2minecraft.minecraftocc.labels.label_kernels import (
+    count_hits,
+    gather,
+    mark_in_frustum,
+    sources,
+)
+from world2minecraft.minecraftocc.labels.region import RegionRule, region_in
+from world2minecraft.minecraftocc.values import LabelRegion, OccLabels, SceneVoxels
+from world2minecraft.rendering import BlockScene, render_volume
+
+AROUND_M = 5e-6  # More than a depth under 40 m is rounded by, along the same ray.
+REACH_M = 0.006  # A point so far from a solid cell is rounding at a shape's edge.
+LABEL_WIDTH_PX = 640  # Of an image that is cast for labels alone.
+
+
+def label_image(
+    voxels: SceneVoxels,
+    region: LabelRegion,
+    camera: Camera,
+    camera_to_room: np.ndarray,
+    depth_m: np.ndarray,
+) -> OccLabels:
+    """Return the labels and masks of an image.
+
+    Args:
+        voxels: the scene.
+        region: which cells; see ``minecraftocc.labels.region``.
+        camera: of the image; its distortion is ignored.
+        camera_to_room: 4x4, OpenCV axes, metres.
+        depth_m: float32 [H, W], z-depth of the first surface, 0 where there is none.
+    """
+    view = _View(voxels, region, camera, camera_to_room, depth_m)
+    labels, fine, instance = view.held
+    in_frustum, free = np.empty(region.shape, bool), np.empty(region.shape, bool)
+    height, width = view.depth_m.shape
+    mark_in_frustum(view.to_camera, view.lens, width, height, in_frustum)
+    tiles = np.empty((-(-height // TILE), -(-width // TILE)), np.float32)
+    greatest_depths(view.depth_m, tiles)
+    mark_free(
+        labels, view.to_camera, view.place, view.lens, view.depth_m, tiles, np.empty((9, 3)), free
+    )
+    hits, _ = view.hits(False)
+    return OccLabels(region, labels, fine, instance, in_frustum, hits, free)
+
+
+def cells_of_pixels(
+    voxels: SceneVoxels,
+    region: LabelRegion,
+    camera: Camera,
+    camera_to_room: np.ndarray,
+    depth_m: np.ndarray,
+) -> np.ndarray:
+    """Return the cell that each pixel sees: its C-order number in the region, -1 for none.
+
+    Args: as ``label_image``.
+
+    Returns:
+        int32 [H, W]; ``hits`` counts its values.
+    """
+    return _View(voxels, region, camera, camera_to_room, depth_m).hits(True)[1]
+
+
+def cast_depth(
+    scene: BlockScene,
+    camera: Camera,
+    camera_to_room: np.ndarray,
+    *,
+    width_px: int | None = LABEL_WIDTH_PX,
+) -> tuple[Camera, np.ndarray]:
+    """Return the depth of an image that nobody draws, and the camera that it is of.
+
+    Args:
+        scene: ``prepare_scene`` of the world.
+        camera: that the labels are for.
+        camera_to_room: 4x4.
+        width_px: the width to cast at; None for the camera's own.
+
+    Returns:
+        The camera, and z-depth float32 [H, W] with 0 where there is nothing.
+    """
+    if width_px is not None:
+        camera = resized(camera, width_px)
+    return camera, render_volume(scene, camera, camera_to_room, outputs=()).depth_m
+
+
+def resized(camera: Camera, width_px: int) -> Camera:
+    """Return the camera with another number of pixels for the same view."""
+    if width_px == camera.width_px:
+        return camera
+    height_px = max(round(camera.height_px * (width_px / camera.width_px)), 1)
+    return camera.scaled_to(width_px, height_px)
+
+
+def label_view(
+    voxels: SceneVoxels,
+    scene: BlockScene,
+    camera: Camera,
+    camera_to_room: np.ndarray,
+    rule: RegionRule | None = None,
+) -> OccLabels:
+    """Return the labels of a view of which there is no picture; see ``cast_depth``."""
+    region = region_in(voxels, camera_to_room, rule)
+    camera, depth_m = cast_depth(scene, camera, camera_to_room)
+    return label_image(voxels, region, camera, camera_to_room, depth_m)
+
+
+def occluded(occ: OccLabels) -> np.ndarray:
+    """Bool [X, Y, Z]: cells in the frustum that hold something and that no pixel sees."""
+    return occ.in_frustum & (occ.fine > 0) & (occ.hits == 0)
+
+
+def unknown(occ: OccLabels) -> np.ndarray:
+    """Bool [X, Y, Z]: cells in the frustum of which the image says nothing, and that are empty."""
+    return occ.in_frustum & (occ.fine == 0) & (occ.hits == 0) & ~occ.free
+
+
+class _View:
+    """An image's camera and its region, in the numbers that the kernels read."""
+
+    def __init__(
+        self,
+        voxels: SceneVoxels,
+        region: LabelRegion,
+        camera: Camera,
+        camera_to_room: np.ndarray,
+        depth_m: np.ndarray,
+    ):
+        size = (camera.height_px, camera.width_px)
+        if depth_m.shape != size:
+            raise ValueError(f"depth of {depth_m.shape} is not of a camera with {size} pixels")
+        self.voxels, self.region, self.camera_to_room = voxels, region, camera_to_room
+        self.depth_m = np.ascontiguousarray(depth_m, np.float32)
+        self.lens = np.array([camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px])
+        self.place = _place(region, camera_to_room)
+        self.held = gathered(voxels, region)
+        self.to_camera = np.ascontiguousarray(invert(np.vstack([self.place, [0, 0, 0, 1]]))[:3])
+
+    def hits(self, cells_wanted: bool) -> tuple[np.ndarray, np.ndarray]:
+        """Return the hits of each cell, and the cell of each pixel where that is wanted."""
+        box = (
+            self.region if is_on_cells(self.region, self.voxels) else _box(self.region, self.voxels)
+        )
+        hits = np.zeros(box.shape, np.uint32)
+        cells = np.empty(self.depth_m.shape if cells_wanted else (0, 0), np.int32)
+        count_hits(
+            gathered(self.voxels, box, 1)[1], _place(box, self.camera_to_room), self.lens,
+            self.depth_m, AROUND_M, REACH_M / box.voxel_m, np.empty(12), hits, cells,
+        )  # fmt: skip
+        if box is self.region:
+            return hits, cells
+        return _sampled(self.region, self.held[1], box, hits, cells)
+
+
+def gathered(
+    voxels: SceneVoxels, region: LabelRegion, more: int = 0
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return what a region's cells hold: labels, fine classes and objects, [X, Y, Z].
+
+    Args:
+        voxels: the scene.
+        region: its cells hold what the scene has at their middles; 255, 0 and 0 outside of it.
+        more: so many cells more on each side.
+    """
+    shape = tuple(side + 2 * more for side in region.shape)
+    found = (np.empty(shape, np.uint8), np.empty(shape, np.uint16), np.empty(shape, np.uint16))
+    to_scene = _to_cells_of(voxels.origin_m, voxels.voxel_m, region)
+    gather(voxels.labels, voxels.fine, voxels.instance, to_scene, np.full(3, -more), *found)
+    return found
+
+
+def is_on_cells(region: LabelRegion, voxels: SceneVoxels) -> bool:
+    """Tell whether a region's cells are the scene's, turned by quarter turns or not at all."""
+    to_scene = _to_cells_of(voxels.origin_m, voxels.voxel_m, region)
+    return bool(np.abs(to_scene - np.round(to_scene)).max() < 1e-4)
+
+
+def _to_cells_of(origin_m: np.ndarray, voxel_m: float, region: LabelRegion) -> np.ndarray:
+    """Return float64 [3, 4]: a region's cells to those of an upright grid of the room."""
+    to_cells = region.region_to_room[:3].copy()
+    to_cells[:, :3] *= region.voxel_m
+    to_cells[:, 3] -= origin_m
+    return np.ascontiguousarray(to_cells / voxel_m)
+
+
+def _place(region: LabelRegion, camera_to_room: np.ndarray) -> np.ndarray:
+    """Return float64 [3, 4]: a camera, in cells of a region."""
+    cells_to_room = region.region_to_room.copy()
+    cells_to_room[:3, :3] *= region.voxel_m
+    return np.ascontiguousarray((invert(cells_to_room) @ camera_to_room)[:3])
+
+
+def _box(region: LabelRegion, voxels: SceneVoxels) -> LabelRegion:
+    """Return the box of the scene's own cells around a region that is none of them."""
+    ends = np.stack(np.meshgrid(*([0, side] for side in region.shape)), -1).reshape(-1, 3)
+    ends = apply(region.region_to_room, ends * region.voxel_m)
+    low = np.floor((ends.min(axis=0) - voxels.origin_m) / voxels.voxel_m)
+    high = np.ceil((ends.max(axis=0) - voxels.origin_m) / voxels.voxel_m)
+    to_room = np.eye(4)
+    to_room[:3, 3] = voxels.origin_m + low * voxels.voxel_m
+    size = (high - low).astype(int)
+    return LabelRegion((size[0], size[1], size[2]), voxels.voxel_m, to_room)
+
+
+def _sampled(
+    region: LabelRegion, fine: np.ndarray, box: LabelRegion, hits: np.ndarray, cells: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the hits, and the pixels' cells, of a region whose cells are samples of a box's."""
+    source = np.empty(region.shape, np.int32)
+    to_box = _to_cells_of(box.region_to_room[:3, 3], box.voxel_m, region)
+    sources(to_box, np.array(box.shape), source)
+    source = source.reshape(-1)
+    own = np.where(source >= 0, hits.reshape(-1)[source], 0).astype(np.uint32)
+    back = np.full(hits.size + 1, -1, np.int32)  # The last is of pixels that see no cell.
+    back[source[source >= 0]] = np.flatnonzero(source >= 0)
+    lost = np.flatnonzero((hits.reshape(-1) > 0) & (back[:-1] < 0))
+    middles = np.stack(np.unravel_index(lost, box.shape), axis=-1) + 0.5
+    back[lost] = _nearest_held(fine, apply(invert(np.vstack([to_box, [0, 0, 0, 1]])), middles))
+    lost = lost[back[lost] >= 0]
+    np.add.at(own, back[lost], hits.reshape(-1)[lost])
+    return own.reshape(region.shape), back[cells]
+
+
+def _nearest_held(fine: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return the number of the cell nearest to each place that holds something, -1 for none.
+
+    Args:
+        fine: uint16 [X, Y, Z], not 0 where a cell holds something.
+        places: float64 [N, 3], in cells; the cell of each and those around it are looked at.
+    """
+    best, found = np.full(len(places), np.inf), np.full(len(places), -1, np.int64)
+    for step in np.ndindex(3, 3, 3):
+        cell = np.floor(places).astype(np.int64) + step - 1
+        inside = np.flatnonzero(((cell >= 0) & (cell < fine.shape)).all(axis=1))
+        here = inside[fine[tuple(cell[inside].T)] > 0]
+        away = np.linalg.norm(cell[here] + 0.5 - places[here], axis=1)
+        nearer = away < best[here]
+        here, away = here[nearer], away[nearer]
+        best[here] = away
+        found[here] = np.ravel_multi_index(tuple(cell[here].T), fine.shape)
+    return found

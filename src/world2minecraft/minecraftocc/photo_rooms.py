@@ -1,0 +1,160 @@
+"""Photo-like pictures of generated rooms, labelled: the data-poor neighbour of block worlds.
+
+A room's own voxels of 2 cm are its truth. They become cells of 8 cm by SSCNet's rule, as NYUv2's
+do, and from there on a picture is labelled as one of a block world is: the paper's region, masks
+from the depth as it was cast. The picture is a phone's: marks on the surfaces, soft edges, the
+exposure and noise of a chip. Depth is exact.
+"""
+
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import UsageError, World2MinecraftError
+from world2minecraft.core.types import Camera
+from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
+from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.labels.labels import label_image
+from world2minecraft.minecraftocc.labels.region import region_in
+from world2minecraft.minecraftocc.values import USUAL_VOXEL_M, FineClass, OccSample, SceneVoxels
+from world2minecraft.procgen import Room, generate_room
+from world2minecraft.procgen.rooms.kinds import KINDS
+from world2minecraft.procgen.sensors.exposure import (
+    TexturedScene,
+    developed,
+    exposed,
+    prepare_textured,
+)
+from world2minecraft.procgen.sensors.tour import plan_tour
+from world2minecraft.rendering.voxel_camera import cast_voxels
+
+FIRST_SEED = 40_000  # Of rooms: those of trials and of other sets are far below.
+ROOMS_A_SEED = 1_000
+MOST_CLUTTER = 0.8
+FINE_CLASSES = (
+    FineClass("minecraft:air"),
+    *(FineClass(f"room:{name}") for name in CLASS_NAMES[1:]),
+)
+
+
+@dataclass(frozen=True)
+class PhotoRooms:
+    """Which rooms, and how many pictures of them.
+
+    Raises:
+        UsageError: there are fewer pictures than rooms, or no room is left to train on.
+    """
+
+    rooms: int = 20
+    images: int = 400
+    test_share: float = 0.25  # Of the rooms, the last ones.
+    seed: int = 0
+    camera: Camera = NYU_CAMERA
+
+    def __post_init__(self):
+        if not 1 <= self.rooms <= ROOMS_A_SEED:
+            raise UsageError(f"--rooms is 1 to {ROOMS_A_SEED}, not {self.rooms}")
+        if self.images < self.rooms:
+            raise UsageError(f"--images is {self.rooms} or more, one a room, not {self.images}")
+        if not 0 <= self.test_share < 1 or self.test_rooms >= self.rooms:
+            raise UsageError(f"--test-share {self.test_share:g} leaves no room to train on")
+
+    @property
+    def test_rooms(self) -> int:
+        """How many rooms are kept for the test."""
+        return max(1, round(self.test_share * self.rooms)) if self.test_share else 0
+
+    def images_of(self, number: int) -> int:
+        """Return how many pictures a room gives: all the same, the first ones one more."""
+        return self.images // self.rooms + (number < self.images % self.rooms)
+
+
+def photo_samples(plan: PhotoRooms) -> Iterator[OccSample]:
+    """Yield the samples, room by room, one in memory at a time."""
+    for number in range(plan.rooms):
+        is_test = number >= plan.rooms - plan.test_rooms
+        room = _room(plan, number)
+        yield from _of_room(plan, number, room, "test" if is_test else "train")
+
+
+def room_voxels(room: Room, voxel_m: float = USUAL_VOXEL_M) -> SceneVoxels:
+    """Return a room's cells, by the rule that made NYUv2's 8 cm of 2 cm; they know no instances.
+
+    Args:
+        room: a room or a house.
+        voxel_m: a whole multiple of the room's own voxels.
+
+    Raises:
+        UsageError: it is none.
+    """
+    factor = round(voxel_m / room.voxel_m)
+    if factor < 1 or abs(factor * room.voxel_m - voxel_m) > 1e-9:
+        raise UsageError(f"cells are whole multiples of {room.voxel_m:g} m, not {voxel_m:g}")
+    first = np.round(room.origin_m / room.voxel_m).astype(int)
+    before = first % factor
+    after = -(before + room.labels.shape) % factor
+    padded = np.pad(room.labels, list(zip(before, after, strict=True)))
+    labels = downsampled(padded, factor)
+    return SceneVoxels(
+        labels=labels,
+        fine=labels.astype(np.uint16),
+        instance=np.zeros(labels.shape, np.uint16),
+        fine_classes=FINE_CLASSES,
+        voxel_m=voxel_m,
+        origin_m=(first - before) * room.voxel_m,
+    )
+
+
+def _room(plan: PhotoRooms, number: int) -> Room:
+    """Return a room of any kind and shape, more or less tidy; where one kind fails, the next."""
+    seed = FIRST_SEED + ROOMS_A_SEED * plan.seed + number
+    clutter = float(np.random.default_rng([seed, 5]).uniform(0, MOST_CLUTTER))
+    kinds = sorted(KINDS)
+    turn = seed % len(kinds)
+    for kind in (*kinds[turn:], *kinds[:turn]):
+        with suppress(World2MinecraftError):  # Its furniture found no place here.
+            return generate_room(seed, kind=kind, clutter=clutter, shape=None)
+    raise UsageError(f"seed {seed} gives no room of any kind; take another --seed")
+
+
+def _of_room(plan: PhotoRooms, number: int, room: Room, split: str) -> Iterator[OccSample]:
+    scene, voxels = prepare_textured(room), room_voxels(room)
+    rng = np.random.default_rng([room.seed, 6])
+    images = plan.images_of(number)
+    poses = plan_tour(room, scene.photos.scene, plan.camera, images, rng)
+    for frame, pose in enumerate(poses):
+        yield _sample(plan, number, room, scene, voxels, pose, frame, split)
+
+
+def _sample(
+    plan: PhotoRooms,
+    number: int,
+    room: Room,
+    scene: TexturedScene,
+    voxels: SceneVoxels,
+    pose: np.ndarray,
+    frame: int,
+    split: str,
+) -> OccSample:
+    light = exposed(scene, plan.camera, pose[None])
+    colour = developed(light, np.random.default_rng([room.seed, 7, frame]))
+    depth_m = cast_voxels(scene.photos.scene, plan.camera, pose).depth_m
+    region = region_in(voxels, pose)
+    scene_id = f"photo_{plan.seed}_{number:04d}"
+    return OccSample(
+        key=f"{scene_id}-walk-{frame:06d}",
+        scene_id=scene_id,
+        tour_id="walk",
+        frame=frame,
+        camera=plan.camera,
+        camera_to_room=pose,
+        occ=label_image(voxels, region, plan.camera, pose, depth_m),
+        fine_classes=FINE_CLASSES,
+        colour=colour,
+        depth_m=depth_m,
+        split=split,
+        facts={"room": {"kind": room.kind, "seed": room.seed}, "tier": "photo"},
+    )

@@ -1,0 +1,226 @@
+"""One sample as one picture: what was seen, how far it is, what it is, and the region from above.
+
+The labels are cast back into the image: where the colours lie on the things, axes, camera and
+labels belong together. A figure beside says the same of the depth.
+"""
+
+import numpy as np
+
+from world2minecraft.capture.poster.canvas import FAINT, INK, PANEL, RULE, Sheet
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES, UNKNOWN
+from world2minecraft.core.coordinates import apply, invert_rigid
+from world2minecraft.geometry.unprojection import lift_depth
+from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.rendering.voxel_camera import cast_voxels
+
+PANEL_PX = (480, 360)
+MARGIN_PX, LINE_PX, HEAD_PX = 24, 26, 54
+LABEL_SHARE = 0.6  # Of a label's colour over the picture's.
+INTO_CELL = 0.25  # Of a cell: so far behind its depth a surface's point is looked up.
+BESIDE_CELLS = 1
+VIEW_M = 7.0  # From corner to corner of a usual region.
+NOTHING = (206, 203, 195)  # Empty cells from above; unknown ones are lighter.
+UNKNOWN_COLOUR = (232, 229, 222)
+# Near to far, dark to bright: even steps to the eye, for the colour-blind too.
+RAMP = np.array(
+    [(68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37)], np.float64
+)
+
+
+def sample_picture(sample: OccSample) -> np.ndarray:
+    """Return the picture of a sample, uint8 [H, W, 3]."""
+    width, height = PANEL_PX
+    sheet = Sheet(MARGIN_PX * 4 + width * 2 + 150, HEAD_PX + (height + LINE_PX + MARGIN_PX) * 2)
+    sheet.text((MARGIN_PX, 14), sample.key, 20, INK, bold=True)
+    for number, (title, pixels, smooth) in enumerate(_panels(sample)):
+        left = MARGIN_PX + (number % 2) * (width + MARGIN_PX)
+        top = HEAD_PX + (number // 2) * (height + LINE_PX + MARGIN_PX)
+        sheet.text((left, top), title, 14, FAINT)
+        at, scale = _placed(sheet, pixels, (left, top + LINE_PX), smooth)
+        if not smooth:
+            _draw_view(sheet, sample, at, scale)
+    _legend(sheet, sample, (MARGIN_PX * 3 + width * 2, HEAD_PX + LINE_PX))
+    return sheet.finished()
+
+
+def seen_in_cells(sample: OccSample) -> float | None:
+    """Return the share of the depth's points within the region that lie in an occupied cell.
+
+    Points at most a cell beside one count: surfaces lie on the borders of cells. None where there
+    is no depth, or nothing of it is within the region. Where axes are mixed up it is far below 1.
+    """
+    if sample.depth_m is None:
+        return None
+    _, cells = cells_behind(sample, sample.depth_m)
+    if not len(cells):
+        return None
+    return float(_widened(sample.occ.occupied)[tuple(cells.T)].mean())
+
+
+def label_image_of(sample: OccSample) -> np.ndarray:
+    """Return the label of what each pixel sees, uint8 [H, W]; 0 where the region does not hold it.
+
+    It is that of the cell behind the depth; where there is none, of the first cell that the ray
+    meets. The cell that the camera itself is in hides nothing.
+    """
+    region, labels = sample.occ.region, np.array(sample.occ.labels)
+    camera_to_region = _camera_to_region(sample)
+    own = np.floor(camera_to_region[:3, 3] / region.voxel_m).astype(np.int64)
+    if ((own >= 0) & (own < region.shape)).all():
+        labels[tuple(own)] = 0
+    hits = cast_voxels(labels, sample.camera, camera_to_region, voxel_m=region.voxel_m)
+    met = labels.reshape(-1)[np.maximum(hits.voxel_index, 0)]
+    met = np.where(hits.voxel_index >= 0, met, 0).astype(np.uint8)
+    if sample.depth_m is not None:
+        pixels, cells = cells_behind(sample, sample.depth_m)
+        behind = sample.occ.labels[tuple(cells.T)]
+        met.reshape(-1)[pixels[behind > 0]] = behind[behind > 0]
+    return met
+
+
+def _camera_to_region(sample: OccSample) -> np.ndarray:
+    return invert_rigid(sample.occ.region.region_to_room) @ sample.camera_to_room
+
+
+def cells_behind(sample: OccSample, depth_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return where pixels lead by their depth: to the cell a little behind the surface they see.
+
+    Returns:
+        Pixels int32 [N] of the flat image, rising, and cells int64 [N, 3] of the region; pixels
+        that see beyond it are left out.
+    """
+    region = sample.occ.region
+    finite = np.isfinite(depth_m) & (depth_m > 0)
+    behind = np.where(finite, depth_m + np.float32(INTO_CELL * region.voxel_m), 0)
+    points, pixels = lift_depth(behind.astype(np.float32), sample.camera, _camera_to_region(sample))
+    cells = np.floor(points / np.float32(region.voxel_m)).astype(np.int64)
+    within = np.all((cells >= 0) & (cells < region.shape), axis=1)
+    return pixels[within], cells[within]
+
+
+def labelled_picture(sample: OccSample) -> np.ndarray:
+    """Return the picture with its labels over it, uint8 [H, W, 3]; on grey where there is none."""
+    size = (sample.camera.height_px, sample.camera.width_px)
+    colour = np.full((*size, 3), PANEL, np.uint8) if sample.colour is None else sample.colour
+    labels = label_image_of(sample)
+    mixed = LABEL_SHARE * _painted(labels) + (1 - LABEL_SHARE) * colour
+    return np.where((labels > 0)[..., None], mixed, colour).astype(np.uint8)
+
+
+def _panels(sample: OccSample) -> list[tuple[str, np.ndarray, bool]]:
+    size = (sample.camera.height_px, sample.camera.width_px)
+    colour = sample.colour
+    if colour is None:
+        colour = np.full((*size, 3), PANEL, np.uint8)
+    seen, far_m = _depth_colours(sample, size)
+    title = "picture" if sample.colour is not None else "picture: none"
+    return [
+        (f"{title}, {size[1]} x {size[0]}", colour, True),
+        (f"depth, 0 to {far_m:.1f} m" if far_m else "depth: none", seen, True),
+        ("labels, as the camera meets them", labelled_picture(sample), True),
+        ("the region from above, without its ceiling", _from_above(sample), False),
+    ]
+
+
+def _depth_colours(sample: OccSample, size: tuple[int, int]) -> tuple[np.ndarray, float]:
+    """Return depth as colours, holes plain, and what the far end of the ramp stands for."""
+    depth_m = sample.depth_m
+    known = None if depth_m is None else np.isfinite(depth_m) & (depth_m > 0)
+    if depth_m is None or known is None or not known.any():
+        return np.full((*size, 3), PANEL, np.uint8), 0.0
+    far_m = float(np.percentile(depth_m[known], 99))
+    steps = np.clip(np.where(known, depth_m, 0) / far_m, 0, 1) * (len(RAMP) - 1)
+    low = np.minimum(steps.astype(int), len(RAMP) - 2)
+    share = (steps - low)[..., None]
+    colours = RAMP[low] * (1 - share) + RAMP[low + 1] * share
+    return np.where(known[..., None], colours, PANEL).astype(np.uint8), far_m
+
+
+def _from_above(sample: OccSample) -> np.ndarray:
+    """Return the region from above, uint8 [Y, X, 3] with forward up; unseen columns are paler."""
+    labels = sample.occ.labels
+    shown = (labels > 1) & (labels != UNKNOWN)  # 1 is the ceiling.
+    top = labels.shape[2] - 1 - np.argmax(shown[:, :, ::-1], axis=2)
+    ids = np.where(shown.any(axis=2), np.take_along_axis(labels, top[..., None], 2)[..., 0], 0)
+    colours = _painted(ids).astype(np.float64)
+    colours *= (0.75 + 0.25 * top / max(labels.shape[2] - 1, 1))[..., None]
+    colours[ids == 0] = NOTHING
+    colours[(labels == UNKNOWN).all(axis=2)] = UNKNOWN_COLOUR
+    outside = ~sample.occ.in_frustum.any(axis=2)
+    colours[outside] = colours[outside] * 0.45 + np.array(PANEL) * 0.55
+    return np.rot90(colours.astype(np.uint8)).copy()
+
+
+def _placed(
+    sheet: Sheet, pixels: np.ndarray, corner: tuple[float, float], smooth: bool
+) -> tuple[tuple[float, float], float]:
+    """Put a picture into its panel as large as it fits; return its corner and its scale."""
+    width, height = PANEL_PX
+    scale = min(width / pixels.shape[1], height / pixels.shape[0])
+    size = (pixels.shape[1] * scale, pixels.shape[0] * scale)
+    at = (corner[0] + (width - size[0]) / 2, corner[1] + (height - size[1]) / 2)
+    sheet.box(corner, PANEL_PX, PANEL)
+    sheet.picture(np.ascontiguousarray(pixels), at, size, smooth)
+    return at, scale
+
+
+def _draw_view(sheet: Sheet, sample: OccSample, corner: tuple[float, float], scale: float) -> None:
+    """Draw, over the region from above, what the middle row of the image sees of it."""
+    region, camera = sample.occ.region, sample.camera
+    camera_to_region = _camera_to_region(sample)
+    edges = np.array([[-camera.cx_px, 0], [camera.width_px - camera.cx_px, 0]]) / camera.fx_px
+    steps = np.linspace(0, VIEW_M, 200)
+    for x, y in edges:
+        ray = apply(camera_to_region, steps[:, None] * np.array([x, y, 1.0])) / region.voxel_m
+        within = np.all((ray[:, :2] >= 0) & (ray[:, :2] <= region.shape[:2]), axis=1)
+        if within.any():
+            ends = ray[within][[0, -1], :2]
+            points = [(corner[0] + a * scale, corner[1] + (region.shape[1] - b) * scale)
+                      for a, b in ends.tolist()]  # fmt: skip
+            sheet.line([points[0], points[1]], INK, 1.5)
+
+
+def _legend(sheet: Sheet, sample: OccSample, corner: tuple[float, float]) -> None:
+    left, top = corner
+    held = np.bincount(sample.occ.labels.reshape(-1), minlength=256)
+    for number, name in enumerate(CLASS_NAMES[1:], 1):
+        fill = CLASS_COLOURS[number] if held[number] else PANEL
+        sheet.box((left, top), (14, 14), fill, RULE, 3)
+        sheet.text((left + 22, top), name, 13, INK if held[number] else FAINT)
+        sheet.text((left + 150, top), f"{held[number]:,}", 13, FAINT, anchor="ra")
+        top += LINE_PX
+    for line in _lines(sample, held):
+        top += LINE_PX * 0.85
+        sheet.text((left, top), line, 13, FAINT)
+
+
+def _lines(sample: OccSample, held: np.ndarray) -> list[str]:
+    occ = sample.occ
+    met = seen_in_cells(sample)
+    return [
+        f"split: {sample.split or 'none'}",
+        f"region: {occ.region.kind}",
+        f"empty: {held[0] / occ.labels.size:.0%} of cells",
+        f"unknown: {held[UNKNOWN] / occ.labels.size:.0%}",
+        f"in view: {occ.in_frustum.mean():.0%}",
+        f"seen first: {int(occ.visible.sum()):,}",
+        "depth: none" if met is None else f"depth in cells: {met:.1%}",
+    ]
+
+
+def _painted(labels: np.ndarray) -> np.ndarray:
+    table = np.full((256, 3), UNKNOWN_COLOUR, np.uint8)
+    table[: len(CLASS_COLOURS)] = CLASS_COLOURS
+    return table[labels]
+
+
+def _widened(mask: np.ndarray) -> np.ndarray:
+    """Return a mask with the cells that touch it by a face."""
+    wide = mask.copy()
+    for axis in range(3):
+        ahead = [slice(None)] * 3
+        behind = [slice(None)] * 3
+        ahead[axis], behind[axis] = slice(BESIDE_CELLS, None), slice(None, -BESIDE_CELLS)
+        wide[tuple(ahead)] |= mask[tuple(behind)]
+        wide[tuple(behind)] |= mask[tuple(ahead)]
+    return wide

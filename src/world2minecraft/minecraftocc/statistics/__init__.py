@@ -1,0 +1,27 @@
+"""What a data set holds, in numbers, beside the data sets that the paper compares."""
+
+from world2minecraft.minecraftocc.statistics.counting import (
+    PictureCounts,
+    StatisticsCounter,
+    count_samples,
+    picture_counts,
+)
+from world2minecraft.minecraftocc.statistics.tables import (
+    statistics_json,
+    statistics_latex,
+    statistics_text,
+)
+from world2minecraft.minecraftocc.statistics.values import DatasetStatistics, FineCount, SceneCount
+
+__all__ = [
+    "DatasetStatistics",
+    "FineCount",
+    "PictureCounts",
+    "SceneCount",
+    "StatisticsCounter",
+    "count_samples",
+    "picture_counts",
+    "statistics_json",
+    "statistics_latex",
+    "statistics_text",
+]

@@ -1,0 +1,216 @@
+"""Counting a data set, a picture at a time, in memory that does not grow with the pictures.
+
+Counters of parts of a data set add up to that of the whole: ``merge``.
+"""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_COUNT, UNKNOWN
+from world2minecraft.minecraftocc.importers.labelled import CLASS_KINDS
+from world2minecraft.minecraftocc.statistics.cells import WorldCells
+from world2minecraft.minecraftocc.statistics.values import (
+    ENOUGH_PIXELS,
+    DatasetStatistics,
+    FineCount,
+    SceneCount,
+)
+from world2minecraft.minecraftocc.values import FineClass, OccLabels, OccSample
+
+
+@dataclass(frozen=True, eq=False)
+class PictureCounts:
+    """The numbers of one picture."""
+
+    scene_id: str
+    split: str
+    size_px: str  # "640x480"
+    region: str
+    class_voxels: np.ndarray  # int64 [12], cells in the frustum by class
+    uncut_voxels: int  # occupied cells, in the frustum or not
+    fine_pixels: Mapping[str, int] | None  # FineClass.name to pixels; None where not known
+    room: int | None = None  # Its number in the scene, where the sample tells it.
+
+
+def picture_counts(sample: OccSample) -> PictureCounts:
+    """Return the numbers of a picture from its labels."""
+    return PictureCounts(
+        sample.scene_id,
+        sample.split,
+        f"{sample.camera.width_px}x{sample.camera.height_px}",
+        region_text(sample.occ.region.shape, sample.occ.region.voxel_m),
+        class_voxels(sample.occ),
+        int(np.count_nonzero(sample.occ.occupied)),
+        fine_pixels(sample.occ, sample.fine_classes),
+        room if isinstance(room := sample.facts.get("room"), int) else None,
+    )
+
+
+def class_voxels(occ: OccLabels) -> np.ndarray:
+    """Return the cells in the frustum by class, int64 [12]; unknown ones are left out."""
+    return np.bincount(occ.labels[occ.in_frustum], minlength=UNKNOWN + 1)[:CLASS_COUNT]
+
+
+def fine_pixels(occ: OccLabels, classes: tuple[FineClass, ...]) -> dict[str, int] | None:
+    """Return the pixels that see each fine class. Empty cells, the first class, are left out.
+
+    None where the fine classes are no more than the 12, as those of imported sets are.
+    """
+    if set(classes) <= set(CLASS_KINDS):
+        return None
+    seen = np.bincount(occ.fine[occ.visible], weights=occ.hits[occ.visible], minlength=len(classes))
+    pixels: Counter[str] = Counter()
+    for number in np.flatnonzero(seen):
+        if number:
+            pixels[classes[number].name] += int(seen[number])
+    return dict(pixels)
+
+
+def region_text(shape: Iterable[int], voxel_m: float) -> str:
+    """Return what a region is, for people.
+
+    Example:
+        >>> region_text((60, 60, 36), 0.08)
+        '60x60x36 cells of 0.08 m'
+    """
+    return f"{'x'.join(map(str, shape))} cells of {voxel_m:g} m"
+
+
+@dataclass
+class _Fine:
+    pixels: int = 0
+    pictures: int = 0
+    clear: int = 0
+
+
+@dataclass
+class _Scene:
+    pictures: int = 0
+    voxels: int = 0
+    rooms: int | None = None  # As told of the scene.
+    rooms_seen: set[int | None] = field(default_factory=set)  # As pictures tell.
+
+    def count_rooms(self) -> int | None:
+        """Return the rooms as told, or else those of the pictures if each tells its own."""
+        if self.rooms is not None or None in self.rooms_seen:
+            return self.rooms
+        return len(self.rooms_seen)
+
+
+@dataclass
+class StatisticsCounter:
+    """The sums over the pictures so far."""
+
+    pictures: int = 0
+    uncut_voxels: int = 0
+    class_voxels: np.ndarray = field(default_factory=lambda: np.zeros(CLASS_COUNT, np.int64))
+    _scenes: dict[str, _Scene] = field(default_factory=lambda: defaultdict(_Scene))
+    _cells: dict[str, WorldCells] = field(default_factory=lambda: defaultdict(WorldCells))
+    _fine: dict[str, _Fine] = field(default_factory=lambda: defaultdict(_Fine))
+    _without_fine: int = 0
+    _sizes: Counter[str] = field(default_factory=Counter)
+    _splits: Counter[str] = field(default_factory=Counter)
+    _regions: Counter[str] = field(default_factory=Counter)
+
+    def add(self, counts: PictureCounts) -> None:
+        """Add one picture's numbers."""
+        self.pictures += 1
+        self.uncut_voxels += counts.uncut_voxels
+        self.class_voxels += counts.class_voxels
+        scene = self._scenes[counts.scene_id]
+        scene.pictures += 1
+        scene.voxels += int(counts.class_voxels[1:].sum())
+        scene.rooms_seen.add(counts.room)
+        self._sizes[counts.size_px] += 1
+        self._splits[counts.split or "none"] += 1
+        self._regions[counts.region] += 1
+        self._without_fine += counts.fine_pixels is None
+        for name, pixels in (counts.fine_pixels or {}).items():
+            fine = self._fine[name]
+            fine.pixels += pixels
+            fine.pictures += 1
+            fine.clear += pixels >= ENOUGH_PIXELS
+
+    def add_cells(self, scene_id: str, occ: OccLabels) -> None:
+        """Add which cells of its world a picture holds: those that the paper counts."""
+        self._cells[scene_id].add(occ.region, occ.occupied & occ.in_frustum)
+
+    def set_rooms(self, scene_id: str, rooms: int) -> None:
+        """Say how many rooms a scene has; one without a picture is no scene of the data set."""
+        if scene_id in self._scenes:
+            self._scenes[scene_id].rooms = rooms
+
+    def merge(self, other: "StatisticsCounter") -> None:
+        """Add the sums of other pictures of the same data set."""
+        self.pictures += other.pictures
+        self.uncut_voxels += other.uncut_voxels
+        self.class_voxels += other.class_voxels
+        for name, theirs in other._scenes.items():
+            ours = self._scenes[name]
+            ours.pictures += theirs.pictures
+            ours.voxels += theirs.voxels
+            ours.rooms = theirs.rooms if ours.rooms is None else ours.rooms
+            ours.rooms_seen |= theirs.rooms_seen
+        for name, cells in other._cells.items():
+            self._cells[name].merge(cells)
+        for name, fine in other._fine.items():
+            held = self._fine[name]
+            held.pixels += fine.pixels
+            held.pictures += fine.pictures
+            held.clear += fine.clear
+        self._without_fine += other._without_fine
+        self._sizes += other._sizes
+        self._splits += other._splits
+        self._regions += other._regions
+
+    def result(self, name: str) -> DatasetStatistics:
+        """Return the statistics so far, under the name of the data set."""
+        scenes = (self._scene(key) for key in sorted(self._scenes))
+        return DatasetStatistics(
+            name,
+            self.pictures,
+            tuple(scenes),
+            tuple(int(count) for count in self.class_voxels),
+            self.uncut_voxels,
+            None if self._without_fine else self._fine_counts(),
+            dict(sorted(self._sizes.items())),
+            dict(sorted(self._splits.items())),
+            ", ".join(sorted(self._regions)),
+        )
+
+    def _scene(self, key: str) -> SceneCount:
+        held = self._scenes[key]
+        cells = self._cells[key].count() if key in self._cells else None
+        return SceneCount(key, held.pictures, held.voxels, cells, held.count_rooms())
+
+    def _fine_counts(self) -> tuple[FineCount, ...]:
+        counts = (
+            FineCount(name, one.pixels, one.pictures, one.clear) for name, one in self._fine.items()
+        )
+        return tuple(sorted(counts, key=lambda one: (-one.pixels, one.name)))
+
+
+def add_sample(counter: StatisticsCounter, sample: OccSample) -> None:
+    """Add a sample to a counter, its distinct cells too."""
+    counter.add(picture_counts(sample))
+    counter.add_cells(sample.scene_id, sample.occ)
+
+
+def count_samples(
+    samples: Iterable[OccSample], *, rooms: Mapping[str, int] | None = None
+) -> StatisticsCounter:
+    """Count samples of any origin, their distinct cells too.
+
+    Args:
+        samples: a stream of them; none is kept.
+        rooms: how many rooms each scene has, where that is known.
+    """
+    counter = StatisticsCounter()
+    for sample in samples:
+        add_sample(counter, sample)
+    for scene_id, count in (rooms or {}).items():
+        counter.set_rooms(scene_id, count)
+    return counter

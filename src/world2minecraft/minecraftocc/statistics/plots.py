@@ -1,0 +1,121 @@
+"""Plots of a data set: its classes, its fine classes, its scenes. PNG files, by matplotlib."""
+
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
+from world2minecraft.core.errors import MissingExtraError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.minecraftocc.statistics.other_data_sets import NYU_TRAIN_VOXELS
+from world2minecraft.minecraftocc.statistics.tables import class_shares, short
+from world2minecraft.minecraftocc.statistics.values import DatasetStatistics
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WIDTH_IN, HEIGHT_IN, DPI = 7.6, 4.2, 200
+ROW_IN = 0.3  # The height of a class.
+FAINT, RULE, OURS = "#6d747c", "#dfe3e7", "#3f7cac"
+WIDEST = 0.08  # Of the axis: the widest step, where there are few.
+
+
+def write_plots(statistics: DatasetStatistics, folder: str | Path) -> list[Path]:
+    """Write the plots of a data set below a folder and return where they lie.
+
+    ``classes.png`` has a bar for each class, with a mark for NYUv2's share; ``fine_classes.png``
+    how often each fine class is seen; ``scenes.png`` the voxels of each scene. Settings of
+    matplotlib on this machine are left out, so that the same statistics give the same bytes.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed. OutputError: the folder cannot be written.
+    """
+    need_matplotlib()
+    import matplotlib.style  # noqa: PLC0415  # An extra, and slow to import.
+
+    plain = ["default", {"text.parse_math": False}]  # A name may hold a dollar sign.
+    with matplotlib.style.context(plain):
+        drawn = {"classes.png": class_plot(statistics), "scenes.png": scene_plot(statistics)}
+        if statistics.fine:
+            drawn["fine_classes.png"] = fine_plot(statistics)
+        for name, figure in drawn.items():
+            stream = io.BytesIO()
+            figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
+            write_bytes(Path(folder) / name, stream.getvalue())
+    return [Path(folder) / name for name in sorted(drawn)]
+
+
+def need_matplotlib() -> None:
+    """Check that plots can be drawn, before a set is counted for them. Raises MissingExtraError."""
+    try:
+        import matplotlib.style  # noqa: F401, PLC0415
+    except ImportError as error:
+        raise MissingExtraError("drawing plots", "data") from error
+
+
+def class_plot(statistics: DatasetStatistics) -> "Figure":
+    """Draw the share of each class in all voxels, the commonest first."""
+    ours, theirs = class_shares(statistics.class_voxels), class_shares(NYU_TRAIN_VOXELS)
+    order = sorted(range(len(ours)), key=lambda n: -ours[n])
+    under = f"{statistics.voxels:,} voxels of {statistics.pictures:,} pictures; the line is NYUv2's"
+    figure, axes = _page(f"Classes of {statistics.name}", under, 1.1 + ROW_IN * len(order))
+    colours = [tuple(part / 255 for part in CLASS_COLOURS[n + 1]) for n in order]
+    rows = np.arange(len(order))
+    axes.barh(rows, [ours[n] for n in order], color=colours)
+    axes.vlines([theirs[n] for n in order], rows - 0.45, rows + 0.45, colors="black", linewidths=1)
+    axes.set_yticks(rows, [CLASS_NAMES[n + 1] for n in order])
+    axes.set_xlim(0, 1.02 * max(0.01, *ours, *theirs))
+    axes.invert_yaxis()
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:.0%}")
+    axes.grid(axis="x", color=RULE)
+    beside = axes.get_yaxis_transform()  # Across in parts of the axis, down in rows.
+    for row, n in enumerate(order):
+        told = {1.08: f"{ours[n]:.1%}", 1.18: short(statistics.class_voxels[n + 1])}
+        for place, text in told.items():
+            axes.text(place, row, text, transform=beside, ha="right", va="center")
+    return figure
+
+
+def scene_plot(statistics: DatasetStatistics) -> "Figure":
+    """Draw the voxels of each scene, most first."""
+    values = sorted((scene.voxels for scene in statistics.scenes), reverse=True)
+    under = f"{len(values):,} scenes; mean {short(statistics.voxels_per_scene)} voxels"
+    return _steps(f"Voxels of the scenes of {statistics.name}", under, values, "scenes")
+
+
+def fine_plot(statistics: DatasetStatistics) -> "Figure":
+    """Draw the pixels of each fine class that is seen enough, most first, on a log scale."""
+    values = [one.pixels for one in statistics.fine or () if one.is_seen_enough]
+    under = f"{len(values):,} fine classes that are seen enough, by their pixels on a log scale"
+    return _steps(f"Fine classes of {statistics.name}", under, values, "fine classes", log=True)
+
+
+def _steps(title: str, under: str, values: Sequence[int], what: str, log: bool = False) -> "Figure":
+    """Draw values that fall from left to right as an area, with lines at round numbers."""
+    figure, axes = _page(title, under, HEIGHT_IN)
+    axes.stairs(values, np.arange(len(values) + 1), fill=True, color=OURS, baseline=int(log))
+    axes.set_xlim(0, max(len(values), 1 / WIDEST))
+    if log:
+        axes.set_yscale("log")
+    axes.set_ylim(int(log), 1.05 * max([2, *values]))
+    axes.yaxis.set_major_formatter(lambda value, _: short(value).replace(".0", ""))
+    axes.set_xticks([])
+    axes.set_xlabel(f"{len(values):,} {what}", loc="left", color=FAINT)
+    axes.grid(axis="y", color=RULE)
+    return figure
+
+
+def _page(title: str, under: str, height_in: float) -> "tuple[Figure, Axes]":
+    from matplotlib.figure import Figure  # noqa: PLC0415
+
+    figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")
+    axes = figure.add_subplot()
+    figure.suptitle(title, x=0.02, ha="left", fontsize=14)
+    axes.set_title(under, loc="left", fontsize=9, color=FAINT)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.set_axisbelow(True)
+    return figure, axes

@@ -1,0 +1,175 @@
+"""Counting a data set on disk, a picture at a time.
+
+A stored one is counted by several processes, and its pictures are not read.
+"""
+
+import json
+import re
+from collections import deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.errors import InputError, WorkerError
+from world2minecraft.core.files import read_bytes, read_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.minecraftocc.importers.opening import IMPORTED, open_occupancy
+from world2minecraft.minecraftocc.statistics.counting import (
+    StatisticsCounter,
+    add_sample,
+    count_samples,
+)
+from world2minecraft.minecraftocc.statistics.values import DatasetStatistics
+from world2minecraft.minecraftocc.store import OccStore, open_store
+from world2minecraft.minecraftocc.store.folder import META, SCENES
+
+SCENE_ID = re.compile(r"[A-Za-z0-9_-]{1,90}")
+HOUSE = "house.json"
+MAX_VIEWS_BYTES = 256 << 20
+PART = 200  # Pictures that a process counts at once: two seconds of work.
+
+
+def statistics_of(
+    path: str | Path,
+    split: str | None = None,
+    *,
+    format: str | None = None,
+    jobs: int = 1,
+    progress: Progress = silent,
+) -> DatasetStatistics:
+    """Return the statistics of a data set on disk, of ours or of others.
+
+    Args:
+        path: a stored data set, or a folder that ``w2m dataset import`` takes.
+        split: its name; all where None.
+        format: of a folder of others; found out where None.
+        jobs: how many processes count a stored one.
+        progress: told the pictures that are counted.
+
+    Raises:
+        InputError: it is no data set, or has no such split. DamagedFileError: a sample cannot be
+        read. UsageError: there is no such split or format. WorkerError: a process ended.
+    """
+    place = Path(path)
+    if format is None and ((place / META).is_file() or not _is_imported(place)):
+        return store_statistics(place, split, jobs=jobs, progress=progress)
+    found = open_occupancy(place, format)
+    keys = found.keys(split)
+    if not keys:
+        raise InputError(place, f"has no pictures of the split {split!r}")
+    counter = StatisticsCounter()
+    for done, sample in enumerate(found.samples(split)):
+        progress("count", done, len(keys))
+        add_sample(counter, sample)
+    progress("count", len(keys), len(keys))
+    return counter.result(_named(place, split))
+
+
+def store_statistics(
+    path: str | Path,
+    split: str | None = None,
+    *,
+    jobs: int = 1,
+    progress: Progress = silent,
+) -> DatasetStatistics:
+    """Return the statistics of a stored data set, or of one of its splits.
+
+    Memory does not grow with the number of pictures.
+
+    Args:
+        path: of the data set.
+        split: its name; all where None.
+        jobs: how many processes count.
+        progress: told the pictures that are counted.
+
+    Raises:
+        InputError: it is no data set. DamagedFileError: a sample cannot be read. UsageError: there
+        is no such split. WorkerError: a process ended.
+    """
+    store = open_store(path)
+    keys = store.keys(split)
+    counter = StatisticsCounter()
+    progress("count", 0, len(keys))
+    for part, pictures in _parts(store, keys, jobs):
+        counter.merge(part)
+        progress("count", counter.pictures, len(keys), f"{pictures:,} pictures")
+    for scene_id, rooms in rooms_of(store.folder, store.meta).items():
+        counter.set_rooms(scene_id, rooms)
+    return counter.result(_named(store.folder, split))
+
+
+def rooms_of(folder: Path, meta: dict[str, Any]) -> dict[str, int]:
+    """Return how many rooms each scene has, of those scenes that tell it.
+
+    ``dataset.json`` tells it, or the ``house.json`` of a generated house, or else the scene's
+    planned views, each of which names its room.
+    """
+    found = {}
+    for scene in meta.get("scenes", ()):
+        name = str(scene.get("scene_id")) if isinstance(scene, dict) else ""
+        if not SCENE_ID.fullmatch(name):
+            continue
+        rooms = (
+            scene.get("rooms")
+            or _rooms_of_house(folder / str(scene.get("source", name)) / HOUSE)
+            or _rooms_of_views(folder / SCENES / f"{name}.poses.jsonl")
+        )
+        if isinstance(rooms, int) and rooms > 0:
+            found[name] = rooms
+    return found
+
+
+def _rooms_of_house(path: Path) -> int | None:
+    """Return how many rooms a generated house has; None where there is none."""
+    try:
+        return len(read_json(path, MAX_VIEWS_BYTES)["rooms"])
+    except (InputError, KeyError, TypeError):
+        return None
+
+
+def _rooms_of_views(path: Path) -> int | None:
+    """Return how many rooms the views of a tour file name; None where one names none."""
+    try:
+        lines = read_bytes(path, MAX_VIEWS_BYTES).splitlines()
+        rooms = [json.loads(line)["room"] for line in lines if line.strip()]
+    except (InputError, ValueError, KeyError, TypeError):  # Scenes without such a file are usual.
+        return None
+    return len(set(rooms)) if all(isinstance(room, int) for room in rooms) else None
+
+
+def _named(folder: Path, split: str | None) -> str:
+    name = folder.resolve().name
+    return f"{name}, {split}" if split else name
+
+
+def _is_imported(place: Path) -> bool:
+    return place.exists() and any(kind.is_at(place) for kind in IMPORTED.values())
+
+
+def _parts(
+    store: OccStore, keys: Sequence[str], jobs: int
+) -> Iterator[tuple[StatisticsCounter, int]]:
+    """Give the counters of parts of the data set, in their order."""
+    parts = [keys[start : start + PART] for start in range(0, len(keys), PART)]
+    if jobs <= 1 or len(parts) <= 1:
+        for part in parts:
+            yield count_samples(store.sample(key, pictures=False) for key in part), len(part)
+        return
+    with ProcessPoolExecutor(min(jobs, len(parts)), get_context("spawn")) as pool:
+        tasks = deque((pool.submit(_count, str(store.folder), part), len(part)) for part in parts)
+        try:
+            while tasks:  # In their order, so that the first part's grid of cells is the scene's.
+                task, pictures = tasks.popleft()  # Else every part would be held to the end.
+                yield task.result(), pictures
+        except RuntimeError as error:  # A broken pool is one.
+            raise WorkerError(f"a process that counts has ended ({error}); try --jobs 1") from error
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def _count(folder: str, keys: Sequence[str]) -> StatisticsCounter:
+    """Count some pictures, in a process of their own."""
+    store = open_store(folder)
+    return count_samples(store.sample(key, pictures=False) for key in keys)

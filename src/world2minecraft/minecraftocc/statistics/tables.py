@@ -1,0 +1,231 @@
+"""Statistics as text, as JSON and as the paper's table in LaTeX."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.minecraftocc.statistics.other_data_sets import (
+    NYU_TRAIN_VOXELS,
+    PAPER,
+    PUBLISHED_SETS,
+)
+from world2minecraft.minecraftocc.statistics.values import (
+    ENOUGH_PICTURES,
+    ENOUGH_PIXELS,
+    DatasetStatistics,
+)
+
+HEAD = (
+    "data set",
+    "pictures",
+    "scenes",
+    "rooms",
+    "classes",
+    "semantic voxels",
+    "voxels a scene",
+    "resolution",
+)
+SHOWN = 8  # Fine classes at either end of the list.
+BAR = 24  # Letters of the longest bar.
+_SPECIAL = {
+    "\\": r"\textbackslash{}",
+    "~": r"$\sim$",
+    "^": r"\textasciicircum{}",
+    **{letter: f"\\{letter}" for letter in "&%$#_{}"},
+}
+
+
+def statistics_text(statistics: DatasetStatistics) -> str:
+    """Return the paper's table with the data set below it, and its classes."""
+    lines = columns([HEAD, *_published(), _own_row(statistics)])
+    lines += ["", *_told(statistics), "", *_class_lines(statistics)]
+    if statistics.fine:
+        lines += ["", *_fine_lines(statistics)]
+    return "\n".join(lines)
+
+
+def statistics_json(statistics: DatasetStatistics) -> dict[str, Any]:
+    """Return everything, the paper's rows too, as JSON values."""
+    shares = class_shares(statistics.class_voxels)
+    return {
+        "name": statistics.name,
+        "pictures": statistics.pictures,
+        "scenes": len(statistics.scenes),
+        "rooms": statistics.rooms,
+        "classes": ["empty", *statistics.classes_present],
+        "fine_classes": statistics.fine_classes,
+        "fine_rule": {"pixels": ENOUGH_PIXELS, "pictures": ENOUGH_PICTURES},
+        "voxels": statistics.voxels,
+        "voxels_per_scene": statistics.voxels_per_scene,
+        "uncut_voxels": statistics.uncut_voxels,
+        "distinct_cells": statistics.distinct_cells,
+        "resolution": statistics.resolution,
+        "sizes_px": dict(statistics.sizes_px),
+        "region": statistics.region,
+        "splits": dict(statistics.splits),
+        "class_voxels": dict(zip(CLASS_NAMES, statistics.class_voxels, strict=True)),
+        "class_shares": dict(zip(CLASS_NAMES[1:], shares, strict=True)),
+        "by_scene": [asdict(scene) for scene in statistics.scenes],
+        "fine": None if statistics.fine is None else [asdict(one) for one in statistics.fine],
+        "published": {
+            "source": PAPER,
+            "sets": [
+                {**asdict(row), "voxels_per_scene": row.voxels_per_scene} for row in PUBLISHED_SETS
+            ],
+            "nyu_train_class_voxels": dict(zip(CLASS_NAMES, NYU_TRAIN_VOXELS, strict=True)),
+        },
+    }
+
+
+def statistics_latex(statistics: DatasetStatistics) -> str:
+    """Return the table as the paper prints it, for ``booktabs``."""
+    rows = [*_published(), _own_row(statistics)]
+    head = " & ".join(rf"\textbf{{{escape(word.capitalize())}}}" for word in HEAD)
+    lines = [rf"\begin{{tabular}}{{l{'r' * (len(HEAD) - 2)}c}}", r"\toprule", head + r" \\"]
+    lines.append(r"\midrule")
+    for row in rows:
+        cells = [escape(word) for word in row[:-1]] + [_times(row[-1])]
+        lines.append(" & ".join(cells) + r" \\")
+    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}"])
+
+
+def class_shares(class_voxels: Sequence[int]) -> list[float]:
+    """Return the share of each of the 11 classes in what is not empty; zeros where nothing is."""
+    total = sum(class_voxels[1:])
+    return [count / total if total else 0.0 for count in class_voxels[1:]]
+
+
+def columns(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return rows as lines, the first column to the left, the others to the right."""
+    widths = [max(len(row[n]) for row in rows) for n in range(len(rows[0]))]
+    return [
+        "  ".join(
+            word.rjust(width) if n else word.ljust(width)
+            for n, (word, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
+
+
+def escape(text: str) -> str:
+    r"""Return a text as LaTeX takes it.
+
+    Example:
+        >>> print(escape("oak_planks & 5 %"))
+        oak\_planks \& 5 \%
+    """
+    return "".join(_SPECIAL.get(letter, letter) for letter in text)
+
+
+def short(number: float) -> str:
+    """Return a number of cells as the paper writes it.
+
+    Example:
+        >>> short(23247), short(4_700_514), short(812)
+        ('23.2K', '4.7M', '812')
+    """
+    for size, letter in ((1e9, "B"), (1e6, "M"), (1e3, "K")):
+        if number >= size:
+            return f"{number / size:.1f}{letter}"
+    return f"{number:.0f}"
+
+
+def _times(size: str) -> str:
+    width, _, height = size.partition("x")
+    return rf"${width} \times {height}$" if height else escape(size)
+
+
+def _published() -> list[tuple[str, ...]]:
+    return [
+        (
+            row.name,
+            f"{row.pictures:,}",
+            f"{row.scenes:,}",
+            _or_dash(row.rooms, "~"),
+            f"{row.classes:,}",
+            f"{row.voxels:,}",
+            short(row.voxels_per_scene),
+            row.resolution,
+        )
+        for row in PUBLISHED_SETS
+    ]
+
+
+def _own_row(statistics: DatasetStatistics) -> tuple[str, ...]:
+    fine = statistics.fine_classes
+    return (
+        statistics.name,
+        f"{statistics.pictures:,}",
+        f"{len(statistics.scenes):,}",
+        _or_dash(statistics.rooms),
+        f"{len(statistics.classes_present) + 2 if fine is None else fine:,}",
+        f"{statistics.voxels:,}",
+        short(statistics.voxels_per_scene),
+        statistics.resolution,
+    )
+
+
+def _or_dash(count: int | None, about: str = "") -> str:
+    return "-" if count is None else f"{about}{count:,}"
+
+
+def _told(statistics: DatasetStatistics) -> list[str]:
+    """Return what the row of the data set cannot say."""
+    uncut = f"{statistics.uncut_voxels:,}"
+    lines = [
+        "semantic voxels  as the paper counts: over all pictures, the occupied cells of the region",
+        f"                 ({statistics.region}) whose centres fall into the picture;",
+        f"                 of whole regions {uncut}, as NYUv2's row seems to count",
+    ]
+    if statistics.distinct_cells is not None:
+        share = statistics.voxels / max(statistics.distinct_cells, 1)
+        lines.append(
+            f"distinct cells   {statistics.distinct_cells:,} of the worlds themselves; "
+            f"each is in {share:.1f} pictures"
+        )
+    if statistics.fine is None:
+        lines.append("classes          the 12 and unknown; this set names no fine classes")
+    else:
+        counted = f"{statistics.fine_classes:,} of {len(statistics.fine):,} fine classes"
+        rule = f"{ENOUGH_PIXELS} pixels in {ENOUGH_PICTURES} pictures or more"
+        lines.append(f"classes          {counted} are seen by {rule};")
+        pieces = sum(one.is_furniture for one in statistics.fine if one.is_seen_enough)
+        blocks = (statistics.fine_classes or 0) - pieces
+        lines.append(f"                 {blocks:,} blocks, {pieces:,} pieces of furniture;")
+        present = len(statistics.classes_present)
+        lines.append(f"                 {present} of the 11 classes that are not empty are there")
+    if statistics.rooms is None:
+        lines.append("rooms            not told by every scene")
+    if len(statistics.sizes_px) > 1:
+        sizes = ", ".join(f"{size} ({count:,})" for size, count in statistics.sizes_px.items())
+        lines.append(f"resolutions      {sizes}")
+    splits = ", ".join(f"{name} {count:,}" for name, count in statistics.splits.items())
+    return [*lines, f"splits           {splits or '-'}"]
+
+
+def _class_lines(statistics: DatasetStatistics) -> list[str]:
+    ours, theirs = class_shares(statistics.class_voxels), class_shares(NYU_TRAIN_VOXELS)
+    most = max([*ours, 1e-9])
+    rows = [("class", "voxels", "share", "NYUv2 train")]
+    rows += [
+        (name, f"{count:,}", f"{share:.1%}", f"{nyu:.1%}")
+        for name, count, share, nyu in zip(
+            CLASS_NAMES[1:], statistics.class_voxels[1:], ours, theirs, strict=True
+        )
+    ]
+    bars = ["", *("#" * round(BAR * share / most) for share in ours)]
+    return [f"{line}  {bar}".rstrip() for line, bar in zip(columns(rows), bars, strict=True)]
+
+
+def _fine_lines(statistics: DatasetStatistics) -> list[str]:
+    """Return the fine classes seen most, and those that count and are seen least."""
+    counted = [one for one in statistics.fine or () if one.is_seen_enough]
+    ends = [counted] if len(counted) <= 2 * SHOWN else [counted[:SHOWN], counted[-SHOWN:]]
+    rows: list[tuple[str, ...]] = [("fine class", "pixels", "pictures")]
+    for part in ends:
+        rows += [(one.name, f"{one.pixels:,}", f"{one.pictures:,}") for one in part]
+    lines = columns(rows)
+    if len(ends) == 2:
+        lines.insert(1 + SHOWN, f"... {len(counted) - 2 * SHOWN:,} more ...")
+    return lines

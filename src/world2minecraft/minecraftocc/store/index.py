@@ -1,0 +1,168 @@
+"""The index of a data set: one row a sample, in a Parquet file.
+
+It is made from the shards alone, by their headers and their JSON, so that it can be made again at
+any time; pictures are not read.
+"""
+
+import hashlib
+import os
+from collections.abc import Iterable, Iterator
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.errors import DamagedFileError, LimitError, MissingExtraError, OutputError
+from world2minecraft.minecraftocc.store.folder import SHARD_NAME
+from world2minecraft.minecraftocc.store.sample_files import DEPTH, FACTS, IMAGE_FORMATS, LABELS
+from world2minecraft.minecraftocc.store.stored import StoredSample, stored_samples
+
+COUNTS = ("occupied", "visible", "free", "in_frustum", "occluded", "unknown", "hits", "fine")
+TEXTS = ("key", "scene_id", "tour_id", "split", "shard", "region", "sha256")
+WHOLE = ("frame", "offset", "size", "image_bytes", "depth_bytes", "label_bytes", "json_bytes")
+PLACE = ("x", "y", "z", "yaw", "pitch")  # The game's, where the sample tells it.
+ROWS_AT_ONCE = 4096
+MAX_ROWS, MAX_INDEX_BYTES = 20_000_000, 8 << 30
+
+
+def arrow_modules() -> tuple[Any, Any]:
+    """Return pyarrow and its Parquet module. Raises MissingExtraError where it is not installed."""
+    try:
+        return import_module("pyarrow"), import_module("pyarrow.parquet")
+    except ImportError as error:
+        raise MissingExtraError("the index of a data set", "data") from error
+
+
+def columns() -> dict[str, str]:
+    """Return the columns by name, with their Arrow types."""
+    return {
+        **dict.fromkeys(TEXTS, "string"),
+        **dict.fromkeys(WHOLE, "int64"),
+        **dict.fromkeys(PLACE, "double"),
+        **dict.fromkeys((f"cells_{name}" for name in COUNTS), "int64"),
+        **dict.fromkeys((f"class_{name}" for name in CLASS_NAMES), "int32"),
+        **dict.fromkeys((f"visible_{name}" for name in CLASS_NAMES), "int32"),
+    }
+
+
+def shard_rows(path: Path, name: str) -> list[dict[str, Any]]:
+    """Return the rows of the samples of a shard.
+
+    Args:
+        path: where it lies.
+        name: its name in the data set.
+
+    Raises:
+        DamagedFileError: it cannot be read as one, or a sample's JSON is not whole.
+    """
+    try:
+        with path.open("rb") as stream:
+            length = os.fstat(stream.fileno()).st_size
+            samples = list(stored_samples(stream, length))
+        return [_row(sample, name) for sample in samples]
+    except OSError as error:
+        raise DamagedFileError(path, f"cannot be read: {error.strerror or error}") from error
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        raise DamagedFileError(path, f"holds a sample that tells too little ({error!r})") from error
+
+
+def write_index(path: Path, rows: Iterable[list[dict[str, Any]]]) -> str:
+    """Write the rows of shards, a few thousand in memory at a time; return their sum.
+
+    The sum goes over the keys and the sums of all samples in their order: data sets with the same
+    sum hold the same samples.
+
+    Raises:
+        OutputError: it cannot be written. MissingExtraError: pyarrow is not installed.
+    """
+    arrow, parquet = arrow_modules()
+    schema = arrow.schema([(name, arrow.type_for_alias(kind)) for name, kind in columns().items()])
+    part, total = path.with_name(f".{path.name}.part"), hashlib.sha256()
+    try:
+        with parquet.ParquetWriter(part, schema, compression="zstd") as writer:
+            for batch in _batches(rows):
+                _add(total, batch)
+                writer.write_table(arrow.Table.from_pylist(batch, schema))
+        with part.open("rb+") as stream:
+            os.fsync(stream.fileno())
+        os.replace(part, path)
+    except OSError as error:
+        raise OutputError(path, f"cannot be written: {error.strerror or error}") from error
+    return total.hexdigest()
+
+
+def sum_of(rows: Iterable[dict[str, Any]]) -> str:
+    """Return the sum of rows, as ``write_index`` does."""
+    total = hashlib.sha256()
+    _add(total, rows)
+    return total.hexdigest()
+
+
+def read_index(path: Path) -> Any:
+    """Return the index as an Arrow table, its size and its types checked before it is read.
+
+    Raises:
+        DamagedFileError: it is no index. LimitError: it is too large. MissingExtraError: pyarrow
+        is not installed.
+    """
+    arrow, parquet = arrow_modules()
+    try:
+        file = parquet.ParquetFile(path)
+        meta = file.metadata
+        held = sum(meta.row_group(n).total_byte_size for n in range(meta.num_row_groups))
+        if meta.num_rows > MAX_ROWS or held > MAX_INDEX_BYTES:
+            raise LimitError(path, f"has {meta.num_rows:,} rows of {held:,} bytes; too large")
+        kinds = {field.name: str(field.type) for field in file.schema_arrow}
+        wrong = [name for name, kind in columns().items() if kinds.get(name) != kind]
+        if wrong:
+            raise DamagedFileError(path, f"has no column {wrong[0]} of type {columns()[wrong[0]]}")
+        table = file.read(columns=list(columns()))
+    except (arrow.ArrowException, OSError, ValueError) as error:
+        raise DamagedFileError(path, f"is no index ({str(error).splitlines()[0]})") from error
+    for name in table["shard"].unique().to_pylist():
+        if name is None or not SHARD_NAME.fullmatch(name):
+            raise DamagedFileError(path, f"names a shard {name!r}")
+    return table
+
+
+def _add(total: Any, rows: Iterable[dict[str, Any]]) -> None:
+    for row in rows:
+        total.update(f"{row['key']} {row['sha256']}\n".encode())
+
+
+def _batches(rows: Iterable[list[dict[str, Any]]]) -> Iterator[list[dict[str, Any]]]:
+    """Give the rows of shards in batches of nearly one size, whatever the shards hold."""
+    batch: list[dict[str, Any]] = []
+    for some in rows:
+        batch += some
+        if len(batch) >= ROWS_AT_ONCE:
+            yield batch
+            batch = []
+    if batch:
+        yield batch
+
+
+def _row(sample: StoredSample, shard: str) -> dict[str, Any]:
+    told, sizes = sample.facts, {member.kind: member.size for member in sample.members}
+    pose = told.get("facts", {}).get("game_pose") or {}
+    return {
+        **{name: str(told[name]) for name in ("key", "scene_id", "tour_id", "split")},
+        "shard": shard,
+        "region": str(told["region"]["kind"]),
+        "sha256": sample.facts_sha256,
+        "frame": int(told["frame"]),
+        "offset": sample.offset,
+        "size": sample.size,
+        "image_bytes": sum(sizes.get(kind, 0) for kind in IMAGE_FORMATS),
+        "depth_bytes": sizes.get(DEPTH, 0),
+        "label_bytes": sizes[LABELS],
+        "json_bytes": sizes[FACTS],
+        **{name: float(pose[name]) if name in pose else None for name in PLACE},
+        **{f"cells_{name}": int(told["cells"][name]) for name in COUNTS},
+        **_classes("class", told["cells_by_class"]),
+        **_classes("visible", told["visible_by_class"]),
+    }
+
+
+def _classes(prefix: str, counts: list[int]) -> dict[str, int]:
+    return {f"{prefix}_{name}": int(counts[n]) for n, name in enumerate(CLASS_NAMES)}

@@ -1,0 +1,161 @@
+"""A data set on disk as its samples, any of them at once or all in their order.
+
+What is read may come from anywhere: names, places and sizes are checked before anything is opened
+or taken into memory.
+"""
+
+import io
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.errors import DamagedFileError, InputError, UnknownNameError, UsageError
+from world2minecraft.minecraftocc.store.folder import INDEX, read_classes, read_meta
+from world2minecraft.minecraftocc.store.index import read_index
+from world2minecraft.minecraftocc.store.sample_files import (
+    FACTS,
+    IMAGE_FORMATS,
+    LABELS,
+    FineTable,
+    unpack_sample,
+)
+from world2minecraft.minecraftocc.store.stored import StoredSample, stored_samples
+from world2minecraft.minecraftocc.values import OccSample
+
+MAX_SAMPLE_BYTES = 512 << 20
+MOST_LOOKED_AT = 2000  # Keys that a wrong one is compared with.
+
+
+class OccStore:
+    """A finished data set; made by ``open_store``."""
+
+    def __init__(self, folder: Path, meta: dict[str, Any], table: FineTable, rows: Any):
+        """Hold what was read; no shard is opened yet."""
+        self.folder, self.meta, self.table = folder, meta, table
+        self._rows = rows
+
+    def __len__(self) -> int:
+        """How many samples there are."""
+        return self._rows.num_rows
+
+    def __iter__(self) -> Iterator[str]:
+        """Give the keys of all samples."""
+        return iter(self._names)
+
+    def __contains__(self, key: object) -> bool:
+        """Whether there is a sample of that key."""
+        return key in self._places
+
+    @property
+    def sha256(self) -> str:
+        """The sum of all samples; data sets with the same sum hold the same samples."""
+        return str(self.meta.get("sha256", ""))
+
+    def keys(self, split: str | None = None) -> list[str]:
+        """Return the keys of all samples, or of a split, in their order."""
+        return [self._names[number] for number in self._numbers(split)]
+
+    def index(self) -> dict[str, Any]:
+        """Return the columns of the index, numbers and texts, by name."""
+        return {name: self._rows[name].to_numpy() for name in self._rows.column_names}
+
+    def __getitem__(self, key: str) -> OccSample:
+        """Return a sample with its pictures.
+
+        Raises:
+            UnknownNameError: there is none of that key. DamagedFileError: it cannot be read.
+        """
+        return self.sample(key)
+
+    def sample(self, key: str, pictures: bool = True) -> OccSample:
+        """Return a sample, without its pictures where they are not wanted. Raises as above."""
+        return self._read(self._place(key), pictures)
+
+    def samples(self, split: str | None = None, pictures: bool = True) -> Iterator[OccSample]:
+        """Give the samples, or those of a split, one at a time in their order. Raises as above."""
+        for number in self._numbers(split):
+            yield self._read(number, pictures)
+
+    def members(self, key: str) -> dict[str, bytes]:
+        """Return the files of a sample by kind, as they lie in its shard. Raises as ``sample``."""
+        stream, found = self._found(self._place(key))
+        return {member.kind: _data(stream, member) for member in found.members}
+
+    @cached_property
+    def _names(self) -> list[str]:
+        return self._rows["key"].to_pylist()
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {key: number for number, key in enumerate(self._names)}
+
+    def _place(self, key: str) -> int:
+        if key not in self._places:
+            near = [name for name in self._names if name.startswith(key.partition("-")[0])]
+            raise UnknownNameError("sample", key, near[:MOST_LOOKED_AT] or self._names[:5])
+        return self._places[key]
+
+    def _numbers(self, split: str | None) -> list[int]:
+        if split is None:
+            return list(range(len(self)))
+        splits = self._rows["split"].to_pylist()
+        known = sorted(set(splits))
+        if split not in known:
+            raise UsageError(f"the splits of {self.folder} are {', '.join(known)}, not {split!r}")
+        return [number for number, one in enumerate(splits) if one == split]
+
+    def _read(self, number: int, pictures: bool) -> OccSample:
+        stream, found = self._found(number)
+        wanted = [one for one in found.members if pictures or one.kind in (LABELS, FACTS)]
+        kinds = {member.kind for member in wanted}
+        if LABELS not in kinds or sum(kind in kinds for kind in IMAGE_FORMATS) > 1:
+            raise DamagedFileError(self.folder, f"sample {found.key} has files {sorted(kinds)}")
+        members = {member.kind: _data(stream, member) for member in wanted}
+        source = f"{self._at('shard', number)}, sample {found.key}"
+        return unpack_sample(members, self.table, source, found.facts)
+
+    def _found(self, number: int) -> tuple[io.BytesIO, StoredSample]:
+        """Read the bytes of a sample and find its members in them."""
+        path = self.folder / self._at("shard", number)
+        offset, size = self._at("offset", number), self._at("size", number)
+        if offset < 0 or not 0 < size <= MAX_SAMPLE_BYTES:
+            raise DamagedFileError(self.folder / INDEX, f"row {number} has a size of {size:,}")
+        try:
+            if path.stat().st_size < offset + size:
+                raise DamagedFileError(path, "ends before its last sample")
+            with path.open("rb") as shard:
+                shard.seek(offset)
+                stream = io.BytesIO(shard.read(size))
+        except OSError as error:
+            raise InputError(path, f"cannot be read: {error.strerror or error}") from error
+        found = next(stored_samples(stream, size), None)
+        if found is None or found.size != size or found.key != self._names[number]:
+            raise DamagedFileError(path, f"holds no sample {self._names[number]} at {offset:,}")
+        return stream, found
+
+    def _at(self, column: str, number: int) -> Any:
+        return self._rows[column][number].as_py()
+
+
+def open_store(path: str | Path) -> OccStore:
+    """Open a finished data set.
+
+    Raises:
+        InputError: it is none, or not finished. DamagedFileError: a file is not what it should
+        be. LimitError: it is too large. MissingExtraError: pyarrow is not installed.
+
+    Example::
+
+        store = open_store("DATA")
+        for sample in store.samples("train"):
+            sample.colour, sample.depth_m, sample.occ.labels
+    """
+    folder = Path(path)
+    meta = read_meta(folder)
+    return OccStore(folder, meta, read_classes(folder), read_index(folder / INDEX))
+
+
+def _data(stream: io.BytesIO, member: Any) -> bytes:
+    stream.seek(member.offset)
+    return stream.read(member.size)

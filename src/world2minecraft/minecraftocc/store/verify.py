@@ -1,0 +1,104 @@
+"""Whether a data set is what its index says: every file there, every sum right, nothing else."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.minecraftocc.store.folder import (
+    CARD,
+    CLASSES,
+    CREW,
+    INDEX,
+    LEFTOVER,
+    LOCK,
+    META,
+    SCENES,
+    SHARDS,
+    WORLDS,
+    read_classes,
+    read_meta,
+)
+from world2minecraft.minecraftocc.store.index import COUNTS, read_index, shard_rows, sum_of
+from world2minecraft.minecraftocc.store.stored import is_right, stored_samples
+
+COMPARED = ("key", "offset", "size", "sha256", *(f"cells_{name}" for name in COUNTS))
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a check has found; ``faults`` is empty where all is well."""
+
+    samples: int
+    shards: int
+    bytes: int
+    sha256: str
+    faults: tuple[str, ...]
+
+
+def verify_store(folder: str | Path, progress: Progress = silent) -> Verdict:
+    """Read all shards of a finished data set and compare every sum.
+
+    Raises:
+        InputError: it is no data set, or not finished. DamagedFileError: its index or its
+        ``dataset.json`` cannot be read.
+    """
+    root = Path(folder)
+    meta, table = read_meta(root), read_index(root / INDEX)
+    read_classes(root)
+    rows_of: dict[str, list[dict[str, Any]]] = {}
+    for row in table.select([*COMPARED, "shard"]).to_pylist():
+        rows_of.setdefault(row["shard"], []).append(row)
+    faults, size = [*_strays(root, rows_of), *_unlike(meta, rows_of)], 0
+    for done, (name, rows) in enumerate(rows_of.items()):
+        progress("verify", done, len(rows_of), name)
+        faults += _check_shard(root / name, name, rows)
+        size += (root / name).stat().st_size if (root / name).is_file() else 0
+    progress("verify", len(rows_of), len(rows_of))
+    return Verdict(len(table), len(rows_of), size, str(meta.get("sha256", "")), tuple(faults))
+
+
+def _check_shard(path: Path, name: str, rows: list[dict[str, Any]]) -> list[str]:
+    if not path.is_file():
+        return [f"{name}: is not there, with {len(rows)} samples"]
+    try:
+        found = {row["key"]: row for row in shard_rows(path, name)}
+    except DamagedFileError as error:
+        return [f"{name}: {error.reason}"]
+    faults = [
+        f"{name}: sample {row['key']} is {'damaged' if row['key'] in found else 'not there'}"
+        for row in rows
+        if any(found.get(row["key"], {}).get(column) != row[column] for column in COMPARED)
+    ]
+    with path.open("rb") as stream:
+        for sample in stored_samples(stream, path.stat().st_size):
+            if not is_right(stream, sample):
+                faults.append(f"{name}: sample {sample.key} is damaged")
+    extra = sorted(found.keys() - {row["key"] for row in rows})
+    return faults + [f"{name}: sample {key} is not in the index" for key in extra]
+
+
+def _strays(root: Path, known: Iterable[str]) -> list[str]:
+    """Name files that belong to no data set: parts, leftovers, shards that no row is in."""
+    shards = {root / name for name in known}
+    own = {META, CLASSES, INDEX, CARD, LOCK, CREW, SHARDS, SCENES, WORLDS}
+    strays = [
+        path
+        for path in root.iterdir()
+        if path.name not in own and (path.name[0] != "." or LEFTOVER.fullmatch(path.name))
+    ]
+    strays += [path for path in (root / SHARDS).rglob("*") if path.is_file() and path not in shards]
+    return [f"{path.relative_to(root)}: belongs to no data set" for path in sorted(strays)]
+
+
+def _unlike(meta: dict[str, Any], rows_of: dict[str, list[dict[str, Any]]]) -> list[str]:
+    """Compare the index with what ``dataset.json`` says."""
+    faults = []
+    if meta.get("shards") != list(rows_of):
+        faults.append(f"{INDEX}: its shards are not those of {META}")
+    rows = (row for rows in rows_of.values() for row in rows)
+    if meta.get("sha256") != sum_of(rows):
+        faults.append(f"{INDEX}: its sum is not that of {META}")
+    return faults

@@ -1,0 +1,205 @@
+"""How a data set begins and ends, and one written from samples that are there already."""
+
+import platform
+import re
+from collections.abc import Container, Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import PIL
+
+from world2minecraft import __version__
+from world2minecraft.core.errors import ConflictError, UsageError
+from world2minecraft.core.files import write_json
+from world2minecraft.core.locks import Lock
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.minecraftocc.store.folder import (
+    INDEX,
+    KIND,
+    LOCK,
+    META,
+    SHARDS,
+    shard_name,
+    write_card,
+    write_classes,
+)
+from world2minecraft.minecraftocc.store.index import arrow_modules, shard_rows, write_index
+from world2minecraft.minecraftocc.store.sample_files import (
+    FORMAT,
+    FineTable,
+    SampleFiles,
+    pack_sample,
+)
+from world2minecraft.minecraftocc.store.shard import ShardWriter
+from world2minecraft.minecraftocc.store.tar import LONGEST_KEY
+from world2minecraft.minecraftocc.values import FineClass, OccSample
+
+LONGEST_SCENE = 80  # A shard's name, with its number, has 90.
+SHARD_SAMPLES = 100  # About 100 MB at 1920x1129; a download of a shard, a unit of work.
+CONVENTIONS = {
+    "cells": "labels[x, y, z]: x right, y forward, z up of the region; 255 is unknown",
+    "region": "centre of cell (i, j, k) in the room: region_to_room * (i + 0.5) * voxel_m ...",
+    "room": "metres, right-handed, z up",
+    "camera": "OpenCV: x right, y down, z forward; pixel centres at +0.5",
+    "block": "the game's x east, y up, z south; camera_to_block counts in blocks",
+    "depth": "16 bits, millimetres along the camera's z, 0 nothing, 65535 all that is farther",
+    "masks": "np.unpackbits(mask, count=cells).reshape(shape); hits: pixels that see a cell first",
+}
+
+
+def versions() -> dict[str, str]:
+    """Return the versions that the bytes of a data set depend on."""
+    return {
+        "world2minecraft": __version__,
+        "numpy": np.__version__,
+        "pillow": PIL.__version__,
+        "python": ".".join(platform.python_version_tuple()[:2]),
+    }
+
+
+def finish_store(
+    folder: Path,
+    shards: list[str],
+    meta: dict[str, Any],
+    rows: Iterable[list[dict[str, Any]]],
+) -> dict[str, Any]:
+    """Write the index, the card and ``dataset.json``, which makes the data set whole.
+
+    Args:
+        folder: the data set's.
+        shards: names of all shards, in their order.
+        meta: what ``dataset.json`` tells further; ``images`` and ``scenes`` among it.
+        rows: of ``shard_rows`` of each shard, in the same order.
+
+    Raises:
+        OutputError: a file cannot be written.
+    """
+    total = write_index(folder / INDEX, rows)
+    whole = {
+        **meta,
+        "kind": KIND,
+        "format": FORMAT,
+        "complete": True,
+        "conventions": CONVENTIONS,
+        "shards": shards,
+        "sha256": total,
+        "versions": versions(),
+    }
+    write_card(folder, whole)
+    write_json(folder / META, whole)
+    return whole
+
+
+def write_store(
+    folder: str | Path,
+    samples: Iterable[OccSample],
+    meta: dict[str, Any] | None = None,
+    *,
+    files: SampleFiles | None = None,
+    progress: Progress = silent,
+) -> dict[str, Any]:
+    """Write samples as a new data set; return its ``dataset.json``.
+
+    Samples of one scene and split that follow each other share shards. They are read once, one in
+    memory at a time; fine classes are numbered as they come.
+
+    Args:
+        folder: a new one.
+        samples: with keys that are unique, of letters, digits, - and _; the names of their scenes
+            too; ``split`` is train, val, test or left empty.
+        meta: further facts for ``dataset.json``.
+        files: how pictures are packed.
+        progress: told the samples that are done.
+
+    Raises:
+        ConflictError: there is a data set already, or half of one. UsageError: a name or a split
+        cannot be stored. OutputError: a file cannot be written.
+    """
+    target, how = Path(folder), files or SampleFiles()
+    arrow_modules()  # Before the work, not after it.
+    if (target / META).exists():
+        raise ConflictError(target, "holds a data set already; choose another folder")
+    target.mkdir(parents=True, exist_ok=True)
+    lock = Lock(target / LOCK, "written")
+    lock.take()
+    try:
+        if (target / SHARDS).exists():
+            raise ConflictError(
+                target,
+                f"holds {SHARDS}/ of a data set that was not finished; remove that folder, or "
+                "choose another",
+            )
+        return _written(target, samples, dict(meta or {}), how, progress)
+    finally:
+        lock.remove()
+
+
+def _written(
+    folder: Path,
+    samples: Iterable[OccSample],
+    meta: dict[str, Any],
+    files: SampleFiles,
+    progress: Progress,
+) -> dict[str, Any]:
+    names: list[str] = []
+    kinds: dict[FineClass, None] = {FineClass("minecraft:air"): None}
+    images: dict[str, int] = {}
+    scenes: dict[str, None] = {}
+    batch: list[tuple[str, dict[str, bytes]]] = []
+    place: tuple[str, str] | None = None
+    keys: set[str] = set()
+
+    def flush() -> None:
+        if batch and place is not None:
+            names.append(_shard(folder, place, batch, names))
+            batch.clear()
+
+    for done, sample in enumerate(samples, 1):
+        _check_names(sample, keys)
+        keys.add(sample.key)
+        if (sample.split, sample.scene_id) != place or len(batch) == SHARD_SAMPLES:
+            flush()
+            place = (sample.split, sample.scene_id)
+        kinds.update(dict.fromkeys(sample.fine_classes))
+        batch.append((sample.key, pack_sample(sample, FineTable(tuple(kinds)), files)))
+        images[sample.split or "all"] = images.get(sample.split or "all", 0) + 1
+        scenes[sample.scene_id] = None
+        progress("write", done, 0)
+    flush()
+    write_classes(folder, FineTable(tuple(kinds)))
+    facts = {**meta, "images": images, "scenes": [{"scene_id": one} for one in scenes]}
+    return finish_store(folder, names, facts, (shard_rows(folder / name, name) for name in names))
+
+
+def _check_names(sample: OccSample, known: Container[str]) -> None:
+    """Refuse what no reader would find again. Raises UsageError."""
+    for what, name, most in (
+        ("a sample's key", sample.key, LONGEST_KEY),
+        ("a scene's name", sample.scene_id, LONGEST_SCENE),
+    ):
+        if not re.fullmatch(rf"[A-Za-z0-9_-]{{1,{most}}}", name):
+            raise UsageError(
+                f"{what} is 1 to {most} letters of A-Z, a-z, 0-9, - and _, not {name!r}; rename it"
+            )
+    if sample.key in known:
+        raise UsageError(f"two samples have the key {sample.key!r}; give each one of its own")
+    if sample.split not in ("", "train", "val", "test"):
+        raise UsageError(f"a split is train, val, test or left empty, not {sample.split!r}")
+
+
+def _shard(
+    folder: Path,
+    place: tuple[str, str],
+    batch: list[tuple[str, dict[str, bytes]]],
+    names: list[str],
+) -> str:
+    """Write a shard of packed samples; return its name."""
+    number = 0
+    while (name := shard_name(*place, number)) in names:
+        number += 1
+    with ShardWriter(folder / name, [key for key, _ in batch]) as shard:
+        for _, members in batch[shard.done :]:
+            shard.append(members)
+        shard.finish()
+    return name

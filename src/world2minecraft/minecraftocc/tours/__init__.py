@@ -1,0 +1,25 @@
+"""Which pictures of a world are taken: smooth walks through its rooms, and views worth having."""
+
+from world2minecraft.minecraftocc.tours.beside import layouts_beside
+from world2minecraft.minecraftocc.tours.files import read_views, view_line, write_views
+from world2minecraft.minecraftocc.tours.planning import plan_views
+from world2minecraft.minecraftocc.tours.values import (
+    PlannedView,
+    TourRule,
+    kind_of_yaw,
+    nyu_camera,
+    paper_camera,
+)
+
+__all__ = [
+    "PlannedView",
+    "TourRule",
+    "kind_of_yaw",
+    "layouts_beside",
+    "nyu_camera",
+    "paper_camera",
+    "plan_views",
+    "read_views",
+    "view_line",
+    "write_views",
+]

@@ -1,0 +1,145 @@
+"""Where one looks along a walk: into the room, along its axes and diagonals in stretches.
+
+At each place the room is seen all round in small pictures; each of 24 headings is rated by what a
+camera would see there. The best sequence of headings, in which turning costs, is found exactly.
+"""
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import camera_to_block_of_game_pose, carry_camera
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import Camera
+from world2minecraft.minecraftocc.tours.values import KINDS, TourRule
+from world2minecraft.rendering.batch import render_batch
+from world2minecraft.rendering.scene import BlockScene
+
+HEADINGS = 24  # Fifteen degrees apart.
+AROUND = Camera(24, 16, 12.0, 12.0, 12.0, 8.0)  # 90 degrees wide: four of them see all round.
+NEAR_M, GOOD_M = 0.6, 3.2  # No view, a good view.
+THING_WORTH = 0.8  # More for a pixel of furniture,
+CEILING_COST = 0.3  # less for one of the ceiling,
+NEAR_COST = 1.0  # less for what is before one's nose,
+LOST_WORTH = 0.05  # and for the sky and windows.
+SEEN_COST = 0.7  # Less for where views from nearby looked already: these count,
+SEEN_M, SEEN_DEG, SEEN_VIEWS = 1.2, 25.0, 400  # so near, so alike, and the last ones alone.
+KIND_WORTH = 0.9  # More for a heading of the kind that a stretch asks for.
+TURN_COST = 0.12  # Of fifteen degrees from one frame to the next,
+MOST_TURN = 2  # and so many at most.
+SWAY_DEG = 7.0  # Free views look beside the fifteen degrees.
+AXIS, DIAGONAL, FREE = range(len(KINDS))
+
+
+def rated_headings(
+    scene: BlockScene, eyes: np.ndarray, block_to_room: np.ndarray, rule: TourRule
+) -> np.ndarray:
+    """Return how good a view each heading gives from each eye, float64 [N, HEADINGS].
+
+    Args:
+        scene: ``prepare_scene`` of the volume.
+        eyes: float64 [N, 3], world blocks.
+        block_to_room: of the volume, float64 [4, 4].
+        rule: whose camera counts.
+    """
+    poses = [
+        carry_camera(camera_to_block_of_game_pose(eye, yaw_deg, 0.0), block_to_room)
+        for eye in eyes
+        for yaw_deg in (0.0, 90.0, 180.0, 270.0)
+    ]
+    seen = render_batch(scene, AROUND, np.array(poses), outputs=("depth", "semantic"))
+    depth_m, semantic = np.asarray(seen.depth_m), np.asarray(seen.semantic)
+    worth = np.clip((depth_m - NEAR_M) / (GOOD_M - NEAR_M), 0, 1)
+    worth += THING_WORTH * ((semantic >= SemanticClass.CHAIR) & (semantic != 255))
+    worth -= CEILING_COST * (semantic == SemanticClass.CEILING)
+    worth = np.where((depth_m == 0) | (semantic == SemanticClass.WINDOW), LOST_WORTH, worth)
+    worth = np.where((depth_m > 0) & (depth_m < NEAR_M), -NEAR_COST, worth)
+    columns = worth.mean(axis=1).reshape(len(eyes), -1)  # Four times 24 around, from yaw -45 on.
+    side = np.degrees(np.arctan((np.arange(24) + 0.5 - 12) / 12))
+    yaws_deg = np.concatenate([turn + side for turn in (0, 90, 180, 270)])
+    half_deg = np.degrees(np.arctan(rule.camera.width_px / 2 / rule.camera.fx_px))
+    wanted = np.arange(HEADINGS) * (360 / HEADINGS)
+    apart = np.abs((yaws_deg[None] - wanted[:, None] + 180) % 360 - 180)
+    within = (apart <= half_deg).astype(float)
+    return columns @ (within / within.sum(axis=1, keepdims=True)).T
+
+
+def seen_before(eyes: np.ndarray, taken: np.ndarray, blocks_per_metre: float) -> np.ndarray:
+    """Return what each heading loses for views that looked there from nearby, [N, HEADINGS].
+
+    Args:
+        eyes: float64 [N, 3], world blocks.
+        taken: float64 [M, 5], the views so far: x, y, z, yaw, pitch.
+        blocks_per_metre: of the world.
+    """
+    last = taken[-SEEN_VIEWS:]
+    away_m = np.linalg.norm(eyes[:, None] - last[None, :, :3], axis=2) / blocks_per_metre
+    angle = np.arange(HEADINGS) * (360.0 / HEADINGS)
+    turn = np.abs((last[:, 3, None] - angle[None] + 180) % 360 - 180)
+    alike = np.exp(-((away_m / SEEN_M) ** 2)) @ np.exp(-((turn / SEEN_DEG) ** 2))
+    return SEEN_COST * (1 - np.exp(-alike / 3))
+
+
+def drawn_kinds(
+    frames: int, spacing_m: float, wanted: np.ndarray, rng: np.random.Generator
+) -> np.ndarray:
+    """Return which kind of yaw each frame asks for, int64 [N], in stretches of 1.5 to 4 m."""
+    kinds, shares = np.empty(frames, np.int64), np.maximum(wanted, 0.0) + 1e-9
+    first = 0
+    while first < frames:
+        last = first + max(3, round(rng.uniform(1.5, 4.0) / spacing_m))
+        kinds[first:last] = rng.choice(len(KINDS), p=shares / shares.sum())
+        first = last
+    return kinds
+
+
+def best_yaws(
+    rated: np.ndarray, kinds: np.ndarray, spacing_m: float, rng: np.random.Generator
+) -> np.ndarray:
+    """Return the game yaw of each frame, float64 [N] degrees from -180 up to 180.
+
+    Frames of the kinds axis and diagonal look exactly there, but for those that turn between.
+    """
+    angle = np.arange(HEADINGS) * (360 // HEADINGS)
+    of_kind = np.stack([angle % 90 == 0, angle % 90 == 45, angle % 45 != 0])
+    rating = rated + KIND_WORTH * of_kind[kinds]
+    sequence = _best_sequence(rating, TURN_COST, MOST_TURN)
+    steps = (np.diff(sequence) + HEADINGS // 2) % HEADINGS - HEADINGS // 2
+    yaws = (sequence[0] + np.concatenate([[0], np.cumsum(steps)])) * (360.0 / HEADINGS)
+    is_exact = of_kind[kinds, sequence] & (kinds != FREE)
+    loose = gaussian_filter1d(yaws, 1.2, mode="nearest") + wander(len(yaws), spacing_m, rng) * (
+        SWAY_DEG
+    )
+    chosen = np.where(is_exact, yaws, loose)
+    return (chosen + 180.0) % 360.0 - 180.0
+
+
+def wander(frames: int, spacing_m: float, rng: np.random.Generator) -> np.ndarray:
+    """Return a number for each frame that wanders slowly between about -1 and 1."""
+    raw = rng.normal(size=frames + 64)
+    smooth = gaussian_filter1d(raw, max(1.0, 0.8 / spacing_m))[32 : 32 + frames]
+    return np.clip(smooth / max(float(np.std(smooth)), 1e-9) * 0.6, -1, 1)
+
+
+@njit
+def _best_sequence(rating, cost, most):
+    """Return the headings, int64 [N], with the highest sum of ratings less the cost of turns."""
+    frames, count = rating.shape
+    best, came = rating[0].copy(), np.zeros((frames, count), np.int64)
+    for n in range(1, frames):
+        after = np.empty(count)
+        for h in range(count):
+            top, source = -np.inf, 0
+            for step in range(-most, most + 1):
+                before = (h - step) % count
+                value = best[before] - cost * abs(step) * (1 + abs(step))
+                if value > top:
+                    top, source = value, before
+            after[h] = top + rating[n, h]
+            came[n, h] = source
+        best = after
+    sequence = np.empty(frames, np.int64)
+    sequence[-1] = best.argmax()
+    for n in range(frames - 1, 0, -1):
+        sequence[n - 1] = came[n, sequence[n]]
+    return sequence

@@ -1,0 +1,245 @@
+"""The rooms of a volume, and the places in each where one can stand.
+
+Layouts say the rooms where there are any that hold a place. Else a room is what hangs together
+right under a ceiling: there doorways are closed by what is over them, and furniture ends below.
+Where such a part narrows to less than a wide door it is cut in two. Places under no ceiling of a
+room, such as those in a doorway, go to the nearest room.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy import ndimage
+from scipy.spatial import KDTree
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.coordinates import apply
+from world2minecraft.core.jit import njit
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.physics.body import HEIGHT
+from world2minecraft.minecraft.physics.columns import Solid
+from world2minecraft.minecraft.physics.graph import WalkGraph
+from world2minecraft.minecraft.physics.shortest_paths import parts, reachable
+from world2minecraft.minecraftocc.tours.values import TourRule
+from world2minecraft.procgen.sensors.navmesh import is_inside
+
+NARROW_M = 1.1  # Rooms are parted where they are narrower than this.
+LEAST_ROOM_M2 = 1.2  # What is smaller is no room of its own,
+LEAST_FLOOR_M2 = 0.4  # and a room with less floor to stand on is not toured.
+LEVEL_M = 0.3  # One tours what is so near to the room's main floor.
+WALLED_SHARE = 0.7  # Of level rays from indoors that end at something within
+FAR_M = 15.0
+RAYS = 16
+_APART = 3.0  # A metre of height counts as so many along the floor, where places go to rooms.
+
+
+@dataclass(frozen=True, eq=False)
+class TourRoom:
+    """A room: its places in the graph, its free floor, and how much there is to see."""
+
+    number: int
+    places: np.ndarray  # int64 [N], into the graph
+    floor_m2: float
+    classes: int  # of furniture and objects
+    objects: int
+
+    @property
+    def worth(self) -> float:
+        """How many views it should get, next to other rooms: by size and by what stands in it."""
+        return float(np.sqrt(self.floor_m2) * (2 + self.classes) + np.sqrt(self.objects))
+
+
+def find_rooms(
+    volume: BlockVolume, graph: WalkGraph, solid: Solid, rule: TourRule
+) -> list[TourRoom]:
+    """Return the rooms of a volume in which one can stand, in a fixed order.
+
+    Args:
+        volume: the blocks.
+        graph: ``walk_graph`` of it.
+        solid: ``solid_of`` of it.
+        rule: names layouts and where one starts.
+    """
+    if not len(graph):
+        return []
+    above = int(np.ceil(2 * volume.blocks_per_metre))  # One may stand on the very top.
+    things = (volume.semantic >= SemanticClass.CHAIR) & (volume.semantic != 255)
+    # Lamps and tall cupboards part no rooms.
+    blocked = np.pad((solid.kinds != 0) & ~things, ((0, 0), (0, above), (0, 0)))
+    cells = np.floor(graph.feet - np.array(volume.corner) + [0, 1e-6, 0]).astype(np.int64)
+    roof = _roofs(blocked)[tuple(cells.T)]
+    kept = _indoors(graph, blocked, cells, roof)
+    kept &= graph.headroom >= HEIGHT * graph.blocks_per_metre - 1e-6  # However slim the body is.
+    if rule.start is not None and rule.reachable_only:
+        kept &= reachable(graph, graph.nearest(rule.start))
+    number = _by_layouts(volume, graph, rule)
+    if not (kept & (number >= 0)).any():
+        number = _by_ceilings(graph, blocked, cells, roof, kept)
+    rooms = []
+    for one in np.unique(number[kept & (number >= 0)]):
+        places = _main_floor(graph, np.flatnonzero(kept & (number == one)))
+        floor_m2 = len(places) * (graph.spacing / graph.blocks_per_metre) ** 2
+        if floor_m2 >= LEAST_FLOOR_M2:
+            seen = _contents(volume, cells[places], roof[places])
+            rooms.append(TourRoom(len(rooms), places, floor_m2, *seen))
+    return rooms
+
+
+def _roofs(blocked: np.ndarray) -> np.ndarray:
+    """Return for each cell the layer of the first blocked cell at or over it; Y where none is."""
+    layers = np.arange(blocked.shape[1])[None, :, None]
+    first = np.where(blocked, layers, blocked.shape[1])
+    return np.minimum.accumulate(first[:, ::-1], axis=1)[:, ::-1]
+
+
+def _indoors(
+    graph: WalkGraph, blocked: np.ndarray, cells: np.ndarray, roof: np.ndarray
+) -> np.ndarray:
+    """Tell the places under a roof and between walls; between walls where nothing has a roof."""
+    walled = _walled(graph, blocked, cells)
+    inside = walled & (roof < blocked.shape[1])
+    least = LEAST_ROOM_M2 / (graph.spacing / graph.blocks_per_metre) ** 2
+    for choice in (inside, walled, parts(graph) == np.bincount(parts(graph)).argmax()):
+        if choice.sum() >= least:
+            return choice
+    return np.ones(len(graph), bool)
+
+
+def _walled(graph: WalkGraph, blocked: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Tell the places from whose eye level rays mostly end at something."""
+    eyes = np.add(cells, [0.5, 0.0, 0.5])
+    eyes[:, 1] += 1.5 * graph.blocks_per_metre
+    reach = FAR_M * graph.blocks_per_metre
+    return _share_ended(blocked, eyes, reach, RAYS) >= WALLED_SHARE
+
+
+@njit
+def _share_ended(blocked, eyes, reach, rays):
+    """Return which share of level rays from each eye, float64 [N, 3] in cells, meets something."""
+    result = np.zeros(len(eyes))
+    for n in range(len(eyes)):
+        y = int(eyes[n, 1])
+        for ray in range(rays):
+            dx, dz = np.cos(ray * 2 * np.pi / rays), np.sin(ray * 2 * np.pi / rays)
+            for step in range(1, int(2 * reach)):
+                x = int(np.floor(eyes[n, 0] + dx * step / 2))
+                z = int(np.floor(eyes[n, 2] + dz * step / 2))
+                if x < 0 or z < 0 or x >= blocked.shape[0] or z >= blocked.shape[2]:
+                    break
+                if blocked[x, y, z]:
+                    result[n] += 1 / rays
+                    break
+    return result
+
+
+def _by_layouts(volume: BlockVolume, graph: WalkGraph, rule: TourRule) -> np.ndarray:
+    """Return the room of each place by the floor plans, int64 [N]; -1 for none."""
+    points = apply(volume.block_to_room, graph.feet)
+    number = np.full(len(graph), -1)
+    for n, layout in enumerate(rule.layouts):
+        level = (points[:, 2] > layout.floor_z_m - 0.5) & (
+            points[:, 2] < layout.floor_z_m + layout.wall_height_m - 1
+        )
+        number[level & is_inside(layout.floor_polygon_m, points[:, :2])] = n
+    return number
+
+
+def _by_ceilings(
+    graph: WalkGraph,
+    blocked: np.ndarray,
+    cells: np.ndarray,
+    roof: np.ndarray,
+    kept: np.ndarray,
+) -> np.ndarray:
+    """Return the room of each place by what hangs together under ceilings; -1 for none."""
+    cell_m = 1 / graph.blocks_per_metre
+    under = np.zeros_like(blocked)
+    under[:, :-1] = ~blocked[:, :-1] & blocked[:, 1:]
+    level = np.zeros((3, 3, 3), bool)
+    level[1, 1, :] = level[:, 1, 1] = True
+    label = _labelled(under, level)
+    top = np.clip(roof - 1, 0, blocked.shape[1] - 1)
+    number = np.where(kept, label[cells[:, 0], top, cells[:, 2]], 0)
+    areas = np.bincount(label.reshape(-1)) * cell_m**2
+    large = [n for n in np.unique(number) if n and areas[n] >= LEAST_ROOM_M2]
+    result, count = np.full(len(graph), -1), 0
+    for one in large:
+        own = number == one
+        layer = int(top[own][0])
+        cut, pieces = _cut_at_necks(label[:, layer] == one, cell_m)
+        result[own] = cut[cells[own, 0], cells[own, 2]] + count
+        count += pieces
+    return _filled(graph, result, kept)
+
+
+def _cut_at_necks(room: np.ndarray, cell_m: float) -> tuple[np.ndarray, int]:
+    """Return the piece, int64 [X, Z], that each cell of a room is of, and how many there are."""
+    away = np.asarray(ndimage.distance_transform_edt(np.pad(room, 1)))[1:-1, 1:-1]
+    cores = _labelled(away * cell_m > NARROW_M / 2, np.ones((3, 3), bool))
+    sizes = np.bincount(cores.reshape(-1)) * cell_m**2
+    large = [n for n in range(1, len(sizes)) if sizes[n] >= LEAST_ROOM_M2 / 2]
+    if len(large) < 2:
+        return np.zeros(room.shape, np.int64), 1
+    numbered = np.zeros(room.shape, np.int64)
+    for n, one in enumerate(large):
+        numbered[cores == one] = n + 1
+    nearest = ndimage.distance_transform_edt(
+        numbered == 0, return_distances=False, return_indices=True
+    )
+    return numbered[tuple(np.asarray(nearest))] - 1, len(large)
+
+
+def _labelled(mask: np.ndarray, joined: np.ndarray) -> np.ndarray:
+    """Return the number, from 1, of the part of a mask that each cell is of; 0 outside of it."""
+    return np.asarray(ndimage.label(mask, joined)[0])  # pyright: ignore[reportIndexIssue]
+
+
+def _filled(graph: WalkGraph, number: np.ndarray, kept: np.ndarray) -> np.ndarray:
+    """Return the rooms with places of none given to the room of the nearest place that has one."""
+    known, asked = np.flatnonzero(number >= 0), np.flatnonzero(kept & (number < 0))
+    if not len(known):
+        return np.where(kept, 0, -1)
+    if len(asked):
+        scaled = graph.feet * [1, _APART, 1]
+        _, nearest = KDTree(scaled[known]).query(scaled[asked])
+        number[asked] = number[known[nearest]]
+    return number
+
+
+def _main_floor(graph: WalkGraph, places: np.ndarray) -> np.ndarray:
+    """Return the places of a room that are about as high as most of them."""
+    heights = graph.feet[places, 1] / graph.blocks_per_metre
+    levels = np.sort(np.unique(np.round(heights / LEVEL_M)))
+    counts = [(np.abs(heights / LEVEL_M - level) <= 1).sum() for level in levels]
+    main = levels[int(np.argmax(counts))]
+    return places[np.abs(heights / LEVEL_M - main) <= 1]
+
+
+def _contents(volume: BlockVolume, cells: np.ndarray, roof: np.ndarray) -> tuple[int, int]:
+    """Return how many classes and how many objects stand in the box around a room's places."""
+    low, high = cells.min(axis=0), cells.max(axis=0) + 1
+    high[1] = max(int(np.median(roof)), int(low[1]) + 1)
+    around = max(1, round(volume.blocks_per_metre / 2))
+    low[[0, 2]] = np.maximum(low[[0, 2]] - around, 0)
+    high[[0, 2]] += around
+    box = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
+    semantic = volume.semantic[box]
+    things = (semantic >= SemanticClass.CHAIR) & (semantic != 255)
+    if not volume.semantic.any():  # Nothing is labelled: kinds of blocks stand for classes.
+        return min(len(np.unique(volume.states[box])) - 1, 12), 0
+    return len(np.unique(semantic[things])), len(np.unique(volume.instance[box][things]))
+
+
+def shared(rooms: list[TourRoom], count: int) -> list[int]:
+    """Return how many of some views each room gets: by its worth, no view lost.
+
+    Example:
+        >>> shared([], 3)
+        []
+    """
+    if not rooms:
+        return []
+    worth = np.array([room.worth for room in rooms])
+    ends = np.round(np.concatenate([[0], np.cumsum(worth)]) / worth.sum() * count).astype(int)
+    return [int(b - a) for a, b in pairwise(ends)]

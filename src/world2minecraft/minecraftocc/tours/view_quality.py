@@ -1,0 +1,100 @@
+"""Whether views are worth a picture, judged by small ones: not blocked, empty, flat or dark."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.geometry.undistort import pinhole_of
+from world2minecraft.minecraftocc.tours.values import TourRule
+from world2minecraft.rendering.batch import render_batch
+from world2minecraft.rendering.scene import BlockScene
+
+WIDE_PX = 64  # Of the small pictures.
+NEAR_M, NEAR_SHARE = 0.5, 0.25  # Blocked: so much of the picture is nearer than this,
+CLOSE_M = 0.95  # or half of it is nearer than this.
+OUT_SHARE = 0.45  # Looks out: so much of it is window or sky.
+LEAST_CLASSES, LEAST_THINGS = 3, 0.05  # Empty: fewer classes, or a smaller share of objects,
+LEAST_CELLS, MOST_ASKED = 20, 60  # or few blocks: this, and one more for each in a square metre.
+FLAT_SHARE = 0.55  # Flat: so much of it is one wall,
+PLANE_SHARE = 0.85  # or so much of it faces one way, whatever hangs there.
+DARKEST, BRIGHTEST = 0.10, 0.97  # Of 1, the mean of the small picture.
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What N small pictures tell, float64 [N] each."""
+
+    near: np.ndarray  # the share of pixels nearer than NEAR_M
+    middle_m: np.ndarray  # the median depth
+    out: np.ndarray  # the share of sky and windows
+    classes: np.ndarray  # how many are seen
+    things: np.ndarray  # the share of pixels of furniture and objects
+    cells: np.ndarray  # how many blocks are seen
+    flat: np.ndarray  # the share of the largest wall
+    plane: np.ndarray  # the share of what faces one way
+    bright: np.ndarray  # 0 to 1
+
+    def is_good(self, blocks_per_metre: float, labelled: bool) -> np.ndarray:
+        """Tell which views are worth a picture, bool [N]."""
+        blocked = (self.near > NEAR_SHARE) | (self.middle_m < CLOSE_M)
+        cells = min(MOST_ASKED, LEAST_CELLS + blocks_per_metre**2)
+        empty = (self.out > OUT_SHARE) | (self.classes < LEAST_CLASSES) | (self.cells < cells)
+        if labelled:
+            empty |= self.things < LEAST_THINGS
+        dark = (self.bright < DARKEST) | (self.bright > BRIGHTEST)
+        flat = (self.flat > FLAT_SHARE) | (self.plane > PLANE_SHARE)
+        return ~(blocked | empty | dark | flat)
+
+
+def judged(scene: BlockScene, states: np.ndarray, poses: np.ndarray, rule: TourRule) -> Judged:
+    """Return what small pictures tell.
+
+    Args:
+        scene: ``prepare_scene`` of a volume.
+        states: the volume's; where nothing is labelled they stand for classes.
+        poses: ``camera_to_room``, float64 [N, 4, 4].
+        rule: the camera and the light.
+    """
+    outputs = ("colour", "depth", "semantic", "block", "face")
+    seen = render_batch(
+        scene, pinhole_of(rule.camera, WIDE_PX), poses, outputs=outputs, light=rule.light
+    )
+    count = len(poses)
+    depth, semantic, block, face = (
+        np.asarray(part).reshape(count, -1)
+        for part in (seen.depth_m, seen.semantic, seen.block_index, seen.face)
+    )
+    is_sky = depth == 0
+    there = np.where(is_sky, np.float32(100.0), depth)
+    out = is_sky | (semantic == SemanticClass.WINDOW)
+    things = (semantic >= SemanticClass.CHAIR) & (semantic != 255)
+    known = semantic.astype(np.int32)
+    if not scene.semantic.any():
+        known = states.reshape(-1)[np.maximum(block, 0)].astype(np.int32)
+    classes = _distinct(np.where(is_sky | (semantic == 255), -1, known))
+    wall = np.where(things | is_sky, 255, face)
+    return Judged(
+        (there < NEAR_M).mean(axis=1),
+        np.median(there, axis=1),
+        out.mean(axis=1),
+        classes,
+        things.mean(axis=1),
+        _distinct(block),
+        _largest(wall),
+        _largest(np.where(is_sky, 255, face)),
+        np.asarray(seen.colour).mean(axis=(1, 2, 3)) / 255,
+    )
+
+
+def _largest(faces: np.ndarray) -> np.ndarray:
+    """Return the share of each row that the commonest of the four upright faces has."""
+    return np.max([(faces == side).mean(axis=1) for side in (0, 1, 4, 5)], axis=0)
+
+
+def _distinct(values: np.ndarray) -> np.ndarray:
+    """Return how many different values of 0 or more each row has."""
+    ordered = np.sort(values, axis=1)
+    first = np.ones(ordered.shape, bool)
+    first[:, 1:] = ordered[:, 1:] != ordered[:, :-1]
+    return (first & (ordered >= 0)).sum(axis=1).astype(float)

@@ -1,0 +1,287 @@
+"""A whole store: read back by us, by webdataset and by Hugging Face; every damage found."""
+
+import json
+import os
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from occ_samples import assert_same, sample, samples
+
+from world2minecraft.core.errors import (
+    ConflictError,
+    DamagedFileError,
+    InputError,
+    LimitError,
+    UnknownNameError,
+    UsageError,
+)
+from world2minecraft.minecraftocc.store import open_store, verify_store, write_store
+from world2minecraft.minecraftocc.store import writer as writing_module
+from world2minecraft.minecraftocc.store.sample_files import SampleFiles
+
+PNG = SampleFiles("png")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("store") / "data"
+    patch = pytest.MonkeyPatch()
+    patch.setattr(writing_module, "SHARD_SAMPLES", 4)
+    write_store(folder, samples(), {"name": "tiny"}, files=PNG)
+    patch.undo()
+    return folder
+
+
+@pytest.fixture
+def copied(made, tmp_path):
+    return shutil.copytree(made, tmp_path / "copy")
+
+
+def test_all_samples_come_back_in_their_order(made):
+    store = open_store(made)
+    assert len(store) == 14
+    assert list(store) == store.keys() and store.keys()[3] in store and "x" not in store
+    for ours, theirs in zip(samples(), store.samples(), strict=True):
+        assert_same(ours, theirs)
+
+
+def test_any_sample_by_its_key(made):
+    store = open_store(made)
+    assert_same(sample(103, "house_0002", "test"), store["house_0002-a-000103"])
+    bare = store.sample("house_0002-a-000103", pictures=False)
+    assert bare.colour is None and bare.depth_m is None
+    with pytest.raises(UnknownNameError, match="did you mean 'house_0002-a-000"):
+        store["house_0002-a-00010"]
+
+
+def test_splits(made):
+    store = open_store(made)
+    assert len(store.keys("train")) == len(store.keys("test")) == 7
+    assert {one.scene_id for one in store.samples("test", pictures=False)} == {"house_0002"}
+    with pytest.raises(UsageError, match="are test, train, not 'val'"):
+        store.keys("val")
+
+
+def test_the_index_has_a_row_for_each_sample(made):
+    index = open_store(made).index()
+    assert index["key"].tolist() == [one.key for one in samples()]
+    assert index["class_chair"][3] == int((sample(3).occ.labels == 5).sum())
+    assert index["x"].tolist() == [1.5] * 14
+    assert index["shard"].tolist()[3:5] == [f"shards/train/house_0001-00{n}.tar" for n in (0, 1)]
+
+
+def test_meta_tells_what_it_is(made):
+    meta = open_store(made).meta
+    assert meta["images"] == {"train": 7, "test": 7}
+    assert meta["name"] == "tiny"
+    assert len(meta["shards"]) == 4
+
+
+def test_the_same_samples_give_the_same_files(made, tmp_path, monkeypatch):
+    monkeypatch.setattr(writing_module, "SHARD_SAMPLES", 4)
+    write_store(tmp_path / "again", samples(), {"name": "tiny"}, files=PNG)
+    files = [path for path in made.rglob("*") if path.is_file()]
+    assert len(files) == 8
+    for path in files:
+        assert (tmp_path / "again" / path.relative_to(made)).read_bytes() == path.read_bytes()
+
+
+def test_a_folder_with_a_data_set_is_left_alone(made):
+    with pytest.raises(ConflictError, match="holds a data set already"):
+        write_store(made, samples())
+
+
+def test_half_a_data_set_is_told_from_a_whole_one(tmp_path):
+    def stopped():
+        yield from samples(2)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_store(tmp_path, stopped(), files=PNG)
+    with pytest.raises(ConflictError, match="holds shards/ of a data set that was not finished"):
+        write_store(tmp_path, samples(2), files=PNG)
+    shutil.rmtree(tmp_path / "shards")
+    write_store(tmp_path, samples(2), files=PNG)
+    assert len(open_store(tmp_path)) == 4
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        ({"key": "my.frame"}, "a sample's key is 1 to 90 letters of A-Z, a-z, 0-9, - and _, not "
+         "'my.frame'; rename it"),
+        ({"key": "k" * 91}, "a sample's key is 1 to 90 letters"),
+        ({"scene_id": "room 1"}, "a scene's name is 1 to 80 letters .* not 'room 1'; rename it"),
+        ({"split": "tset"}, "a split is train, val, test or left empty, not 'tset'"),
+    ],
+)  # fmt: skip
+def test_names_that_no_reader_would_find_are_refused(tmp_path, words, text):
+    with pytest.raises(UsageError, match=text):
+        write_store(tmp_path, [replace(sample(), **words)])
+
+
+def test_two_samples_of_one_key_are_refused(tmp_path):
+    with pytest.raises(UsageError, match="two samples have the key 'house_0001-a-000000'"):
+        write_store(tmp_path, [sample(), sample()])
+
+
+@pytest.mark.parametrize("split", ["train", "val", "test", ""])
+def test_any_split_is_found_again(tmp_path, split):
+    write_store(tmp_path, [replace(sample(split=split), key="k" * 90, scene_id="s" * 80)])
+    assert [one.split for one in open_store(tmp_path).samples(split)] == [split]
+
+
+# Others read it.
+
+
+def test_webdataset_reads_it(made):
+    wds = pytest.importorskip("webdataset")
+    shards = [str(made / f"shards/train/house_0001-{n:03d}.tar") for n in range(2)]
+    read = list(wds.WebDataset(shards, shardshuffle=False).decode("rgb8"))
+    assert [one["__key__"] for one in read] == [sample(n).key for n in range(7)]
+    np.testing.assert_array_equal(read[2]["png"], sample(2).colour)
+    np.testing.assert_array_equal(read[2]["occ.npz"]["labels"], sample(2).occ.labels)
+    assert read[2]["json"]["camera"]["fx_px"] == 10.0
+
+
+@pytest.mark.parametrize("pictures", [True, False])
+def test_hugging_face_reads_it(tmp_path, monkeypatch, pictures):
+    for name in ("HF_HUB_OFFLINE", "HF_DATASETS_OFFLINE"):
+        monkeypatch.setenv(name, "1")
+    datasets = pytest.importorskip("datasets")
+    write_store(tmp_path / "data", samples(3, pictures=pictures), files=PNG)
+    read = datasets.load_dataset(str(tmp_path / "data"), cache_dir=str(tmp_path / "cache"))
+    assert {split: len(rows) for split, rows in read.items()} == {"train": 3, "test": 3}
+    row, whole = read["train"][1], sample(1)
+    assert row["__key__"] == whole.key
+    assert row["json"]["region"]["voxel_m"] == 0.08
+    labels = np.array(row["occ.npz"]["labels"], np.uint8)
+    np.testing.assert_array_equal(labels, whole.occ.labels)
+    if pictures:
+        np.testing.assert_array_equal(np.asarray(row["png"]), whole.colour)
+        depth = np.asarray(row["depth.png"])
+        np.testing.assert_array_equal(depth, np.rint(whole.depth_m * 1000))
+
+
+# Damage.
+
+
+def test_a_whole_store_has_no_faults(made):
+    verdict = verify_store(made)
+    assert verdict.faults == ()
+    assert (verdict.samples, verdict.shards) == (14, 4)
+
+
+def test_one_changed_byte_anywhere_is_found(made, copied):
+    shard = copied / "shards/test/house_0002-000.tar"
+    whole = shard.read_bytes()
+    last = whole.rstrip(b"\0")
+    rng = np.random.default_rng(0)
+    for place in rng.integers(0, len(last), 60):
+        if place % 512 >= 257 and whole[place] == 0:
+            continue  # Padding, or what no reader of a header looks at.
+        changed = bytearray(whole)
+        changed[place] ^= 0x41
+        shard.write_bytes(changed)
+        if not verify_store(copied).faults:  # Zeros behind a member belong to no sample.
+            assert whole[place] == 0
+    shard.write_bytes(whole)
+    assert not verify_store(copied).faults
+
+
+def test_what_is_missing_and_what_is_too_much_is_named(copied):
+    (copied / "shards/train/house_0001-001.tar").unlink()
+    (copied / "shards/train/other.tar.part").write_bytes(b"x")
+    (copied / "note.txt").write_text("x")
+    shard = copied / "shards/test/house_0002-001.tar"
+    shard.write_bytes(shard.read_bytes()[:5000])
+    faults = verify_store(copied).faults
+    assert faults[:3] == (
+        "note.txt: belongs to no data set",
+        "shards/train/other.tar.part: belongs to no data set",
+        "shards/train/house_0001-001.tar: is not there, with 3 samples",
+    )
+    assert "shards/test/house_0002-001.tar: sample house_0002-a-000106 is not there" in faults
+
+
+def test_an_index_of_other_samples_is_found(copied, tmp_path):
+    write_store(tmp_path / "other", samples(7, ("house_0001",)), files=PNG)
+    shutil.copy(tmp_path / "other/index.parquet", copied)
+    assert "index.parquet: its sum is not that of dataset.json" in verify_store(copied).faults
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (lambda d: (d / "dataset.json").unlink(), "is no data set: it has no dataset.json"),
+        (lambda d: (d / "dataset.json").write_text("[]"), "is no dataset.json of format 1"),
+        (lambda d: edit(d / "dataset.json", complete=False), "is not finished; run the same"),
+        (lambda d: (d / "classes.json").write_text("{}"), "holds no classes"),
+        (lambda d: (d / "index.parquet").unlink(), "is no index"),
+        (lambda d: (d / "index.parquet").write_bytes(b"PAR1" * 99), "is no index"),
+        (lambda d: shutil.rmtree(d / "shards"), "cannot be read: No such file"),
+    ],
+)
+def test_a_store_that_cannot_be_read_is_told_in_one_line(copied, change, text):
+    change(copied)
+    with pytest.raises(InputError, match=text):
+        list(open_store(copied).samples())
+
+
+def edit(path, **changes):
+    path.write_text(json.dumps(json.loads(path.read_text()) | changes))
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "text"),
+    [
+        ("shard", "../../etc/passwd", "names a shard"),
+        ("shard", "shards/train/../../x.tar", "names a shard"),
+        ("size", 1 << 60, "has a size of"),
+        ("size", -5, "has a size of"),
+        ("offset", -512, "has a size of"),
+        ("offset", 1 << 40, "ends before its last sample"),
+        ("offset", 512, "holds no sample"),
+        ("key", "other-a-000001", "holds no sample other-a-000001"),
+    ],
+)
+def test_rows_that_lie_are_refused(copied, column, value, text):
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(copied / "index.parquet")
+    values = table[column].to_pylist()
+    values[0] = value
+    at = table.column_names.index(column)
+    changed = table.set_column(at, table.field(column), pa.array(values, table.field(column).type))
+    pq.write_table(changed, copied / "index.parquet")
+    with pytest.raises(DamagedFileError, match=text):
+        next(open_store(copied).samples())
+
+
+def test_an_index_without_a_column_or_with_too_many_rows_is_refused(copied, monkeypatch):
+    import pyarrow.parquet as pq
+
+    from world2minecraft.minecraftocc.store import index
+
+    monkeypatch.setattr(index, "MAX_ROWS", 5)
+    with pytest.raises(LimitError, match="has 14 rows"):
+        open_store(copied)
+    monkeypatch.undo()
+    pq.write_table(
+        pq.read_table(copied / "index.parquet").drop(["sha256"]), copied / "index.parquet"
+    )
+    with pytest.raises(DamagedFileError, match="has no column sha256 of type string"):
+        open_store(copied)
+
+
+def test_no_file_is_left_when_writing_fails(tmp_path):
+    def failing():
+        yield from samples(2)
+        raise KeyError("gone")
+
+    with pytest.raises(KeyError):
+        write_store(tmp_path / "data", failing(), files=PNG)
+    assert os.listdir(tmp_path / "data") == ["shards"]

@@ -1,0 +1,98 @@
+"""A run that takes a folder over waits until nobody of an earlier run writes there any more."""
+
+import os
+import pickle
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+
+import pytest
+
+from world2minecraft.core.errors import ConflictError, OutputError
+from world2minecraft.minecraftocc.building.process_registry import (
+    at_work,
+    of_the_crew,
+    wait_for_others,
+)
+from world2minecraft.minecraftocc.engine import worker
+
+AT_WORK = """
+import sys
+from pathlib import Path
+from world2minecraft.minecraftocc.building.process_registry import at_work
+with at_work(Path(sys.argv[1])):
+    print("at work", flush=True)
+    sys.stdin.read()
+"""
+
+
+@dataclass(frozen=True)
+class Item:
+    folder: str
+
+
+@of_the_crew
+def written(item, tick):
+    """Write a file."""
+    with open(os.path.join(item.folder, "mark"), "w") as stream:
+        stream.write("here")
+    return 7
+
+
+@pytest.fixture
+def straggler(tmp_path):
+    """A process that is at work in the folder until its input ends."""
+    words = [sys.executable, "-c", AT_WORK, str(tmp_path)]
+    process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "at work\n"
+    yield process
+    process.kill()
+    process.communicate()
+
+
+def test_a_straggler_is_waited_for(tmp_path, straggler):
+    subprocess.Popen(["sh", "-c", f"sleep 0.5; kill -9 {straggler.pid}"])
+    began = time.monotonic()
+    wait_for_others(tmp_path)
+    assert time.monotonic() - began >= 0.4
+
+
+def test_one_that_does_not_end_is_told_in_one_line(tmp_path, straggler):
+    with pytest.raises(ConflictError) as caught:
+        wait_for_others(tmp_path, patience_s=0.1)
+    assert str(caught.value) == (
+        f"{tmp_path}: a process of an earlier run is still at work here; end it first"
+    )
+
+
+def test_many_are_at_work_at_once_and_then_nobody(tmp_path, straggler):
+    with at_work(tmp_path), at_work(tmp_path):
+        pass
+    straggler.kill()
+    straggler.wait()
+    wait_for_others(tmp_path, patience_s=0)
+
+
+def test_a_worker_whose_parent_is_gone_does_nothing(tmp_path, monkeypatch):
+    class Gone:
+        def is_alive(self):
+            return False
+
+    assert written(Item(str(tmp_path)), print) == 7
+    (tmp_path / "mark").unlink()
+    monkeypatch.setattr(worker, "parent_process", Gone)
+    with pytest.raises(BaseException, match="^$") as caught:
+        written(Item(str(tmp_path)), print)
+    assert not isinstance(caught.value, Exception), "an engine would send it as a failure"
+    assert not (tmp_path / "mark").exists()
+
+
+def test_a_task_of_the_crew_can_be_sent():
+    assert pickle.loads(pickle.dumps(written)) is written
+    assert written.__doc__ == "Write a file."
+
+
+def test_a_folder_that_is_gone_is_told(tmp_path):
+    with pytest.raises(OutputError, match=r"\.crew: cannot be written: No such file"):
+        wait_for_others(tmp_path / "none")

@@ -1,0 +1,153 @@
+"""One depth picture in its frame's grid: where its cells lie, what is read, what is refused."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from world2minecraft.cli import run as w2m
+from world2minecraft.core.errors import CaptureError, DamagedFileError, InputError, UnknownNameError
+from world2minecraft.core.types import View
+from world2minecraft.minecraftocc.formats.cameras import NYU_CAMERA
+from world2minecraft.minecraftocc.formats.depth_codes import depth_png
+from world2minecraft.minecraftocc.frame_completion import (
+    FILE_AXES,
+    GridPlace,
+    complete_frame,
+    depth_of_png,
+    floor_of,
+    read_grid_place,
+)
+from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
+from world2minecraft.reconstruction.semantics.completion_channels import Sight
+from world2minecraft.reconstruction.semantics.completion_net import CompletionModel
+
+EYE_M, WALL_M = 1.2, 4.0
+# x right, y forward, z up: the camera looks along +y, level, over a floor at z = 0.
+POSE = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, EYE_M], [0, 0, 0, 1]], np.float64)
+PLACE = GridPlace(np.array([-2.4, 0.0, -0.08]), POSE)
+
+
+class Empty:
+    """Stands for a network that finds every cell empty, and of what is solid a table."""
+
+    def __init__(self):
+        self.sight: Sight | None = None
+
+    def chances(self, sight: Sight):
+        self.sight = sight
+        chance = np.full((12, *sight.log_odds.shape), 0.02, np.float32)
+        chance[0], chance[8] = 0.7, 0.1
+        return chance
+
+
+@pytest.fixture(scope="module")
+def depth_m():
+    """A floor and a wall ahead."""
+    rows = (np.arange(480) + 0.5 - NYU_CAMERA.cy_px) / NYU_CAMERA.fy_px
+    floor = EYE_M / np.maximum(rows, 1e-6)
+    return np.repeat(np.minimum(floor, WALL_M)[:, None], 640, axis=1).astype(np.float32)
+
+
+def header(tmp_path, runs=b"these are no runs of labels"):
+    path = tmp_path / "frame.bin"
+    head = np.concatenate([PLACE.origin_m, POSE.ravel()]).astype("<f4")
+    path.write_bytes(head.tobytes() + runs)
+    return path
+
+
+def test_of_a_bin_the_head_alone_is_read(tmp_path):
+    place = read_grid_place(header(tmp_path))
+    assert place.origin_m == pytest.approx(PLACE.origin_m, abs=1e-6)
+    assert place.camera_to_world == pytest.approx(POSE, abs=1e-6)
+
+
+@pytest.mark.parametrize("names", [("origin_m", "camera_to_world"), ("voxel_origin", "cam_pose")])
+def test_an_npz_may_state_the_grid(tmp_path, names):
+    np.savez(tmp_path / "grid.npz", **dict(zip(names, (PLACE.origin_m, POSE), strict=True)))
+    place = read_grid_place(tmp_path / "grid.npz")
+    assert place.camera_to_world == pytest.approx(POSE)
+
+
+def test_what_is_no_grid_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"SSCNet \.bin"):
+        read_grid_place(tmp_path / "none.bin")
+    (tmp_path / "short.bin").write_bytes(b"1234")
+    with pytest.raises(DamagedFileError, match="3 numbers of origin"):
+        read_grid_place(tmp_path / "short.bin")
+    head = np.concatenate([np.zeros(3), np.full(16, 7)]).astype("<f4")
+    (tmp_path / "bent.bin").write_bytes(head.tobytes())
+    with pytest.raises(DamagedFileError):
+        read_grid_place(tmp_path / "bent.bin")
+
+
+def test_cells_lie_where_the_picture_shows_them(depth_m):
+    model = Empty()
+    frame = complete_frame(depth_m, PLACE, model=model)  # type: ignore[arg-type]
+    assert frame.labels.shape == (60, 60, 36)
+    solid = frame.labels > 0
+    assert (frame.labels[solid] == 8).all()
+    wall = int(WALL_M / 0.08)
+    assert solid[25:35, wall, 10:20].all()
+    assert solid[25:35, 36:46, 0].all()
+    assert not solid[25:35, 10:48, 5:20].any()
+    assert frame.observed[25:35, 15:45, 13:17].all()
+    assert not frame.observed[:, wall + 2 :].any()
+    assert model.sight is not None
+    assert model.sight.bottom_m == pytest.approx(-0.08, abs=0.02)
+
+
+def test_the_floor_is_found_though_the_world_says_otherwise(depth_m):
+    view = View(name="frame", camera_to_scan=POSE, depth_m=depth_m, depth_camera=NYU_CAMERA)
+    world_to_grid = np.eye(4)
+    world_to_grid[2, 3] = 0.4
+    points = DepthPredictor().lift(view)
+    assert floor_of(points, world_to_grid) == pytest.approx(0.4, abs=0.02)
+    wall_alone = DepthPredictor().lift(
+        View(
+            name="wall",
+            camera_to_scan=POSE,
+            depth_m=np.full((480, 640), WALL_M, np.float32),
+            depth_camera=NYU_CAMERA,
+        )
+    )
+    assert floor_of(wall_alone, world_to_grid) == pytest.approx(0.4)
+
+
+def test_depth_codes_tell_themselves(depth_m, tmp_path):
+    millimetres = np.round(depth_m * 1000).astype(np.uint16)
+    turned = (millimetres << 3) | (millimetres >> 13)
+    for raw in (turned, millimetres, (depth_m * 8000 + 3).astype(np.uint16)):
+        assert depth_of_png(tmp_path, raw) == pytest.approx(depth_m, abs=2e-3)
+    far = np.full((4, 4), 9000, np.uint16)
+    assert depth_of_png(tmp_path, (far << 3) | (far >> 13), "rotated") == pytest.approx(9.0)
+
+
+def test_what_is_no_depth_is_refused(depth_m, tmp_path):
+    with pytest.raises(UnknownNameError):
+        depth_of_png(tmp_path, np.ones((4, 4), np.uint16), "feet")
+    with pytest.raises(CaptureError, match="16 bits"):
+        depth_of_png(tmp_path, np.zeros((4, 4), np.uint16))
+    with pytest.raises(CaptureError, match="try --depth-code"):
+        depth_of_png(tmp_path, np.full((4, 4), 30_000, np.uint16), "mm")
+    away = GridPlace(np.array([50.0, 0.0, 0.0]), POSE)
+    with pytest.raises(CaptureError, match="nothing of the grid"):
+        complete_frame(depth_m, away, model=Empty())  # type: ignore[arg-type]
+
+
+def test_the_verb_writes_the_files_own_axes(depth_m, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(CompletionModel, "chances", Empty.chances)
+    (tmp_path / "depth.png").write_bytes(depth_png(depth_m, "nyu"))
+    Image.fromarray(np.full((480, 640, 3), 90, np.uint8)).save(tmp_path / "colour.png")
+    out = tmp_path / "pred.npz"
+    words = ["occupy", str(tmp_path / "depth.png"), "--grid", str(header(tmp_path))]
+    assert w2m([*words, "--out", str(out), "--colour", str(tmp_path / "colour.png")]) == 0
+    with np.load(out) as held:
+        labels, observed = held["labels"], held["observed"]
+        assert held["axes"] == "xzy"
+        assert held["origin_m"] == pytest.approx(PLACE.origin_m, abs=1e-6)
+    assert labels.shape == (60, 36, 60)
+    assert labels.dtype == np.uint8
+    straight = complete_frame(depth_m, PLACE, model=Empty())  # type: ignore[arg-type]
+    assert (labels == straight.labels.transpose(FILE_AXES)).mean() > 0.999
+    assert observed.any()
+    assert "table" in capsys.readouterr().out
