@@ -30,7 +30,7 @@ from world2minecraft.evaluation.metrics.occupancy import (
     count_occupancy,
     iou_of_precision_recall,
 )
-from world2minecraft.learn.completion.samples import (
+from world2minecraft.networks.completion.samples import (
     Sample,
     make_samples,
     read_samples,

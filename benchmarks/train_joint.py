@@ -25,8 +25,8 @@ from rich.table import Table
 from benchmarks.train_table import BLIND, average_scenes, done_run, done_scenes, figure_of, markdown
 from world2minecraft.cli.progress import shown
 from world2minecraft.core.files import write_text
-from world2minecraft.learn.config import PRESETS, DataSource, RunConfig
-from world2minecraft.learn.data.opening import CachePlace
+from world2minecraft.networks.config import PRESETS, DataSource, RunConfig
+from world2minecraft.networks.data.opening import CachePlace
 
 WAYS = ("alone", "joint", "others")
 DRAWS = 2000

@@ -31,22 +31,22 @@ from world2minecraft.core.progress import Progress
 from world2minecraft.evaluation.metrics.confidence_intervals import micro_figures
 from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts
 from world2minecraft.evaluation.metrics.protocols import PROTOCOLS, ProtocolCounts, count_frame
-from world2minecraft.learn.config import PRESETS, DataSource, RunConfig
-from world2minecraft.learn.data.cache import Frames
-from world2minecraft.learn.data.opening import CachePlace, open_frames, open_run_data, rule_of
-from world2minecraft.learn.data.splits import split_rows
-from world2minecraft.learn.journal import METRICS, read_rows
-from world2minecraft.learn.networks import NETWORKS
-from world2minecraft.learn.scoring import SaidOfFrame, protocol_scores, said_by_network
-from world2minecraft.learn.training import (
+from world2minecraft.minecraftocc.importers import open_occupancy
+from world2minecraft.networks.config import PRESETS, DataSource, RunConfig
+from world2minecraft.networks.csv_logger import METRICS, read_rows
+from world2minecraft.networks.data.cache import Frames
+from world2minecraft.networks.data.opening import CachePlace, open_frames, open_run_data, rule_of
+from world2minecraft.networks.data.splits import split_rows
+from world2minecraft.networks.models import NETWORKS
+from world2minecraft.networks.scoring import SaidOfFrame, protocol_scores, said_by_network
+from world2minecraft.networks.training import (
     FACTS,
     LAST_SCORES,
     score_run,
     train_run,
     trained_network,
 )
-from world2minecraft.learn.validation import said_labels
-from world2minecraft.minecraftocc.importers import open_occupancy
+from world2minecraft.networks.validation import said_labels
 
 SCENE_COUNTS = "scene_counts.json"
 

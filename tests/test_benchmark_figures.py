@@ -9,7 +9,7 @@ from benchmarks.check_faithful import TARGETS, figures_of, name_of
 from benchmarks.check_fitting import Score
 from rich.console import Console
 
-from world2minecraft.learn.completion.samples import Sample
+from world2minecraft.networks.completion.samples import Sample
 from world2minecraft.reconstruction.semantics.completion_channels import Sight
 
 

@@ -101,8 +101,8 @@ def test_the_format_brings_blocks_back_and_refuses_a_lie(tmp_path):
 
 def test_the_network_learns():
     torch = pytest.importorskip("torch", reason="torch is not installed")
-    from world2minecraft.learn.batch import OccInput
-    from world2minecraft.learn.networks import make_network
+    from world2minecraft.networks.batch import OccInput
+    from world2minecraft.networks.models import make_network
 
     network = make_network("columns", "tiny", grid_shape=(8, 8, 8), voxel_m=0.16)
     batch = OccInput(

@@ -78,8 +78,8 @@ def run(
 
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.files import write_json, write_text
-    from world2minecraft.learn.tables import latex_rows
     from world2minecraft.minecraftocc.importers import open_occupancy
+    from world2minecraft.networks.tables import latex_rows
 
     if not said.exists():
         from world2minecraft.core.errors import InputError
@@ -131,27 +131,27 @@ class _Asked:
         return self._of_files(progress)
 
     def _scored(self, frames: Any, voxel_m: float) -> dict[str, Any]:
-        from world2minecraft.learn.scoring import protocol_scores
+        from world2minecraft.networks.scoring import protocol_scores
 
         return protocol_scores(frames, voxel_m, self.protocols, seed=self.seed)
 
     def _rows(self, frames: Any) -> list[int]:
-        from world2minecraft.learn.data.splits import evenly
+        from world2minecraft.networks.data.splits import evenly
 
         of = self.found.splits
         rows = [n for n, key in enumerate(frames.keys) if self.split in (None, of[key])]
         return evenly(rows, self.limit or len(rows))
 
     def _frames(self, grid: Any, size: tuple[int, int], progress: "Progress") -> Any:
-        from world2minecraft.learn.data.frames import FrameRule
-        from world2minecraft.learn.data.opening import CachePlace, open_frames
+        from world2minecraft.networks.data.frames import FrameRule
+        from world2minecraft.networks.data.opening import CachePlace, open_frames
 
         place = CachePlace.named(self.cache)
         return open_frames(self.found, FrameRule(grid, *size), place, progress)
 
     def _of_onnx(self, progress: "Progress") -> dict[str, Any]:
-        from world2minecraft.learn.config import Grid
-        from world2minecraft.learn.scoring import said_by_onnx
+        from world2minecraft.networks.config import Grid
+        from world2minecraft.networks.scoring import said_by_onnx
         from world2minecraft.reconstruction.occupancy.onnx_network import OccupancyNetwork
 
         facts = OccupancyNetwork(self.said).facts
@@ -164,11 +164,11 @@ class _Asked:
         from world2minecraft.cli.train_options import check_extra
 
         check_extra()
-        from world2minecraft.learn.checkpoints import load_weights, weights_config
-        from world2minecraft.learn.keeping import WEIGHTS
-        from world2minecraft.learn.scoring import said_by_network
-        from world2minecraft.learn.training import network_of
-        from world2minecraft.learn.validation import device_named, said_labels
+        from world2minecraft.networks.callbacks import WEIGHTS
+        from world2minecraft.networks.checkpoints import load_weights, weights_config
+        from world2minecraft.networks.scoring import said_by_network
+        from world2minecraft.networks.training import network_of
+        from world2minecraft.networks.validation import device_named, said_labels
 
         path = self.said / WEIGHTS if self.said.is_dir() else self.said
         config = weights_config(path)
@@ -180,7 +180,7 @@ class _Asked:
         said = said_labels(network, frames, rows, config, progress=progress)
         scores = self._scored(said_by_network(frames, rows, said), config.cells.voxel_m)
         if not self.protocols or "embodied" in self.protocols:
-            from world2minecraft.learn.memory import add_memory_scores
+            from world2minecraft.networks.scene_memory import add_memory_scores
 
             add_memory_scores(
                 scores, network, self.found, frames, rows, config, seed=self.seed, progress=progress
@@ -188,9 +188,9 @@ class _Asked:
         return scores
 
     def _of_files(self, progress: "Progress") -> dict[str, Any]:
-        from world2minecraft.learn.data.splits import evenly
-        from world2minecraft.learn.predictions import SavedPredictions, grid_like
-        from world2minecraft.learn.scoring import keys_to_score, said_by_files
+        from world2minecraft.networks.data.splits import evenly
+        from world2minecraft.networks.predictions import SavedPredictions, grid_like
+        from world2minecraft.networks.scoring import keys_to_score, said_by_files
 
         saved = SavedPredictions(self.said, self.order, self.classes)
         if (of_scenes := self._of_scenes(saved, progress)) is not None:
@@ -203,7 +203,7 @@ class _Asked:
     def _of_scenes(self, saved: Any, progress: "Progress") -> dict[str, Any] | None:
         """Return scores of grids of whole scenes; None where none of the files is a scene's."""
         from world2minecraft.core.errors import UsageError
-        from world2minecraft.learn.scoring import saved_scene_scores, scenes_to_score
+        from world2minecraft.networks.scoring import saved_scene_scores, scenes_to_score
 
         if self.found.format != "embodied":
             return None

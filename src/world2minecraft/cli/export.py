@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.learn.export import Exported
+    from world2minecraft.networks.export import Exported
 
 EXAMPLES = """\
 w2m export RUN --out net.onnx                              the best weights of a run
@@ -34,10 +34,10 @@ def run(
     from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
     check_extra()
-    from world2minecraft.learn.checkpoints import load_weights, weights_config
-    from world2minecraft.learn.export import export_network
-    from world2minecraft.learn.keeping import WEIGHTS
-    from world2minecraft.learn.training import network_of
+    from world2minecraft.networks.callbacks import WEIGHTS
+    from world2minecraft.networks.checkpoints import load_weights, weights_config
+    from world2minecraft.networks.export import export_network
+    from world2minecraft.networks.training import network_of
 
     path = weights / WEIGHTS if weights.is_dir() else weights
     config = weights_config(path)

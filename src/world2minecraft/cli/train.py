@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from world2minecraft.cli import train_options as options
 
 if TYPE_CHECKING:
-    from world2minecraft.learn.config import RunConfig
+    from world2minecraft.networks.config import RunConfig
 
 EXAMPLES = """\
 w2m dataset build DATA --houses 40 --images 1000               something to train on
@@ -58,8 +58,8 @@ def run(
         changes["image"] = options.image_size(image)
     chosen = options.chosen_run(network, data or [], config, preset, changes)
     options.check_extra()
-    from world2minecraft.learn.data.opening import CachePlace
-    from world2minecraft.learn.training import score_run, train_run
+    from world2minecraft.networks.data.opening import CachePlace
+    from world2minecraft.networks.training import score_run, train_run
 
     with shown() as progress:
         trained = train_run(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.learn.config import RunConfig
+    from world2minecraft.networks.config import RunConfig
 
 
 def _option(*names: str, text: str, metavar: str | None = None) -> Any:
@@ -61,7 +61,7 @@ def chosen_run(
     from dataclasses import replace
 
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.learn.config import DataSource, RunConfig, read_config
+    from world2minecraft.networks.config import DataSource, RunConfig, read_config
 
     sources = tuple(DataSource.parsed(text) for text in data)
     if config is not None:

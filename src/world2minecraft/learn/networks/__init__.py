@@ -1,9 +1,0 @@
-"""Monocular occupancy networks: the published ones, on shared parts, in plain PyTorch.
-
-A network is one file that holds a class made of ``(size, grid_shape, voxel_m, backbone)`` whose
-``forward`` turns an ``OccInput`` into an ``OccOutput``, and one line of ``NETWORKS``.
-"""
-
-from world2minecraft.learn.networks.making import NETWORKS, SIZES, make_network
-
-__all__ = ["NETWORKS", "SIZES", "make_network"]

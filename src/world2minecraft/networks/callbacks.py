@@ -1,0 +1,131 @@
+"""Who looks after a run: validates, keeps the best weights and checkpoints, and says when to stop.
+
+Files of a run: ``checkpoint.safetensors`` (to go on from), ``weights.safetensors`` (the best by
+mIoU on the validation frames), ``last.safetensors``, ``metrics.csv`` and ``tensorboard/``.
+"""
+
+# Not by Lightning's ModelCheckpoint and EarlyStopping: their checkpoints are pickles, which can run
+# code when they are read, and hold no sums of losses that are not noted yet, without which a run
+# that was killed and went on would not leave the same metrics.
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import lightning
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.progress import Progress
+from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts
+from world2minecraft.networks.checkpoints import write_checkpoint, write_weights
+from world2minecraft.networks.config import RunConfig
+from world2minecraft.networks.csv_logger import Journal
+from world2minecraft.networks.lightning_module import Steps, rate_of
+
+CHECKPOINT, WEIGHTS, LAST = "checkpoint.safetensors", "weights.safetensors", "last.safetensors"
+NOTED_STEPS = 20  # A mean of losses is noted so often.
+
+
+@dataclass
+class RunState:
+    """Where a run stands; a checkpoint holds it."""
+
+    step: int = 0
+    best_miou: float = -1.0
+    best_step: int = 0
+    worse: int = 0  # Validations since the best one.
+    stopped: bool = False  # Early, because it got no better.
+    seconds: float = 0.0  # Of training and validation, all tries together.
+    cpu_seconds: float = 0.0  # The same of this process's processors.
+    sums: dict[str, float] = field(default_factory=dict)  # Of losses not yet noted,
+    summed: int = 0  # and of how many steps.
+
+
+class Keeper(lightning.Callback):
+    """Counts the steps of a run and does what is due after each."""
+
+    def __init__(
+        self,
+        folder: Path,
+        config: RunConfig,
+        state: RunState,
+        validate: Callable[[], OccupancyCounts],
+        progress: Progress,
+    ):
+        self._folder, self._config, self._validate = folder, config, validate
+        self._progress, self.state = progress, state
+        self._journal = Journal(folder, state.step)
+        self._began, self._first = time.monotonic(), state.step
+        self._cpu_began = time.process_time()
+        self._before_s, self._cpu_before_s = state.seconds, state.cpu_seconds
+        self._said = ""
+
+    def on_train_batch_end(
+        self, trainer: Any, pl_module: Any, outputs: Any, batch: Any, batch_idx: int
+    ) -> None:
+        """Note the losses; validate, keep and stop where it is time."""
+        steps: Steps = pl_module
+        state, config = self.state, self._config
+        state.step += 1
+        self._check(steps)
+        self._sum_up(steps)
+        is_last = state.step == config.steps
+        if state.step % config.validate_every == 0 or is_last:
+            self._judge(steps)
+            trainer.should_stop = state.stopped
+        if state.step % config.checkpoint_every == 0 or is_last or state.stopped:
+            self._keep(steps, trainer.optimizers[0])
+        self._tell(state.sums)
+
+    def _check(self, steps: Steps) -> None:
+        """End a run whose loss is no number: its weights are none any more, and never will be."""
+        if not math.isfinite(float(steps.found["loss"])):
+            rate = rate_of(self._config, self.state.step - 1)
+            raise UsageError(
+                f"the loss of step {self.state.step:,} is no number, at a learning rate of "
+                f"{rate:.2g}; train in another --out with a lower --lr, or with --precision 32 "
+                "(the best weights so far are kept)"
+            )
+
+    def _sum_up(self, steps: Steps) -> None:
+        state = self.state
+        for name, value in steps.found.items():
+            state.sums[name] = state.sums.get(name, 0.0) + float(value)
+        state.summed += 1
+        if state.step % NOTED_STEPS == 0 or state.step == self._config.steps:
+            figures = {f"train_{k}": v / state.summed for k, v in state.sums.items()}
+            figures["learning_rate"] = rate_of(self._config, state.step - 1)
+            self._journal.note(state.step, figures)
+            state.sums, state.summed = {}, 0
+            self._said = f"loss {figures['train_loss']:.3f}"
+
+    def _judge(self, steps: Steps) -> None:
+        state, counts = self.state, self._validate()
+        self._journal.note(state.step, {"val_iou": counts.iou, "val_miou": counts.miou})
+        if counts.miou > state.best_miou:
+            state.best_miou, state.best_step, state.worse = counts.miou, state.step, 0
+            write_weights(self._folder / WEIGHTS, steps.network, self._config)
+        else:
+            state.worse += 1
+        state.stopped = 0 < self._config.patience <= state.worse
+
+    def _keep(self, steps: Steps, optimiser: Any) -> None:
+        self.state.seconds = self._before_s + time.monotonic() - self._began
+        self.state.cpu_seconds = self._cpu_before_s + time.process_time() - self._cpu_began
+        self._journal.save()
+        write_checkpoint(self._folder / CHECKPOINT, steps.network, optimiser, asdict(self.state))
+
+    def _tell(self, sums: dict[str, float]) -> None:
+        state = self.state
+        rate = (state.step - self._first) / max(time.monotonic() - self._began, 1e-9)
+        best = f", best mIoU {100 * state.best_miou:.1f}" if state.best_miou >= 0 else ""
+        note = f"{self._said}{', ' if self._said else ''}{rate:.2f} steps/s{best}"
+        self._progress("train", state.step, self._config.steps, note)
+
+    def finish(self, steps: Steps) -> None:
+        """Write the last weights and close the journal."""
+        write_weights(self._folder / LAST, steps.network, self._config)
+        self._journal.close()

@@ -1,0 +1,117 @@
+"""Weights and half-done runs on the disk, as safetensors: arrays and texts, nothing that runs.
+
+A checkpoint holds what the next step depends on: weights, the moments of AdamW, and facts such as
+the step. Data and augmentation follow from the seed and the step, so no generator is kept.
+"""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import torch
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save
+from torch import Tensor, nn
+
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.networks.config import RunConfig, config_text, parse_config
+
+CONFIG, FACTS = "run", "facts"  # Keys of a file's texts.
+MODEL, OPTIMISER = "model.", "optimiser."
+
+
+def write_weights(path: Path, network: nn.Module, config: RunConfig) -> None:
+    """Write a network's weights, and the run that they are of. Raises OutputError."""
+    write_bytes(path, save(_held(network.state_dict()), {CONFIG: config_text(config)}))
+
+
+def weights_config(path: Path) -> RunConfig:
+    """Return the run that weights are of. Raises InputError or DamagedFileError."""
+    _, texts = _read(path, with_tensors=False)
+    if CONFIG not in texts:
+        raise DamagedFileError(path, "says nothing of its network; it is not of w2m train")
+    return parse_config(texts[CONFIG], str(path))
+
+
+def load_weights(path: Path, network: nn.Module) -> None:
+    """Put weights into a network of the same kind and size.
+
+    Raises:
+        InputError: the file is missing. DamagedFileError: it is none, or of another network.
+    """
+    tensors, _ = _read(path)
+    _fill(path, network, tensors)
+
+
+def write_checkpoint(
+    path: Path, network: nn.Module, optimiser: torch.optim.Optimizer, facts: Mapping[str, Any]
+) -> None:
+    """Write a half-done run. Raises OutputError."""
+    tensors = {MODEL + name: value for name, value in network.state_dict().items()}
+    for number, state in optimiser.state_dict()["state"].items():
+        for name, value in state.items():
+            tensors[f"{OPTIMISER}{number}.{name}"] = torch.as_tensor(value)
+    write_bytes(path, save(_held(tensors), {FACTS: json.dumps(facts)}))
+
+
+def read_facts(path: Path) -> dict[str, Any]:
+    """Return what a checkpoint says of its run. Raises InputError or DamagedFileError."""
+    _, texts = _read(path, with_tensors=False)
+    try:
+        return dict(json.loads(texts[FACTS]))
+    except (KeyError, ValueError, TypeError) as error:
+        raise DamagedFileError(path, "is no checkpoint of w2m train") from error
+
+
+def load_checkpoint(
+    path: Path, network: nn.Module, optimiser: torch.optim.Optimizer | None = None
+) -> None:
+    """Put a half-done run into its network, and its optimiser if one is given.
+
+    Raises what ``load_weights`` does.
+    """
+    tensors, _ = _read(path)
+    model = {
+        name.removeprefix(MODEL): value for name, value in tensors.items() if name.startswith(MODEL)
+    }
+    _fill(path, network, model)
+    if optimiser is None:
+        return
+    state: dict[int, dict[str, Tensor]] = {}
+    for name, value in tensors.items():
+        if name.startswith(OPTIMISER):
+            number, _, part = name.removeprefix(OPTIMISER).partition(".")
+            state.setdefault(int(number), {})[part] = value
+    groups = optimiser.state_dict()["param_groups"]
+    optimiser.load_state_dict({"state": state, "param_groups": groups})
+
+
+def _held(tensors: Mapping[str, Tensor]) -> dict[str, Tensor]:
+    return {name: value.detach().cpu().contiguous().clone() for name, value in tensors.items()}
+
+
+def _fill(path: Path, network: nn.Module, tensors: dict[str, Tensor]) -> None:
+    own = network.state_dict()
+    wrong = sorted(
+        name
+        for name in own.keys() | tensors.keys()
+        if name not in own or name not in tensors or own[name].shape != tensors[name].shape
+    )
+    if wrong:
+        raise DamagedFileError(
+            path, f"is of another network: {wrong[0]} and {len(wrong) - 1} more do not fit"
+        )
+    network.load_state_dict(tensors)
+
+
+def _read(path: Path, *, with_tensors: bool = True) -> tuple[dict[str, Tensor], dict[str, str]]:
+    if not path.is_file():
+        raise InputError(path, "is not there; w2m train NET --data DIR --out RUN makes one")
+    try:
+        with safe_open(str(path), framework="pt", device="cpu") as file:
+            names = file.keys() if with_tensors else ()
+            return {name: file.get_tensor(name) for name in names}, dict(file.metadata() or {})
+    except (SafetensorError, OSError, ValueError) as error:
+        raise DamagedFileError(path, f"is no safetensors file ({error})") from error

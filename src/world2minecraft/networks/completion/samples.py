@@ -1,0 +1,235 @@
+"""One sample: what the network is told of a virtual scan, and what is true of the same cells.
+
+Truth is the room's own grid carried into the cells by the rule that scores reconstructions. It is
+255 beyond the rooms that the scan looked into: nobody can learn what lies behind a wall.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy import ndimage
+
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.coordinates import apply, rotation_about_z
+from world2minecraft.core.errors import CaptureError, DamagedFileError
+from world2minecraft.core.files import array_names, read_npz, write_npz
+from world2minecraft.core.types import Camera, FusedEvidence
+from world2minecraft.evaluation.metrics.truth import carry_truth
+from world2minecraft.networks.completion.rooms import training_room
+from world2minecraft.networks.completion.sensor_noise import ScanNoise, draw_noise
+from world2minecraft.networks.completion.virtual_views import (
+    TOUR_VIEWS,
+    Look,
+    LookKind,
+    draw_look,
+    scan_look,
+)
+from world2minecraft.procgen.rooms.room import Room
+from world2minecraft.procgen.sensors.photo import prepare_photos
+from world2minecraft.procgen.sensors.tour import plan_tour
+from world2minecraft.reconstruction.fusion import CleanParameters, remove_floaters
+from world2minecraft.reconstruction.fusion import extract_grid as read_out
+from world2minecraft.reconstruction.semantics.completion import hint_of
+from world2minecraft.reconstruction.semantics.completion_channels import Sight, sight_of
+from world2minecraft.reconstruction.semantics.geometric import GeometricLabeller
+
+LOOKS: tuple[LookKind, ...] = ("walk", "few", "single", "single", "single")
+SHELL_CELLS = 2  # Cells of wall, slab and ceiling around a room that count as its own.
+MOST_CELLS = (96, 96, 44)
+FRAME_CELLS = (60, 60, 36)  # Of the grids of single frames.
+PLAN_CAMERA = Camera(160, 120, 129.7, 129.7, 80.0, 60.0)
+FIELDS = ("log_odds", "at", "hits", "colour", "offset", "votes", "hint")
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """A sight and its truth."""
+
+    sight: Sight
+    truth: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
+    kind: str  # of the look
+    hinted: bool  # whether the geometric labeller was asked: only where walls lie along the axes
+    false_share: float  # of the occupied cells that the truth knows, those that are empty in it
+
+
+def make_samples(seed: int) -> list[Sample]:
+    """Return the samples of the room of a seed: the same seed gives the same bytes.
+
+    There is one a look of ``LOOKS``; those that saw next to nothing are left out.
+    """
+    room = training_room(seed)
+    scene = prepare_photos(room)
+    rng = np.random.default_rng([seed, 12])
+    views = TOUR_VIEWS * (2 if len(room.layouts) > 1 else 1)
+    tour = plan_tour(room, scene.scene, PLAN_CAMERA, views, rng)
+    samples = []
+    for number, kind in enumerate(LOOKS):
+        rng = np.random.default_rng([seed, 13, number])
+        look = draw_look(kind, tour, rng)
+        noise = draw_noise(rng, kind)
+        try:
+            evidence = scan_look(room, scene, look, noise, rng)
+        except CaptureError:
+            continue
+        sample = sample_of(room, look, noise, evidence, rng)
+        if len(sample.sight.at) > 300:
+            samples.append(sample)
+    return samples
+
+
+def sample_of(
+    room: Room, look: Look, noise: ScanNoise, evidence: FusedEvidence, rng: np.random.Generator
+) -> Sample:
+    """Return the sample of a fused look."""
+    grid = remove_floaters(read_out(evidence), CleanParameters())
+    hint = hint_of(*GeometricLabeller().traced(grid, evidence)) if look.in_room_axes else None
+    truth_to_grid = look.room_to_grid.copy()
+    truth_to_grid[:3, :3] = truth_to_grid[:3, :3] @ rotation_about_z(noise.yaw_error_deg)[:3, :3]
+    truth_to_grid[:3, 3] += noise.misfit_m
+    low, shape = _box(room, look, evidence, truth_to_grid, rng)
+    voxel_m = evidence.voxel_m
+    truth = carry_truth(
+        room.labels, room.voxel_m, room.origin_m, truth_to_grid, shape, low * voxel_m, voxel_m
+    )
+    start = low - np.round(evidence.origin_m / voxel_m).astype(np.int64)
+    sight = replace(cut(sight_of(grid, evidence, hint), start, shape), bottom_m=low[2] * voxel_m)
+    truth[~seen_rooms(room, truth_to_grid, low, voxel_m, sight.log_odds)] = UNKNOWN
+    there = truth.reshape(-1)[sight.at]
+    false = float((there == 0).sum() / max((there != UNKNOWN).sum(), 1))
+    return Sample(sight, truth, look.kind, hint is not None, false)
+
+
+def cut(sight: Sight, start: np.ndarray, shape: tuple[int, int, int]) -> Sight:
+    """Return the part of a sight in a box of cells; what it has not is unknown."""
+    old = sight.log_odds.shape
+    first, last = np.maximum(start, 0), np.minimum(start + shape, old)
+    odds = np.zeros(shape, np.int8)
+    if (first < last).all():
+        source = tuple(slice(a, b) for a, b in zip(first, last, strict=True))
+        target = tuple(slice(a, b) for a, b in zip(first - start, last - start, strict=True))
+        odds[target] = sight.log_odds[source]
+    cells = np.stack(np.unravel_index(sight.at, old), axis=1) - start
+    kept = ((cells >= 0) & (cells < shape)).all(axis=1)
+    at = np.ravel_multi_index(tuple(cells[kept].T), shape).astype(np.int32)
+    rows = {
+        name: None if (value := getattr(sight, name)) is None else value[kept]
+        for name in ("hits", "colour", "offset", "votes", "hint")
+    }
+    bottom = sight.bottom_m
+    bottom = None if bottom is None else bottom + float(start[2]) * sight.voxel_m
+    return replace(sight, log_odds=odds, at=at, bottom_m=bottom, **rows)
+
+
+def _box(
+    room: Room,
+    look: Look,
+    evidence: FusedEvidence,
+    room_to_grid: np.ndarray,
+    rng: np.random.Generator,
+) -> tuple[np.ndarray, tuple[int, int, int]]:
+    """Return the lowest cell and the shape of a sample's box."""
+    voxel_m = evidence.voxel_m
+    seen_low = np.round(evidence.origin_m / voxel_m).astype(np.int64)
+    seen_high = seen_low + evidence.log_odds.shape
+    if look.kind == "single":
+        shape = np.array(FRAME_CELLS)
+        low = (seen_low + seen_high - shape) // 2 + rng.integers(-4, 5, 3)
+        if not look.in_room_axes:
+            camera = apply(room_to_grid, look.poses[0, :3, 3]) / voxel_m
+            low[:2] = np.floor(camera[:2]) - [30, 2] + rng.integers(-3, 4, 2)
+        low[2] = rng.integers(-3, 0)
+        return low, FRAME_CELLS
+    corners = np.array(list(np.ndindex(2, 2, 2))) * room.labels.shape * room.voxel_m
+    walls = apply(room_to_grid, corners + room.origin_m) / voxel_m
+    low = np.minimum(seen_low, np.floor(walls.min(axis=0)).astype(np.int64))
+    high = np.maximum(seen_high, np.ceil(walls.max(axis=0)).astype(np.int64))
+    # Of a house, the part around what was seen.
+    shape = np.minimum(high - low, MOST_CELLS)
+    middle = (seen_low + seen_high) // 2
+    low = np.clip(middle - shape // 2, low, high - shape)
+    low[2] = max(low[2], -4)
+    return low, tuple(int(side) for side in shape)  # type: ignore[return-value]
+
+
+def seen_rooms(
+    room: Room, room_to_grid: np.ndarray, low: np.ndarray, voxel_m: float, log_odds: np.ndarray
+) -> np.ndarray:
+    """Return the cells of the rooms that were looked into, their shells with them, bool [X, Y, Z].
+
+    A room counts where a twentieth of its cells was seen free.
+    """
+    shape = log_odds.shape
+    middles = (np.moveaxis(np.indices(shape[:2]), 0, -1) + low[:2] + 0.5) * voxel_m
+    flat = np.concatenate([middles, np.zeros((*shape[:2], 1))], axis=-1).reshape(-1, 3)
+    inverse = np.linalg.inv(room_to_grid)
+    plan = apply(inverse, flat)[:, :2]
+    heights = (np.arange(shape[2]) + low[2] + 0.5) * voxel_m
+    result = np.zeros(shape, bool)
+    around = ndimage.generate_binary_structure(2, 2)
+    for layout in room.layouts:
+        inside = _in_polygon(plan, layout.floor_polygon_m).reshape(shape[:2])
+        bottom, top = layout.floor_z_m, layout.floor_z_m + layout.wall_height_m
+        free = (log_odds[inside] < 0).mean() if inside.any() else 0
+        if free < 0.05 and len(room.layouts) > 1:
+            continue
+        inside = ndimage.binary_dilation(inside, around, iterations=SHELL_CELLS)
+        edge = SHELL_CELLS * voxel_m
+        within = (heights > bottom - edge) & (heights < top + edge)
+        result |= inside[..., None] & within
+    return result
+
+
+def _in_polygon(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Return which points [N, 2] lie in a polygon [K, 2]: a ray to the right crosses it oddly."""
+    inside = np.zeros(len(points), bool)
+    x, y = points.T
+    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if ay == by:
+            continue
+        between = (ay > y) != (by > y)
+        inside ^= between & (x < (bx - ax) * (y - ay) / (by - ay) + ax)
+    return inside
+
+
+def write_samples(path: Path, samples: list[Sample]) -> None:
+    """Write the samples of one seed to one file."""
+    arrays: dict[str, np.ndarray] = {"count": np.array(len(samples))}
+    for n, sample in enumerate(samples):
+        for name in FIELDS:
+            value = getattr(sample.sight, name)
+            if value is not None:
+                arrays[f"{name}_{n}"] = value
+        arrays[f"truth_{n}"] = sample.truth
+        arrays[f"facts_{n}"] = np.array(
+            [sample.sight.voxel_m, sample.sight.bottom_m or 0.0, sample.hinted, sample.false_share]
+        )
+        arrays[f"kind_{n}"] = np.array(sample.kind)
+    write_npz(path, arrays)
+
+
+def read_samples(path: Path) -> list[Sample]:
+    """Read what ``write_samples`` wrote.
+
+    Raises:
+        InputError: the file is missing. DamagedFileError: it is damaged.
+    """
+    arrays = read_npz(path, array_names(path))
+    try:
+        return _samples_of(arrays)
+    except (KeyError, ValueError) as error:
+        raise DamagedFileError(path, f"holds no samples ({error})") from error
+
+
+def _samples_of(arrays: dict[str, np.ndarray]) -> list[Sample]:
+    samples = []
+    for n in range(int(arrays["count"])):
+        voxel_m, bottom_m, hinted, false = arrays[f"facts_{n}"].tolist()
+        sight = Sight(
+            voxel_m=voxel_m,
+            bottom_m=bottom_m,
+            **{name: arrays.get(f"{name}_{n}") for name in FIELDS},  # type: ignore[arg-type]
+        )
+        kind = str(arrays[f"kind_{n}"])
+        samples.append(Sample(sight, arrays[f"truth_{n}"], kind, bool(hinted), false))
+    return samples

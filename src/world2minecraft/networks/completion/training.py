@@ -1,0 +1,130 @@
+"""Training of the completion network, step by step, so that a broken run goes on where it ended.
+
+The rate is constant and falls to nothing over the last part, so that a run may be made longer from
+any state before its fall. What is kept is the running mean of the weights.
+"""
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+import torch
+from safetensors.torch import load_file, save_file
+
+from world2minecraft.core.files import write_text
+from world2minecraft.networks.completion.augment import CROP
+from world2minecraft.networks.completion.losses import completion_loss
+from world2minecraft.networks.completion.network import CompletionNet, CompletionSize
+from world2minecraft.networks.completion.sample_pool import LOOK_AGAIN, SamplePool
+from world2minecraft.networks.validation import autocast_of
+
+Report = Callable[[int, dict[str, float], CompletionNet], None]
+
+
+@dataclass(frozen=True)
+class CompletionRun:
+    """What decides a run, beside its samples."""
+
+    steps: int = 4000
+    batch: int = 4
+    rate: float = 3e-3
+    fall: float = 0.35  # The part of the steps over which the rate falls.
+    warm_steps: int = 50
+    decay: float = 0.02  # Of the weights.
+    mean_of: float = 0.99  # Of the running mean; a state counts for some 100 steps.
+    seed: int = 0
+    crop: tuple[int, int, int] = CROP
+    size: CompletionSize = field(default_factory=CompletionSize)
+
+
+class Trainer:
+    """A run in progress. One object follows one run."""
+
+    def __init__(self, run: CompletionRun, pool: SamplePool):
+        self.run, self.pool = run, pool
+        torch.manual_seed(run.seed)
+        self.network = CompletionNet(run.size)
+        self.network.to(memory_format=torch.channels_last_3d)  # type: ignore[call-overload]
+        self.mean = CompletionNet(run.size)
+        self.mean.load_state_dict(self.network.state_dict())
+        self.optimiser = torch.optim.AdamW(
+            self.network.parameters(), lr=run.rate, weight_decay=run.decay
+        )
+        self.step = 0
+
+    def train(self, until: int, report: Report | None = None, every: int = 50) -> None:
+        """Train up to a step; ``report`` is told of losses every so many steps."""
+        sums: dict[str, float] = {}
+        while self.step < min(until, self.run.steps):
+            if self.step and self.step % LOOK_AGAIN == 0:
+                self.pool.refresh()
+            for name, value in self._one().items():
+                sums[name] = sums.get(name, 0.0) + value / every
+            self.step += 1
+            if report and self.step % every == 0:
+                report(self.step, sums, self.mean)
+                sums = {}
+
+    def _one(self) -> dict[str, float]:
+        for group in self.optimiser.param_groups:
+            group["lr"] = self.rate_at(self.step)
+        rng = np.random.default_rng([self.run.seed, self.step])
+        torch.manual_seed(int(rng.integers(1 << 62)))  # Of the cells that the loss asks for.
+        cells, truth, surface = self.pool.batch(rng, self.run.batch, self.run.crop)
+        self.network.train()
+        with autocast_of("auto", cells.device):
+            logits = self.network(cells)
+        losses = completion_loss(logits, truth, surface)
+        self.optimiser.zero_grad(set_to_none=True)
+        torch.stack(list(losses.values())).sum().backward()
+        torch.nn.utils.clip_grad_norm_(self.network.parameters(), 5.0)
+        self.optimiser.step()
+        self._follow()
+        return {name: float(value.detach()) for name, value in losses.items()}
+
+    def rate_at(self, step: int) -> float:
+        """Return the learning rate of a step."""
+        run = self.run
+        left = (run.steps - step) / max(run.fall * run.steps, 1)
+        return run.rate * min((step + 1) / run.warm_steps, 1.0, max(left, 0.01))
+
+    @torch.no_grad()
+    def _follow(self) -> None:
+        """Draw the running mean towards the weights; fast at first, when all is new."""
+        keep = min(self.run.mean_of, (self.step + 1) / (self.step + 10))
+        new = self.network.state_dict()
+        for name, value in self.mean.state_dict().items():
+            if value.dtype.is_floating_point:
+                value.lerp_(new[name], 1 - keep)
+            else:
+                value.copy_(new[name])
+
+    def save(self, folder: Path) -> None:
+        """Write the weights as safetensors and the optimiser's state beside them."""
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, network in (("network", self.network), ("mean", self.mean)):
+            state = {key: value.contiguous() for key, value in network.state_dict().items()}
+            save_file(state, str(folder / f"{name}.tmp"))
+            (folder / f"{name}.tmp").replace(folder / f"{name}.safetensors")
+        state, names = {}, dict(self.network.named_parameters())
+        for name, parameter in names.items():
+            for key, value in self.optimiser.state.get(parameter, {}).items():
+                state[f"{name}/{key}"] = torch.as_tensor(value).contiguous()
+        save_file(state, str(folder / "optimiser.tmp"))
+        (folder / "optimiser.tmp").replace(folder / "optimiser.safetensors")
+        write_text(folder / "step.txt", f"{self.step}\n")
+        write_text(folder / "run.txt", f"{asdict(self.run)}\n")
+
+    def resume(self, folder: Path) -> bool:
+        """Go on from what ``save`` wrote; False where there is nothing."""
+        if not (folder / "step.txt").is_file():
+            return False
+        self.network.load_state_dict(load_file(str(folder / "network.safetensors")))
+        self.mean.load_state_dict(load_file(str(folder / "mean.safetensors")))
+        held = load_file(str(folder / "optimiser.safetensors"))
+        for name, parameter in self.network.named_parameters():
+            keys = [key for key in held if key.rpartition("/")[0] == name]
+            self.optimiser.state[parameter] = {key.rpartition("/")[2]: held[key] for key in keys}
+        self.step = int((folder / "step.txt").read_text())
+        return True

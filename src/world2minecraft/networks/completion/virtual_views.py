@@ -1,0 +1,119 @@
+"""Virtual scans for learning: which views are taken, and what our own fusion makes of them.
+
+A *walk* is a share of a person's tour, a *few* is two to six pictures, a *single* is one, as a data
+set of depth frames has it. Walks and fews lie in the room's own axes, as after alignment; most
+singles in those of their camera, as the grids of NYUv2 do.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from world2minecraft.core.coordinates import rotation_about_z
+from world2minecraft.core.types import Camera, FusedEvidence, View
+from world2minecraft.networks.completion.sensor_noise import ScanNoise, lost_pixels, wrong_labels
+from world2minecraft.procgen.rooms.room import Room
+from world2minecraft.procgen.sensors.depth_camera import jittered_pose, scale_factor, sense_depth
+from world2minecraft.procgen.sensors.photo import PhotoScene, take_photo
+from world2minecraft.procgen.sensors.shots import LUMINANCE
+from world2minecraft.reconstruction.fusion import EvidenceMap, FuseParameters
+from world2minecraft.reconstruction.occupancy.depth import DepthPredictor
+
+LookKind = Literal["walk", "few", "single"]
+FOCAL_SHARE = 0.8107  # NYU's: 518.86 px at 640.
+WALK_WIDE_PX, FEW_WIDE_PX = 160, 320
+TOUR_VIEWS = 40
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """One scan of a room: its views, and the frame in which they are fused."""
+
+    kind: LookKind
+    poses: np.ndarray  # float64 [F, 4, 4], camera_to_room
+    room_to_grid: np.ndarray  # float64 [4, 4], the frame of the fused cells
+    in_room_axes: bool
+
+
+def draw_look(kind: LookKind, tour: np.ndarray, rng: np.random.Generator) -> Look:
+    """Draw a look from the poses of a tour, float64 [F, 4, 4]."""
+    if kind == "walk":
+        poses = tour[: int(rng.integers(8, len(tour) + 1))]
+    elif kind == "few":
+        first = int(rng.integers(len(tour) - 6))
+        poses = tour[first : first + int(rng.integers(2, 7))]
+    else:
+        poses = tour[int(rng.integers(len(tour)))][None]
+    by_camera = kind == "single" and rng.random() < 0.65
+    return Look(kind, poses, _frame(poses[0], by_camera, rng), not by_camera)
+
+
+def _frame(pose: np.ndarray, by_camera: bool, rng: np.random.Generator) -> np.ndarray:
+    """Return room_to_grid: turned so that the camera looks along +y, or in the room's axes.
+
+    Cells begin at the floor and a corner, as after alignment, or anywhere.
+    """
+    yaw_deg = 0.0
+    if by_camera:
+        ahead = pose[:3, 2]
+        yaw_deg = 90 - float(np.degrees(np.arctan2(ahead[1], ahead[0])))
+    frame = np.eye(4)
+    frame[:3, :3] = rotation_about_z(yaw_deg)[:3, :3]
+    if by_camera:
+        frame[:3, 3] = -frame[:3, :3] @ pose[:3, 3]
+        frame[2, 3] = 0
+    free = by_camera or rng.random() < 0.5
+    frame[:2, 3] += rng.uniform(-0.04, 0.04, 2) if free else rng.standard_normal(2) * 0.008
+    frame[2, 3] += rng.uniform(-0.04, 0.04) if rng.random() < 0.4 else rng.standard_normal() * 0.008
+    return frame
+
+
+def scan_look(
+    room: Room, scene: PhotoScene, look: Look, noise: ScanNoise, rng: np.random.Generator
+) -> FusedEvidence:
+    """Return what our fusion makes of a look.
+
+    Raises:
+        CaptureError: no view gave any evidence.
+    """
+    wide = WALK_WIDE_PX if look.kind == "walk" else FEW_WIDE_PX
+    focal = FOCAL_SHARE * wide
+    camera = Camera(wide, wide * 3 // 4, focal, focal, wide / 2, wide * 3 / 8)
+    parameters = FuseParameters()
+    evidence, lifting = EvidenceMap(look.room_to_grid, parameters), DepthPredictor()
+    for pose in look.poses:
+        evidence.add(lifting.lift(_view(room, scene, camera, pose, noise, rng, look.kind)))
+    return evidence.fused()
+
+
+def _view(
+    room: Room,
+    scene: PhotoScene,
+    camera: Camera,
+    pose: np.ndarray,
+    noise: ScanNoise,
+    rng: np.random.Generator,
+    kind: LookKind,
+) -> View:
+    """Return one view as its sensor hands it over, in the frame of the room."""
+    photo = take_photo(scene, camera, pose)
+    luminance = photo.colour.astype(np.float32) @ LUMINANCE
+    depth_m = sense_depth(noise.sensor, photo.depth_m, photo.cosine, luminance, camera.fx_px, rng)
+    labels = room.labels.reshape(-1)[np.maximum(photo.voxel_index, 0)]
+    depth_m[lost_pixels(noise, labels, depth_m, rng)] = 0
+    depth_m *= np.float32(scale_factor(noise.frame_scale, rng) * noise.scan_scale)
+    said = None
+    if noise.label_error is not None:
+        said = wrong_labels(labels, noise.label_error, rng)
+    # A single look has no tracker: where it stands is part of the scan's misfit.
+    stated = pose if kind == "single" else jittered_pose(noise.sensor, pose, rng)
+    return View(
+        name=kind,
+        camera_to_scan=stated,
+        colour=photo.colour,
+        colour_camera=camera,
+        depth_m=depth_m,
+        depth_camera=camera,
+        labels=said,
+    )

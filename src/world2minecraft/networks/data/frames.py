@@ -1,0 +1,200 @@
+"""A sample as a network sees it: a picture of one size, and labels in cells of one size.
+
+The picture's middle is cropped to the wanted shape and resampled, and the intrinsics follow: a
+point's pixel moves as the picture does. Labels of finer cells are made coarser by SSCNet's rule,
+which made the published 8 cm of 2 cm. A coarse cell is seen where any of its cells is; it is free
+where it is empty, not seen, and a ray went through any.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from PIL import Image
+
+from world2minecraft.core.coordinates import invert_rigid
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.types import Camera
+from world2minecraft.evaluation.metrics.protocols import KnownCells
+from world2minecraft.minecraftocc.formats.boxes import cells_in_image
+from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.values import OccSample
+from world2minecraft.networks.config import Grid
+
+SAME_SURFACE = 0.05  # Of the depth: neighbours farther apart are of two surfaces.
+
+
+@dataclass(frozen=True)
+class FrameRule:
+    """What all frames of a run share."""
+
+    grid: Grid
+    width_px: int
+    height_px: int
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One frame; grids are [X, Y, Z] of the rule, pixels [H, W]."""
+
+    key: str
+    scene_id: str
+    image: np.ndarray  # uint8 [H, W, 3]
+    depth_m: np.ndarray  # float32 [H, W], 0 where there is none
+    intrinsics: np.ndarray  # float32 [3, 3], pixel centres at +0.5
+    camera_to_grid: np.ndarray  # float32 [4, 4], metres from the corner of cell (0, 0, 0)
+    grid_to_room: np.ndarray  # float64 [4, 4], the same corner in the room
+    labels: np.ndarray  # uint8, 0 to 11 or 255
+    in_frustum: np.ndarray  # bool, the centre falls into the picture
+    seen: np.ndarray  # bool, some pixel sees the cell first
+    free: np.ndarray  # bool, empty, and a ray went through it
+    has_depth: bool  # Whether seen and free are known.
+
+    @property
+    def known(self) -> KnownCells:
+        """What protocols score against."""
+        masks = (self.seen, self.free) if self.has_depth else (None, None)
+        return KnownCells(self.labels, self.in_frustum, *masks)
+
+
+def frame_of(sample: OccSample, rule: FrameRule) -> Frame:
+    """Return the frame of a sample.
+
+    Raises:
+        InputError: it has no picture, its lens distorts, or its cells do not make the grid's.
+    """
+    if sample.colour is None:
+        raise InputError(sample.key, "has no picture, which networks look at; build with pictures")
+    if any(sample.camera.distortion):
+        raise InputError(sample.key, "its lens distorts; undistort the pictures first")
+    crop = _Crop(sample.camera, rule)
+    known = known_cells(sample, rule.grid)
+    grid_to_room = sample.occ.region.region_to_room
+    camera_to_grid = invert_rigid(grid_to_room) @ sample.camera_to_room
+    nothing = np.zeros(known.labels.shape, bool)
+    inside, seen, free = (
+        nothing if mask is None else mask for mask in (known.in_frustum, known.seen, known.free)
+    )
+    if crop.cuts:
+        inside, _, _ = cells_in_image(
+            rule.grid.shape, rule.grid.voxel_m, invert_rigid(camera_to_grid), crop.camera
+        )
+        seen, free = seen & inside, free & inside
+    return Frame(
+        key=sample.key,
+        scene_id=sample.scene_id,
+        image=crop.colour(sample.colour),
+        depth_m=crop.depth(sample.depth_m),
+        intrinsics=crop.camera.matrix.astype(np.float32),
+        camera_to_grid=camera_to_grid.astype(np.float32),
+        grid_to_room=grid_to_room,
+        labels=known.labels,
+        in_frustum=inside,
+        seen=seen,
+        free=free,
+        has_depth=known.seen is not None,
+    )
+
+
+def known_cells(sample: OccSample, grid: Grid) -> KnownCells:
+    """Return the truth of a sample in the cells of a grid, pictures or not.
+
+    Raises:
+        InputError: its cells do not make the grid's.
+    """
+    factor, occ = _factor(sample, grid), sample.occ
+    if factor == 1:
+        labels, inside = occ.labels, occ.in_frustum
+    else:
+        labels = downsampled(occ.labels, factor)
+        grid_to_camera = invert_rigid(sample.camera_to_room) @ occ.region.region_to_room
+        inside = cells_in_image(grid.shape, grid.voxel_m, grid_to_camera, sample.camera)[0]
+    seen, free = (_any_of(mask, factor) for mask in (occ.visible, occ.free))
+    if not (seen.any() or free.any()):
+        return KnownCells(labels, inside)
+    return KnownCells(labels, inside, seen, free & (labels == 0) & ~seen)
+
+
+def _factor(sample: OccSample, grid: Grid) -> int:
+    """Return how many of the region's cells make one of the grid's, along a side."""
+    region, (shape, voxel_m) = sample.occ.region, grid
+    factor = max(round(voxel_m / region.voxel_m), 1)
+    fits = abs(factor * region.voxel_m - voxel_m) < 1e-6
+    if not fits or tuple(side * factor for side in shape) != region.shape:
+        have, want = ("x".join(str(side) for side in of) for of in (region.shape, shape))
+        raise InputError(
+            sample.key,
+            f"its region is {have} cells of {region.voxel_m:g} m, of which no {want} of "
+            f"{voxel_m:g} m are made; build the data set with --voxel 0.08, or choose another grid",
+        )
+    return factor
+
+
+def _any_of(mask: np.ndarray, factor: int) -> np.ndarray:
+    if factor == 1:
+        return mask
+    blocks = [part for side in mask.shape for part in (side // factor, factor)]
+    return np.asarray(mask.reshape(blocks).any(axis=(1, 3, 5)))
+
+
+class _Crop:
+    """The middle of a picture, as large as the wanted shape allows, at the wanted size."""
+
+    def __init__(self, camera: Camera, rule: FrameRule):
+        scale = max(rule.width_px / camera.width_px, rule.height_px / camera.height_px)
+        self.width, self.height = rule.width_px / scale, rule.height_px / scale
+        self.left = (camera.width_px - self.width) / 2
+        self.top = (camera.height_px - self.height) / 2
+        self.cuts = max(self.left, self.top) > 0.5
+        self.camera = Camera(
+            rule.width_px,
+            rule.height_px,
+            camera.fx_px * scale,
+            camera.fy_px * scale,
+            (camera.cx_px - self.left) * scale,
+            (camera.cy_px - self.top) * scale,
+        )
+
+    def colour(self, pixels: np.ndarray) -> np.ndarray:
+        """Return uint8 [H, W, 3]: each pixel a mean of those that it covers."""
+        size = (self.camera.width_px, self.camera.height_px)
+        box = (self.left, self.top, self.left + self.width, self.top + self.height)
+        image = Image.fromarray(pixels).resize(size, Image.Resampling.BILINEAR, box=box)
+        return np.asarray(image)
+
+    def depth(self, depth_m: np.ndarray | None) -> np.ndarray:
+        """Return float32 [H, W]: read between pixels of one surface, of the nearest at its edge."""
+        rows, columns = self.camera.height_px, self.camera.width_px
+        if depth_m is None:
+            return np.zeros((rows, columns), np.float32)
+        down = self.top + (np.arange(rows) + 0.5) * self.height / rows - 0.5
+        across = self.left + (np.arange(columns) + 0.5) * self.width / columns - 0.5
+        return _depth_between(depth_m, down, across)
+
+
+def _depth_between(depth_m: np.ndarray, down: np.ndarray, across: np.ndarray) -> np.ndarray:
+    """Read depth at places given in pixels from the first pixel's centre, [rows] and [columns].
+
+    The nearest pixel alone would be half a pixel aside, always to the same side, where a picture
+    is made half as large: on a wall seen aslant that is a cell.
+    """
+    first, high, low_share = [], [], []
+    for places, side in ((down, depth_m.shape[0]), (across, depth_m.shape[1])):
+        low = np.clip(np.floor(places).astype(int), 0, side - 1)
+        first.append(low)
+        high.append(np.clip(low + 1, 0, side - 1))
+        low_share.append(1 - np.clip(places - low, 0, 1))
+    shares = np.ix_(*low_share)
+    corners = [
+        (depth_m[np.ix_(rows, columns)], weight)
+        for rows, down_share in ((first[0], shares[0]), (high[0], 1 - shares[0]))
+        for columns, weight in (
+            (first[1], down_share * shares[1]),
+            (high[1], down_share * (1 - shares[1])),
+        )
+    ]
+    values = np.stack([value for value, _ in corners])
+    weights = np.stack([np.broadcast_to(weight, values.shape[1:]) for _, weight in corners])
+    nearest = np.take_along_axis(values, weights.argmax(axis=0)[None], axis=0)[0]
+    least = values.min(axis=0)
+    one_surface = (least > 0) & (values.max(axis=0) <= least * (1 + SAME_SURFACE))
+    return np.where(one_surface, (values * weights).sum(axis=0), nearest).astype(np.float32)

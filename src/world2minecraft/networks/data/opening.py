@@ -1,0 +1,101 @@
+"""All data of a run: what it trains on, validates on and is scored on.
+
+The first set is the target: its held-out frames choose the best weights and give the score. The
+others only train.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.minecraftocc.importers import open_occupancy
+from world2minecraft.minecraftocc.importers.source import ImportedSet
+from world2minecraft.networks.config import RunConfig
+from world2minecraft.networks.data.batches import TrainingPart
+from world2minecraft.networks.data.cache import Frames, StreamedFrames, cached_frames
+from world2minecraft.networks.data.class_weights import class_counts
+from world2minecraft.networks.data.frames import FrameRule
+from world2minecraft.networks.data.splits import Split, counted, evenly, split_rows
+
+COUNTED_FRAMES = 1000  # Of each set, for the classes' frequencies; spread evenly.
+
+
+@dataclass(frozen=True)
+class CachePlace:
+    """Where decoded frames are kept; nowhere where they are not to be."""
+
+    keep: bool = True
+    root: Path | None = None  # The user's cache folder where None.
+
+    @classmethod
+    def named(cls, text: str) -> "CachePlace":
+        """Return what ``--cache`` says: a folder, ``off``, or nothing for the usual place."""
+        return cls(False) if text == "off" else cls(True, Path(text) if text else None)
+
+
+@dataclass(frozen=True, eq=False)
+class RunData:
+    """The sets of a run."""
+
+    parts: tuple[TrainingPart, ...]
+    weights: tuple[float, ...]
+    target: Frames
+    split: Split  # Of the target.
+    counts: np.ndarray  # int64 [12], training cells of each class, sets by their weights
+    described: tuple[str, ...]
+
+
+def rule_of(config: RunConfig) -> FrameRule:
+    """Return how the frames of a run are made."""
+    return FrameRule(config.cells, *config.image)
+
+
+def open_run_data(
+    config: RunConfig, cache: CachePlace | None = None, progress: Progress = silent
+) -> RunData:
+    """Open the sets of a run and split them.
+
+    Raises:
+        InputError: a set is none, or its frames do not make the run's grid. UsageError: it cannot
+        be split as the run says.
+    """
+    rule, place = rule_of(config), cache or CachePlace()
+    parts, splits, told = [], [], []
+    total = np.zeros(12)
+    for source in config.data:
+        found = open_occupancy(source.path)
+        frames = open_frames(found, rule, place, progress)
+        held_out = config.val_share if not parts else 0.0
+        split = _split(found, frames, held_out, is_target=not parts)
+        splits.append(split)
+        parts.append(TrainingPart(frames, split.train))
+        counts = class_counts(frames.labels(evenly(split.train, COUNTED_FRAMES)))
+        total += counts * (source.weight / max(counts.sum(), 1))
+        told.append(f"{source.path}: {found.format}, {counted(split._asdict())}")
+    return RunData(
+        parts=tuple(parts),
+        weights=tuple(source.weight for source in config.data),
+        target=parts[0].frames,
+        split=splits[0],
+        counts=np.round(total * 1e9).astype(np.int64),
+        described=tuple(told),
+    )
+
+
+def open_frames(
+    found: ImportedSet, rule: FrameRule, place: CachePlace, progress: Progress = silent
+) -> Frames:
+    """Return the frames of a set, from the cache where one is kept."""
+    if not place.keep:
+        return StreamedFrames(found, rule)
+    return cached_frames(found, rule, place.root, progress)
+
+
+def _split(found: ImportedSet, frames: Frames, val_share: float, *, is_target: bool) -> Split:
+    splits = [found.splits[key] for key in frames.keys]
+    if is_target:
+        return split_rows(frames.scenes, splits, val_share, str(found.path))
+    rows = [row for row, split in enumerate(splits) if split != "test"]
+    return Split(rows, [], []) if rows else split_rows(frames.scenes, splits, 0, str(found.path))

@@ -1,0 +1,189 @@
+"""A trained network leaves PyTorch as one ONNX file of the contract in docs/networks-onnx.md.
+
+It is written only where it says what the network says: both are asked about the same picture, and
+no logit may differ by more than ``MOST_DIFFERENCE``. Weights may then be stored small, as
+``weight_storage`` does it; by how much that moves the logits is measured, not bounded: whether it
+may, a score must say.
+"""
+
+import importlib.util
+import io
+import warnings
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import onnxruntime
+import torch
+from torch import Tensor, nn
+
+from world2minecraft.core.errors import MissingExtraError, OutputError
+from world2minecraft.core.files import write_bytes
+from world2minecraft.networks.batch import OccInput
+from world2minecraft.reconstruction.occupancy.onnx_network import OUTPUT, NetworkFacts
+
+OPSET = 17
+MOST_DIFFERENCE = 1e-3
+TURN_DEG = 10.0  # How far the camera of the question looks down.
+
+
+class Exported(NamedTuple):
+    """What a written file came to, asked about one picture."""
+
+    difference: float  # the most that a logit differs from the network's, weights whole
+    moved: float  # the most that storing the weights small moves a logit by
+    moved_mean: float  # and on the mean, beside ``spread``, the standard deviation of all logits
+    spread: float
+    renamed: float  # share of the cells that take another class by it
+    size: int  # bytes of the file
+
+
+def export_network(
+    network: nn.Module,
+    path: str | Path,
+    facts: NetworkFacts,
+    *,
+    weights: str = "float",
+    seed: int = 0,
+) -> Exported:
+    """Write a network as ONNX, and return how much the file's answers differ.
+
+    Args:
+        network: maps ``OccInput`` to ``OccOutput``. It is asked in evaluation, and left as it was.
+        path: the file.
+        facts: what the file states: its grid, its picture's size, whether it wants depth.
+        weights: float, half or int8: how they are stored (``weight_storage.KINDS``).
+        seed: of the picture that both are asked about.
+
+    Raises:
+        OutputError: the file would say something else, or cannot be written.
+        UnknownNameError: weights are not stored so.
+        MissingExtraError: onnx is not installed.
+    """
+    _check_onnx()
+    from world2minecraft.networks.weight_storage import with_stored_weights  # noqa: PLC0415
+
+    example = _question(facts, np.random.default_rng(seed))
+    trained = network.training
+    network.eval()
+    try:
+        with torch.no_grad():
+            said = network(example).logits.float().cpu().numpy()
+            model = _traced(network, example, facts)
+    finally:
+        network.train(trained)
+    whole = _asked(model.SerializeToString(), example)
+    difference = float(np.abs(whole - said).max())
+    if not difference <= MOST_DIFFERENCE:  # Holds for what is no number too.
+        raise OutputError(
+            path,
+            f"the ONNX file's logits would differ by {difference:.3g} from the network's, and "
+            f"{MOST_DIFFERENCE:g} is the most; no file is written",
+        )
+    data = with_stored_weights(model, weights).SerializeToString()
+    stored = whole if weights == "float" else _asked(data, example)
+    if not np.isfinite(stored).all():
+        raise OutputError(path, f"weights stored as {weights} would give what is no number")
+    write_bytes(Path(path), data)
+    return Exported(difference, *_moves(whole, stored), len(data))
+
+
+def _moves(whole: np.ndarray, stored: np.ndarray) -> tuple[float, float, float, float]:
+    moved = np.abs(stored - whole)
+    renamed = stored.argmax(axis=1) != whole.argmax(axis=1)
+    return float(moved.max()), float(moved.mean()), float(whole.std()), float(renamed.mean())
+
+
+class _Named(nn.Module):
+    """The network with the inputs and the output of the contract."""
+
+    def __init__(self, network: nn.Module, facts: NetworkFacts):
+        super().__init__()
+        self.network, self.facts = network, facts
+
+    def forward(
+        self,
+        image: Tensor,
+        intrinsics: Tensor,
+        camera_to_grid: Tensor,
+        depth_m: Tensor | None = None,
+    ) -> Tensor:
+        """Return logits [1, 12, X, Y, Z]."""
+        facts = self.facts
+        inputs = OccInput(
+            image, intrinsics, camera_to_grid, facts.grid_shape, facts.voxel_m, depth_m
+        )
+        return self.network(inputs).logits.float()
+
+
+def _check_onnx() -> None:
+    if importlib.util.find_spec("onnx") is None:
+        raise MissingExtraError("writing ONNX files", "train")
+
+
+def _traced(network: nn.Module, example: OccInput, facts: NetworkFacts) -> Any:
+    """Return the network as an ``onnx.ModelProto``."""
+    import onnx  # noqa: PLC0415
+
+    given = _by_name(example)
+    written: Any = io.BytesIO()  # It takes a stream, and says that it does not.
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # Of sides that become constants, as they are meant to.
+        torch.onnx.export(
+            _Named(network, facts),
+            tuple(given.values()),
+            written,
+            input_names=list(given),
+            output_names=[OUTPUT],
+            opset_version=OPSET,
+            dynamo=False,
+        )
+    model = onnx.load_from_string(written.getvalue())
+    onnx.helper.set_model_props(model, facts.metadata())
+    return model
+
+
+def _asked(data: bytes, example: OccInput) -> np.ndarray:
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    session: Any = onnxruntime.InferenceSession(data, options, providers=["CPUExecutionProvider"])
+    wanted = {entry.name for entry in session.get_inputs()}
+    given = {name: one.cpu().numpy() for name, one in _by_name(example).items() if name in wanted}
+    return np.asarray(session.run([OUTPUT], given)[0])
+
+
+def _by_name(example: OccInput) -> dict[str, Tensor]:
+    given = {
+        "image": example.image,
+        "intrinsics": example.intrinsics,
+        "camera_to_grid": example.camera_to_grid,
+    }
+    return given if example.depth_m is None else {**given, "depth_m": example.depth_m}
+
+
+def _question(facts: NetworkFacts, rng: np.random.Generator) -> OccInput:
+    """Return a picture of noise by a camera in the middle of the grid's near side."""
+    width, height = facts.image_size_px
+    lens = np.array([[0.81 * width, 0, width / 2], [0, 0.81 * width, height / 2], [0, 0, 1]])
+    sides_m = np.array(facts.grid_shape) * facts.voxel_m
+    down = np.deg2rad(TURN_DEG)
+    pose = np.eye(4)
+    pose[:3, 2] = [0, np.cos(down), -np.sin(down)]
+    pose[:3, 1] = [0, -np.sin(down), -np.cos(down)]
+    pose[:3, 3] = [sides_m[0] / 2, 0, 0.6 * sides_m[2]]
+    depth_m = rng.uniform(0.5, sides_m[1], (1, height, width))
+    depth_m[rng.random(depth_m.shape) < 0.1] = 0
+    image = rng.random((1, 3, height, width))
+    return OccInput(
+        _single(image),
+        _single(lens[None]),
+        _single(pose[None]),
+        facts.grid_shape,
+        facts.voxel_m,
+        _single(depth_m) if facts.wants_depth else None,
+    )
+
+
+def _single(values: np.ndarray) -> Tensor:
+    return torch.from_numpy(values).float()

@@ -1,0 +1,92 @@
+"""Where cells lie in a picture, and lifting: each cell takes the features of its pixel (FLoSP).
+
+The arithmetic is that of the data set's frustum masks: the centre of a cell is carried into the
+camera, divided by its depth, and lies in the pixel that holds the point. Pixel (i, j) spans
+[i, i + 1) x [j, j + 1). Nothing asks whether something stands between: a feature is laid on all
+cells of its ray, and three dimensions have to tell which of them it belongs to.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from world2minecraft.networks.batch import OccInput
+
+NEAREST_M = 1e-3  # Cells nearer than that, or behind, are in no picture.
+
+
+@dataclass(frozen=True)
+class Sight:
+    """Where the N cells of a grid lie in their pictures, in C order."""
+
+    pixels: Tensor  # float32 [B, N, 2]: u to the right, v down
+    depth_m: Tensor  # float32 [B, N], along the camera's z
+    inside: Tensor  # bool [B, N]: before the camera, and in the picture
+    size_px: tuple[int, int]  # height, width
+
+
+def sight_of(inputs: OccInput) -> Sight:
+    """Return where the centres of all cells lie in the pictures of a batch."""
+    height, width = int(inputs.image.shape[-2]), int(inputs.image.shape[-1])
+    in_camera = cells_in_camera(inputs)
+    depth = in_camera[..., 2]
+    ahead = depth > NEAREST_M
+    across = in_camera[..., :2] / torch.where(ahead, depth, torch.ones_like(depth))[..., None]
+    focal = torch.stack([inputs.intrinsics[:, 0, 0], inputs.intrinsics[:, 1, 1]], dim=-1)
+    pixels = across * focal[:, None] + inputs.intrinsics[:, None, :2, 2]
+    u, v = pixels[..., 0], pixels[..., 1]
+    inside = ahead & (u >= 0) & (u < width) & (v >= 0) & (v < height)
+    return Sight(pixels, depth, inside, (height, width))
+
+
+def cells_in_camera(inputs: OccInput) -> Tensor:
+    """Return the centres of all cells in the camera's axes, float32 [B, N, 3], metres."""
+    centers = cell_centers_m(inputs.grid_shape, inputs.voxel_m, inputs.camera_to_grid)
+    turn, place = inputs.camera_to_grid[:, :3, :3], inputs.camera_to_grid[:, :3, 3]
+    # A turn's inverse is its transpose.
+    return turned(centers[None] - place[:, None], turn.transpose(1, 2))
+
+
+def turned(places: Tensor, turn: Tensor) -> Tensor:
+    """Return places [B, N, 3] turned by [B, 3, 3], whatever precision layers work in.
+
+    Matrix products are rounded to half precision where training is mixed: to some ten pixels.
+    """
+    return (places[:, :, None] * turn[:, None]).sum(dim=-1)
+
+
+def cell_centers_m(shape: tuple[int, int, int], voxel_m: float, like: Tensor) -> Tensor:
+    """Return the centres of a grid's cells from its corner, [N, 3], of the type of ``like``."""
+    sides = [(torch.arange(n, device=like.device, dtype=like.dtype) + 0.5) for n in shape]
+    places = torch.stack(torch.meshgrid(*sides, indexing="ij"), dim=-1)
+    return places.reshape(-1, 3) * voxel_m
+
+
+def lift(features: Mapping[int, Tensor], sight: Sight, shape: tuple[int, int, int]) -> Tensor:
+    """Return the sum over scales of the feature at each cell's pixel, [B, C, X, Y, Z].
+
+    Args:
+        features: of each scale s the map [B, C, ceil(H / s), ceil(W / s)].
+        sight: where the cells lie.
+        shape: of the grid.
+
+    Cells outside of the picture get zeros.
+    """
+    found = None
+    for scale, values in features.items():
+        here = values.flatten(2).gather(2, _places(sight, scale, values))
+        found = here if found is None else found + here
+    if found is None:
+        raise ValueError("lifting needs the features of one scale or more")
+    return (found * sight.inside[:, None]).unflatten(2, shape)
+
+
+def _places(sight: Sight, scale: int, values: Tensor) -> Tensor:
+    """Return the number of each cell's pixel in a map, int64 [B, C, N]."""
+    height, width = int(values.shape[-2]), int(values.shape[-1])
+    pixels = torch.floor(sight.pixels / scale)
+    column = pixels[..., 0].clamp(0, width - 1).long()
+    row = pixels[..., 1].clamp(0, height - 1).long()
+    return (row * width + column)[:, None].expand(-1, values.shape[1], -1)

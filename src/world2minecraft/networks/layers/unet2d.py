@@ -1,0 +1,140 @@
+"""Our own 2D backbone: residual stages down to 1/32 of the picture, and MonoScene's decoder back.
+
+The papers take EfficientNet-B7, trained on ImageNet, whose taps are 32, 48, 80, 224 and 2560
+channels wide. Size ``full`` has taps of the same widths and so the same decoder; the stages between
+them are plain pairs of 3x3 kernels, untrained.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor, nn
+
+from world2minecraft.networks.layers.norms import Norm, conv2d
+
+STRIDES = (2, 4, 8, 16, 32)
+# What ImageNet's pictures have, so that trained backbones fit in: red, green, blue.
+MEAN, SPREAD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
+
+
+@dataclass(frozen=True)
+class PictureWidths:
+    """How wide and deep a backbone is.
+
+    ``taps`` are the channels at 1/2, 1/4, 1/8, 1/16 and 1/32, ``blocks`` the residual blocks that
+    lead to each, ``inner`` the channels of the last stage before it is widened to its tap.
+    """
+
+    taps: tuple[int, int, int, int, int]
+    blocks: tuple[int, int, int, int, int]
+    inner: int
+    decoder: int  # channels of the decoder at 1/32; half as many at each step up
+
+
+class Encoder(nn.Module):
+    """From a picture to features at 1/2, 1/4, 1/8, 1/16 and 1/32."""
+
+    def __init__(self, widths: PictureWidths, norm: Norm):
+        super().__init__()
+        self.taps = widths.taps
+        made = (*widths.taps[:4], widths.inner)
+        given = (3, *made[:4])
+        self.stages = nn.ModuleList(
+            _stage(before, after, count, norm)
+            for before, after, count in zip(given, made, widths.blocks, strict=True)
+        )
+        wider = widths.inner != widths.taps[4]
+        self.widen = conv2d(widths.inner, widths.taps[4], norm, kernel=1) if wider else None
+
+    def forward(self, picture: Tensor) -> list[Tensor]:
+        """Return five maps for a normalised picture [B, 3, H, W]."""
+        found = []
+        for stage in self.stages:
+            picture = stage(picture)
+            found.append(picture)
+        if self.widen is not None:
+            found[-1] = torch.relu(self.widen(found[-1]))
+        return found
+
+
+class Decoder(nn.Module):
+    """From the taps back up, giving maps of one width at the scales that are asked for."""
+
+    def __init__(
+        self, taps: Sequence[int], channels: int, made: int, norm: Norm, scales: Sequence[int]
+    ):
+        super().__init__()
+        self.enter = nn.Conv2d(taps[4], channels, 1)
+        beside = (taps[3], taps[2], taps[1], taps[0], 3)
+        finest = min(scales)
+        self.steps, self.give = nn.ModuleDict(), nn.ModuleDict()
+        for step, tap in enumerate(beside):
+            scale = 16 >> step
+            if scale < finest:
+                break
+            wide, narrow = max(channels >> step, 4), max(channels >> (step + 1), 4)
+            self.steps[str(scale)] = _Up(wide + tap, narrow, norm)
+            if scale in scales:
+                self.give[str(scale)] = nn.Conv2d(narrow, made, 1)
+
+    def forward(self, picture: Tensor, taps: Sequence[Tensor]) -> dict[int, Tensor]:
+        """Return for each scale s a map [B, C, ceil(H / s), ceil(W / s)]."""
+        values, found = self.enter(taps[4]), {}
+        beside = {"16": taps[3], "8": taps[2], "4": taps[1], "2": taps[0], "1": picture}
+        for name, step in self.steps.items():
+            values = step(values, beside[name])
+            if name in self.give:
+                found[int(name)] = self.give[name](values)
+        return dict(sorted(found.items()))
+
+
+class UNet2D(nn.Module):
+    """From a picture of 0 to 1 to maps of one width at several scales."""
+
+    def __init__(self, encoder: nn.Module, decoder: Decoder):
+        super().__init__()
+        self.encoder, self.decoder = encoder, decoder
+
+    def forward(self, picture: Tensor) -> dict[int, Tensor]:
+        """Return for each scale s a map [B, C, ceil(H / s), ceil(W / s)] of [B, 3, H, W]."""
+        picture = normalised(picture)
+        return self.decoder(picture, self.encoder(picture))
+
+
+def normalised(picture: Tensor) -> Tensor:
+    """Return a picture of 0 to 1 with ImageNet's mean and spread taken out."""
+    mean, spread = (torch.tensor(v, device=picture.device)[:, None, None] for v in (MEAN, SPREAD))
+    return ((picture - mean) / spread).to(picture.dtype)
+
+
+class ResidualBlock(nn.Module):
+    """Two kernels of 3x3 and a shortcut."""
+
+    def __init__(self, channels: int, norm: Norm):
+        super().__init__()
+        self.path = nn.Sequential(
+            conv2d(channels, channels, norm), nn.ReLU(), conv2d(channels, channels, norm)
+        )
+
+    def forward(self, values: Tensor) -> Tensor:
+        """Return [B, C, H, W] of the same shape."""
+        return torch.relu(values + self.path(values))
+
+
+class _Up(nn.Module):
+    def __init__(self, given: int, made: int, norm: Norm):
+        super().__init__()
+        self.path = nn.Sequential(
+            conv2d(given, made, norm), nn.LeakyReLU(), conv2d(made, made, norm), nn.LeakyReLU()
+        )
+
+    def forward(self, values: Tensor, beside: Tensor) -> Tensor:
+        sides = [int(side) for side in beside.shape[2:]]
+        values = nn.functional.interpolate(values, sides, mode="bilinear", align_corners=False)
+        return self.path(torch.cat([values, beside], dim=1))
+
+
+def _stage(given: int, made: int, count: int, norm: Norm) -> nn.Sequential:
+    blocks = (ResidualBlock(made, norm) for _ in range(count))
+    return nn.Sequential(conv2d(given, made, norm, stride=2), nn.ReLU(), *blocks)

@@ -1,0 +1,69 @@
+"""ISO (Yu et al., ECCV 2024): MonoScene whose features know how far away they belong.
+
+A depth branch says for each pixel how likely its surface lies in each of 64 bins; where a cell
+takes its pixel's feature, it takes it by the likelihood of its own depth besides (dual projection).
+
+What differs from the paper: the depth that the branch looks at is whatever the input has (of a
+sensor, of stereo, of a network, or none), not that of one frozen ZoeDepth inside the model; the
+branch works on the map at 1/4. All else as in ``monoscene``.
+"""
+
+from dataclasses import dataclass
+
+import torch
+from torch import nn
+
+from world2minecraft.networks.batch import OccInput, OccOutput
+from world2minecraft.networks.layers.backbones import NORMS, make_backbone
+from world2minecraft.networks.layers.depth_bins import DepthBranch, along_rays
+from world2minecraft.networks.layers.projection import lift, sight_of
+from world2minecraft.networks.layers.unet3d import UNet3D
+
+SCALES = (1, 2, 4, 8)
+DEPTH_SCALE = 4
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What a size decides."""
+
+    channels: int  # of a cell at the full grid
+    depth_channels: int
+    bins: int
+    reaches: tuple[int, ...] = (1, 2, 3)  # dilations
+
+
+CHOICES = {
+    "tiny": Choice(16, 12, 32, (2,)),
+    "small": Choice(32, 64, 64),
+    "full": Choice(200, 256, 64),
+}
+
+
+class Iso(nn.Module):
+    """MonoScene with a depth branch that gates what is lifted."""
+
+    def __init__(
+        self,
+        size: str,
+        grid_shape: tuple[int, int, int],
+        voxel_m: float,
+        backbone: str | None = None,
+    ):
+        super().__init__()
+        chosen, norm = CHOICES[size], NORMS[size]
+        self.picture = make_backbone(backbone, size, chosen.channels, SCALES)
+        self.depth = DepthBranch(
+            chosen.channels, chosen.depth_channels, chosen.bins, DEPTH_SCALE, norm
+        )
+        self.cells = UNet3D(chosen.channels, grid_shape, norm, reaches=chosen.reaches)
+
+    def forward(self, inputs: OccInput) -> OccOutput:
+        """Return logits [B, 12, X, Y, Z], those of the relations and those of depth."""
+        features, sight = self.picture(inputs.image), sight_of(inputs)
+        depth_logits = self.depth(features[DEPTH_SCALE], inputs)
+        likely = along_rays(torch.softmax(depth_logits, dim=1)[:, None], sight, DEPTH_SCALE)
+        lifted = lift(features, sight, inputs.grid_shape)
+        gated = lifted * likely.unflatten(2, inputs.grid_shape)
+        logits, relations = self.cells(lifted + gated)
+        return OccOutput(logits, relations=relations, depth_logits=depth_logits)

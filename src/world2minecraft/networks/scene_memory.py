@@ -1,0 +1,137 @@
+"""Whole scenes by a network that remembers: all frames of a scene fused, then scored once.
+
+What is true of a scene is put together from its frames' cells of 8 cm, which share a lattice, and
+made coarser where the network's cells are. The network sees the frames one by one in those cells;
+only what it sums up is read at the end.
+"""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import torch
+from torch import nn
+
+from world2minecraft.core.classes import UNKNOWN
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore
+from world2minecraft.evaluation.metrics.protocols import count_scene
+from world2minecraft.minecraftocc.formats.sscnet import downsampled
+from world2minecraft.minecraftocc.importers.source import ImportedSet
+from world2minecraft.networks.config import GRIDS, RunConfig
+from world2minecraft.networks.data.cache import Frames
+from world2minecraft.networks.data.frames import known_cells
+from world2minecraft.networks.models.embodied import Embodied
+from world2minecraft.networks.models.stream import SceneStream
+from world2minecraft.networks.scene_voting import SceneFrame, assembled, lattice_of
+from world2minecraft.networks.scoring import MEMORY, of_scenes
+
+FINE = GRIDS["0.08"]
+
+
+class TrueScene(NamedTuple):
+    """What is true of a scene, along the room's axes."""
+
+    labels: np.ndarray  # uint8 [X, Y, Z], 0 to 11 or 255
+    seen: np.ndarray  # bool [X, Y, Z], in view of any frame
+    origin_m: np.ndarray  # float64 [3], minimum corner in the room
+
+
+def memory_scores(
+    network: Embodied,
+    found: ImportedSet,
+    frames: Frames,
+    rows: Sequence[int],
+    config: RunConfig,
+    progress: Progress = silent,
+) -> tuple[list[FrameScore], str]:
+    """Return the counts of each scene of some rows, or none and the reason why there are none.
+
+    Args:
+        network: it is left in evaluation.
+        found: the set, for the cells of 8 cm.
+        frames: the same samples as the network sees them.
+        rows: of ``frames``.
+        config: of the network: its cells, and whether it is given depth.
+        progress: told the stage ``scenes``.
+    """
+    by_scene: dict[str, list[int]] = {}
+    for row in rows:
+        by_scene.setdefault(frames.scenes[row], []).append(row)
+    counts = []
+    for done, (scene, held) in enumerate(sorted(by_scene.items()), 1):
+        truth, reason = true_scene(found, [frames.keys[row] for row in held], config)
+        if truth is None:
+            return [], reason
+        said = remembered(network, frames, held, truth, config)
+        counts.append(FrameScore(scene, count_scene(said, truth.labels, [truth.seen])))
+        progress("scenes", done, len(by_scene))
+    return counts, ""
+
+
+def true_scene(
+    found: ImportedSet, keys: Sequence[str], config: RunConfig
+) -> tuple[TrueScene | None, str]:
+    """Return what is true of the scene of some frames, in the cells of a run."""
+    boxes = []
+    for key in keys:
+        sample = found[key]
+        known = known_cells(sample, FINE)
+        boxes.append(
+            SceneFrame.packed(
+                sample.scene_id, known.labels, known, sample.occ.region.region_to_room
+            )
+        )
+    lattice, reason = lattice_of(boxes, FINE.voxel_m)
+    if lattice is None:
+        return None, reason
+    factor = round(config.cells.voxel_m / FINE.voxel_m)
+    labels, seen = assembled(lattice)
+    if factor > 1:
+        spare = [(0, -side % factor) for side in labels.shape]
+        labels = downsampled(np.pad(labels, spare, constant_values=UNKNOWN), factor)
+        blocks = [part for side in labels.shape for part in (side, factor)]
+        seen = np.asarray(np.pad(seen, spare).reshape(blocks).any(axis=(1, 3, 5)))
+    return TrueScene(labels, seen, lattice.origin_m), ""
+
+
+def remembered(
+    network: Embodied, frames: Frames, rows: Sequence[int], truth: TrueScene, config: RunConfig
+) -> np.ndarray:
+    """Return the labels of a scene after the network saw some frames, uint8 [X, Y, Z]."""
+    x, y, z = truth.labels.shape
+    stream = SceneStream(network, (x, y, z), config.cells.shape, config.cells.voxel_m)
+    room_to_scene = np.eye(4)
+    room_to_scene[:3, 3] = -truth.origin_m
+    for row in rows:
+        frame = frames[row]
+        pose = room_to_scene @ frame.grid_to_room @ frame.camera_to_grid
+        image = torch.from_numpy(np.array(frame.image)).permute(2, 0, 1).float() / 255
+        stream.add(
+            image,
+            torch.from_numpy(frame.intrinsics),
+            torch.from_numpy(pose),
+            torch.from_numpy(frame.depth_m) if config.depth == "given" else None,
+        )
+    return stream.logits().argmax(dim=0).to(torch.uint8).cpu().numpy()
+
+
+def add_memory_scores(
+    scores: dict[str, Any],
+    network: nn.Module,
+    found: ImportedSet,
+    frames: Frames,
+    rows: Sequence[int],
+    config: RunConfig,
+    *,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> None:
+    """Add ``embodied memory`` to scores, where the network is one that fuses frames by itself."""
+    if not isinstance(network, Embodied):
+        return
+    counts, reason = memory_scores(network, found, frames, rows, config, progress)
+    if reason:
+        scores["left_out"][MEMORY] = reason
+    else:
+        scores["protocols"][MEMORY] = of_scenes(counts, "; the network fuses them", seed)

@@ -1,0 +1,210 @@
+"""Scores of a network, of an ONNX file or of saved predictions, by any of the protocols.
+
+In: what is said of frames and what is true of them. Out: ``Scores``, a dictionary for JSON. What a
+set cannot answer, as ``ssc`` without depth, is left out and told.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.evaluation.metrics.confidence_intervals import FrameScore, summarise
+from world2minecraft.evaluation.metrics.protocols import (
+    PROTOCOLS,
+    KnownCells,
+    count_frame,
+    count_scene,
+    protocol_named,
+)
+from world2minecraft.minecraftocc.importers.embodied import SceneSet
+from world2minecraft.minecraftocc.importers.source import ImportedSet
+from world2minecraft.networks.config import Grid
+from world2minecraft.networks.data.cache import Frames
+from world2minecraft.networks.data.frames import known_cells
+from world2minecraft.networks.predictions import SavedPredictions, grid_like
+from world2minecraft.networks.scene_voting import SceneFrame, scene_scores
+
+SCENES = "embodied scenes"  # The scene level of ``embodied``, beside its frames.
+MEMORY = "embodied memory"  # The same of a network that fuses frames by itself.
+
+
+class SaidOfFrame(NamedTuple):
+    """One frame: what is said of its cells, and what is true."""
+
+    scene_id: str
+    said: np.ndarray  # uint8 [X, Y, Z]
+    known: KnownCells
+    grid_to_room: np.ndarray  # float64 [4, 4]
+
+
+def protocol_scores(
+    frames: Iterable[SaidOfFrame],
+    voxel_m: float,
+    protocols: Sequence[str] = (),
+    *,
+    seed: int = 0,
+) -> dict[str, Any]:
+    """Score frames by some protocols, or by all that their masks allow.
+
+    Args:
+        frames: one at a time; those of a scene need not follow each other.
+        voxel_m: the side of their cells.
+        protocols: names; all where empty.
+        seed: of the intervals.
+
+    Returns:
+        ``protocols``: name to what ``summarise`` returns, with ``counts`` and ``reads`` in words;
+        ``left_out``: name to reason.
+
+    Raises:
+        UsageError: there is no frame, or a protocol that was asked for by name cannot be.
+        UnknownNameError: there is no such protocol.
+    """
+    chosen = [protocol_named(name) for name in protocols or PROTOCOLS]
+    counts: dict[str, list[FrameScore]] = {one.name: [] for one in chosen}
+    left_out: dict[str, str] = {}
+    scenes: list[SceneFrame] = []
+    for frame in frames:
+        for protocol in chosen:
+            try:
+                found = count_frame(protocol, frame.said, frame.known)
+            except UsageError as error:
+                if protocols:
+                    raise
+                left_out[protocol.name] = str(error)
+                continue
+            counts[protocol.name].append(FrameScore(frame.scene_id, found))
+        if "embodied" in counts and frame.known.in_frustum is not None:
+            scenes.append(SceneFrame.packed(*frame))
+    if not any(counts.values()):
+        raise UsageError("there is no frame to score")
+    result: dict[str, Any] = {}
+    for protocol in chosen:
+        if counts[protocol.name] and protocol.name not in left_out:
+            words = {"counts": protocol.cells, "reads": protocol.unknown}
+            result[protocol.name] = summarise(counts[protocol.name], seed=seed) | words
+    if scenes:
+        by_scene, reason = scene_scores(scenes, voxel_m)
+        if reason:
+            left_out[SCENES] = reason
+        else:
+            result[SCENES] = of_scenes(by_scene, "; frames vote", seed)
+    return {"protocols": result, "left_out": left_out}
+
+
+def of_scenes(counts: list[FrameScore], how: str, seed: int) -> dict[str, Any]:
+    """Return what ``summarise`` does of scenes, with what was counted in words."""
+    words = {
+        "counts": f"of each scene those that any of its frames has in view{how}",
+        "reads": PROTOCOLS["embodied"].unknown,
+    }
+    return summarise(counts, seed=seed) | words
+
+
+def saved_scene_scores(
+    saved: SavedPredictions,
+    scenes: SceneSet,
+    names: Sequence[str],
+    *,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> dict[str, Any]:
+    """Score saved grids of whole scenes, as EmbodiedOcc's memory leaves them.
+
+    Args:
+        saved: a grid for each scene.
+        scenes: the truth.
+        names: of the scenes to score.
+        seed: of the intervals.
+        progress: told the stage ``score``.
+
+    Returns:
+        What ``protocol_scores`` returns, of ``embodied scenes`` alone.
+
+    Raises:
+        InputError: a grid or a scene is missing, or they have other cells.
+    """
+    counts = []
+    for done, name in enumerate(names, 1):
+        truth = scenes.read(name)
+        labels = saved.scene_labels(name, truth.labels.shape)
+        counts.append(FrameScore(name, count_scene(labels, truth.labels, [truth.seen])))
+        progress("score", done, len(names))
+    return {"protocols": {SCENES: of_scenes(counts, "", seed)}, "left_out": {}}
+
+
+def scenes_to_score(saved: SavedPredictions, scenes: SceneSet, split: str | None) -> list[str]:
+    """Return the scenes of a split that grids were saved of; none where frames were saved."""
+    known = {saved.path.stem} if saved.is_single else set(saved.keys())
+    return [name for name, of in scenes.splits.items() if name in known and split in (None, of)]
+
+
+def said_by_network(
+    frames: Frames, rows: Sequence[int], said: Iterator[np.ndarray]
+) -> Iterator[SaidOfFrame]:
+    """Pair what a network says of rows with what is true of them."""
+    for row, labels in zip(rows, said, strict=True):
+        frame = frames[row]
+        yield SaidOfFrame(frame.scene_id, labels, frame.known, frame.grid_to_room)
+
+
+def said_by_onnx(
+    path: Path, frames: Frames, rows: Sequence[int], progress: Progress = silent
+) -> Iterator[SaidOfFrame]:
+    """Run an ONNX file over rows. Raises what ``OccupancyNetwork`` raises."""
+    from world2minecraft.reconstruction.occupancy.onnx_network import OccupancyNetwork  # noqa: PLC0415
+
+    network = OccupancyNetwork(path)
+    for done, row in enumerate(rows, 1):
+        frame = frames[row]
+        image = np.moveaxis(frame.image, -1, 0).astype(np.float32) / 255
+        depth_m = frame.depth_m if network.facts.wants_depth else None
+        found = network.probabilities(image, frame.intrinsics, frame.camera_to_grid, depth_m)
+        labels = found.argmax(axis=-1).astype(np.uint8)
+        yield SaidOfFrame(frame.scene_id, labels, frame.known, frame.grid_to_room)
+        progress("score", done, len(rows))
+
+
+def said_by_files(
+    saved: SavedPredictions, truth: ImportedSet, keys: Sequence[str], progress: Progress = silent
+) -> Iterator[SaidOfFrame]:
+    """Pair saved predictions with the samples of the same keys.
+
+    Raises:
+        InputError: a prediction is missing, or a sample has other cells.
+    """
+    grid: Grid | None = None
+    for done, key in enumerate(keys, 1):
+        labels, sample = saved.labels(key), truth[key]
+        grid = grid or grid_like(labels, saved.path)
+        if labels.shape != grid.shape:
+            raise InputError(saved.path, f"{key} has {labels.shape} cells, others {grid.shape}")
+        known = known_cells(sample, grid)
+        yield SaidOfFrame(sample.scene_id, labels, known, sample.occ.region.region_to_room)
+        progress("score", done, len(keys))
+
+
+def keys_to_score(saved: SavedPredictions, truth: ImportedSet, split: str | None) -> list[str]:
+    """Return the keys of a split that there are predictions of.
+
+    Raises:
+        InputError: there are none, or the predictions are of one frame and the truth of many.
+    """
+    keys = truth.keys(split)
+    if saved.is_single:
+        if len(keys) != 1:
+            raise InputError(
+                saved.path,
+                f"is one frame's, and the truth has {len(keys)}; give a folder of KEY.npz",
+            )
+        return keys
+    known = set(saved.keys())
+    found = [key for key in keys if key in known]
+    if not found:
+        example = f", such as {keys[0]}.npz" if keys else ""
+        raise InputError(saved.path, f"holds no prediction of {truth.path}{example}")
+    return found

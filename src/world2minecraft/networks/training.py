@@ -1,0 +1,324 @@
+"""A run of training, from its sets to its scores. The same call goes on with one that was stopped.
+
+A run's folder::
+
+    run.yaml                 every setting; w2m train --config trains the same again
+    weights.safetensors      the best by mIoU on held-out frames
+    last.safetensors         those of the last step
+    checkpoint.safetensors   what a stopped run goes on from
+    metrics.csv              step, name, value; tensorboard/ has the same
+    scores.json              of the best weights, by every protocol, on the test split
+    scores_last.json         of the last weights, where those were asked for
+    run.json                 what differs by nature: times, machine, versions
+"""
+
+import logging
+import os
+import platform
+import time
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import lightning
+import torch
+from torch import nn
+
+from world2minecraft import __version__
+from world2minecraft.core.errors import ConflictError, DamagedFileError, UsageError
+from world2minecraft.core.files import write_json
+from world2minecraft.core.locks import Lock
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.minecraftocc.importers import open_occupancy
+from world2minecraft.networks.callbacks import CHECKPOINT, LAST, WEIGHTS, Keeper, RunState
+from world2minecraft.networks.checkpoints import (
+    load_checkpoint,
+    load_weights,
+    read_facts,
+    write_weights,
+)
+from world2minecraft.networks.config import OWN_FRAMES, RunConfig, read_config, write_config
+from world2minecraft.networks.data.batches import drawn_batches
+from world2minecraft.networks.data.class_weights import class_weights
+from world2minecraft.networks.data.mixing import plan_draws
+from world2minecraft.networks.data.opening import CachePlace, RunData, open_run_data
+from world2minecraft.networks.data.splits import evenly
+from world2minecraft.networks.lightning_module import Steps
+from world2minecraft.networks.models import make_network
+from world2minecraft.networks.scene_memory import add_memory_scores
+from world2minecraft.networks.scoring import protocol_scores, said_by_network
+from world2minecraft.networks.validation import (
+    device_named,
+    precision_here,
+    said_labels,
+    validated,
+)
+
+RUN, FACTS, SCORES = "run.yaml", "run.json", "scores.json"
+LAST_SCORES = "scores_last.json"  # Of the last step's weights, where somebody asks for them.
+LIGHTNING = {"bf16": "bf16-mixed", "32": "32-true"}
+# Settings that may change between tries: they move no result.
+FREE = ("threads", "workers", "checkpoint_every")
+
+
+class Trained(NamedTuple):
+    """What a run came to."""
+
+    folder: Path
+    state: RunState
+    data: RunData
+
+
+def network_of(config: RunConfig) -> nn.Module:
+    """Return the network of a run with its first weights. Raises what ``make_network`` does."""
+    return make_network(
+        config.network,
+        config.size,
+        grid_shape=config.cells.shape,
+        voxel_m=config.cells.voxel_m,
+        backbone=config.backbone or None,
+        seed=config.seed,
+    )
+
+
+def train_run(
+    config: RunConfig,
+    folder: Path,
+    *,
+    device: str = "auto",
+    cache: CachePlace | None = None,
+    progress: Progress = silent,
+) -> Trained:
+    """Train, or go on with a run of the same settings in the same folder.
+
+    Args:
+        config: the run.
+        folder: of its files.
+        device: auto, cpu or cuda.
+        cache: where decoded frames are kept.
+        progress: told the stages ``frames`` and ``train``.
+
+    Raises:
+        ConflictError: the folder holds a run of other settings, or another process trains in it.
+        InputError, UsageError: the sets or the settings cannot be used, or the loss came to be no
+        number.
+    """
+    if config.frames > 1 and config.network not in OWN_FRAMES:
+        raise UsageError(f"{config.network} looks at one frame; frames is for embodied")
+    check_folder(config, folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    lock = Lock(folder / ".lock", "trained")
+    lock.take()
+    try:
+        if config.threads:
+            torch.set_num_threads(config.threads)
+        data = open_run_data(config, cache, progress)
+        write_config(folder / RUN, config)  # Only of what can be trained.
+        state = _fit(config, folder, data, device_named(device), progress)
+        return Trained(folder, state, data)
+    finally:
+        lock.remove()
+        with suppress(OSError):
+            folder.rmdir()  # Where nothing came of it.
+
+
+def check_folder(config: RunConfig, folder: Path) -> None:
+    """Refuse a folder that holds a run of other settings. Raises ConflictError."""
+    if not (folder / RUN).is_file():
+        return
+    held = read_config(folder / RUN)
+    same = replace(held, **{name: getattr(config, name) for name in FREE})
+    if same == config:
+        return
+    names = [name for name in vars(config) if getattr(same, name) != getattr(config, name)]
+    told = ", ".join(
+        f"{name} is {_said(getattr(held, name))}, not {_said(getattr(config, name))}"
+        for name in names
+    )
+    raise ConflictError(folder, f"holds a run of other settings ({told}); choose another --out")
+
+
+def _said(value: Any) -> str:
+    if isinstance(value, tuple):
+        return " ".join(str(getattr(one, "path", one)) for one in value)
+    return str(value)
+
+
+def _fit(
+    config: RunConfig, folder: Path, data: RunData, device: torch.device, progress: Progress
+) -> RunState:
+    state = _state_of(folder / CHECKPOINT)
+    if state.step >= config.steps or state.stopped:
+        if not (folder / LAST).is_file() or not (folder / FACTS).is_file():
+            _finish_again(config, folder, device, state)
+        return state
+    network = network_of(config)
+    weights = torch.from_numpy(class_weights(data.counts, config.class_weights))
+    steps = Steps(network, config, weights)
+    steps.first_step = state.step
+    rows = evenly(data.split.val, config.validate_frames)
+    keeper = Keeper(
+        folder, config, state, lambda: validated(network, data.target, rows, config), progress
+    )
+    sizes = [len(part.rows) for part in data.parts]
+    draws = plan_draws(sizes, data.weights, config.steps * config.batch, config.seed)
+    batches = drawn_batches(data.parts, draws, config, state.step)
+    began = time.monotonic()
+    with _quiet():
+        trainer = lightning.Trainer(
+            accelerator=device.type if device.type == "cpu" else "gpu",
+            devices=1,
+            precision=LIGHTNING[precision_here(config.precision, device)],  # type: ignore[arg-type]
+            max_epochs=1,
+            gradient_clip_val=config.clip_norm or None,
+            callbacks=[keeper, _Loader(folder)],
+            logger=False,
+            enable_checkpointing=False,
+            enable_progress_bar=False,
+            enable_model_summary=False,
+            num_sanity_val_steps=0,
+            default_root_dir=folder,
+        )
+        trainer.fit(steps, batches)
+    if trainer.interrupted:  # Lightning takes Ctrl-C for the end of a run.
+        raise KeyboardInterrupt
+    keeper.finish(steps)
+    _write_facts(folder, config, network, device, keeper.state, time.monotonic() - began)
+    return keeper.state
+
+
+def _state_of(checkpoint: Path) -> RunState:
+    """Return where a run stands; at its beginning where there is no checkpoint."""
+    if not checkpoint.is_file():
+        return RunState()
+    facts = read_facts(checkpoint)
+    if facts.keys() != vars(RunState()).keys():
+        raise DamagedFileError(
+            checkpoint, "is of another version of w2m train; choose another --out"
+        )
+    return RunState(**facts)
+
+
+def _finish_again(config: RunConfig, folder: Path, device: torch.device, state: RunState) -> None:
+    """Write what comes after the last checkpoint, of a run that was ended between the two."""
+    network = network_of(config)
+    load_checkpoint(folder / CHECKPOINT, network)
+    write_weights(folder / LAST, network, config)
+    _write_facts(folder, config, network, device, state, 0.0)
+
+
+class _Loader(lightning.Callback):
+    """Puts a checkpoint into network and optimiser, once both are on their device."""
+
+    def __init__(self, folder: Path):
+        self._path = folder / CHECKPOINT
+
+    def on_train_start(self, trainer: Any, pl_module: Any) -> None:
+        if self._path.is_file():
+            load_checkpoint(self._path, pl_module.network, trainer.optimizers[0])
+
+
+def score_run(
+    trained: Trained,
+    config: RunConfig,
+    device: str = "auto",
+    progress: Progress = silent,
+    *,
+    last: bool = False,
+) -> dict[str, Any]:
+    """Score the weights of a run on its test split, by all protocols.
+
+    The best weights by validation, into scores.json; or the ``last`` step's, which no frame chose,
+    into scores_last.json. A set without a test split is scored on the frames that it was validated
+    on, which flatters: ``split`` says so.
+    """
+    data, folder = trained.data, trained.folder
+    network = trained_network(folder, config, device, last=last)
+    rows = data.split.scored
+    said = said_labels(network, data.target, rows, config, progress=progress)
+    frames = said_by_network(data.target, rows, said)
+    scores = protocol_scores(frames, config.cells.voxel_m)
+    found = open_occupancy(config.data[0].path)
+    add_memory_scores(scores, network, found, data.target, rows, config, progress=progress)
+    scores |= {
+        "data": config.data[0].path,
+        "split": "test" if data.split.test else "validation",
+        "grid": config.grid,
+        "step": trained.state.step if last else trained.state.best_step,
+    }
+    write_json(folder / (LAST_SCORES if last else SCORES), scores)
+    return scores
+
+
+def trained_network(
+    folder: Path, config: RunConfig, device: str = "auto", *, last: bool = False
+) -> nn.Module:
+    """Return the network of a run with its best weights, or its last. Raises InputError."""
+    network = network_of(config)
+    load_weights(folder / (LAST if last else WEIGHTS), network)
+    return network.to(device_named(device)).eval()
+
+
+def _write_facts(
+    folder: Path,
+    config: RunConfig,
+    network: nn.Module,
+    device: torch.device,
+    state: RunState,
+    seconds: float,
+) -> None:
+    facts = {
+        "seconds": state.seconds,
+        "cpu_seconds": state.cpu_seconds,
+        "seconds_of_last_try": seconds,
+        "steps": state.step,
+        "best_step": state.best_step,
+        "best_val_miou": state.best_miou,
+        "stopped_early": state.stopped,
+        "parameters": sum(one.numel() for one in network.parameters()),
+        "device": device.type,
+        "hardware": hardware_of(device),
+        "threads": torch.get_num_threads(),
+        "precision": precision_here(config.precision, device),
+        "versions": {
+            "world2minecraft": __version__,
+            "torch": torch.__version__,
+            "lightning": lightning.__version__,
+            "python": platform.python_version(),
+        },
+    }
+    if device.type == "cuda":
+        facts["peak_gpu_bytes"] = torch.cuda.max_memory_allocated()
+    write_json(folder / FACTS, facts)
+
+
+def hardware_of(device: torch.device) -> str:
+    """Return what a device is, in words."""
+    if device.type == "cuda":
+        return torch.cuda.get_device_name()
+    named = platform.processor() or platform.machine()
+    listed = Path("/proc/cpuinfo")
+    if listed.is_file():
+        lines = [one for one in listed.read_text().splitlines() if one.startswith("model name")]
+        named = lines[0].partition(":")[2].strip() if lines else named
+    return f"{os.cpu_count()} cores of {named}"
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep Lightning's advice on worker processes and devices off the screen."""
+    loud = [logging.getLogger(name) for name in ("lightning.pytorch", "lightning.fabric")]
+    levels = [one.level for one in loud]
+    for one in loud:
+        one.setLevel(logging.ERROR)
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", module="lightning")
+            warnings.filterwarnings("ignore", message=".*does not have many workers.*")
+            yield
+    finally:
+        for one, level in zip(loud, levels, strict=True):
+            one.setLevel(level)

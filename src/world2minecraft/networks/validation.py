@@ -1,0 +1,86 @@
+"""What a network says of frames: labels, and the counts that choose the best weights."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager
+from typing import Any
+
+import numpy as np
+import torch
+from torch import nn
+
+from world2minecraft.core.errors import MissingExtraError
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.evaluation.metrics.occupancy import OccupancyCounts, count_occupancy
+from world2minecraft.networks.config import RunConfig
+from world2minecraft.networks.data.batches import ordered_batches
+from world2minecraft.networks.data.cache import Frames
+
+
+def precision_here(precision: str, device: torch.device) -> str:
+    """Return ``bf16`` or ``32``: what ``auto`` means on a device.
+
+    bfloat16 where the device multiplies it in hardware: new graphics cards, and processors with
+    AMX, on which a step takes a quarter of the time. Without AMX torch 2.13's gradients of 3D
+    convolutions in bfloat16 differ from run to run on a processor, and are not a number at times.
+    """
+    if precision != "auto":
+        return precision
+    if device.type == "cuda":
+        return "bf16" if torch.cuda.is_bf16_supported() else "32"
+    has_amx = getattr(torch.cpu, "_is_amx_tile_supported", lambda: False)
+    return "bf16" if device.type == "cpu" and has_amx() else "32"
+
+
+def autocast_of(precision: str, device: torch.device) -> AbstractContextManager[Any]:
+    """Return the context in which a network computes."""
+    wanted = precision_here(precision, device) == "bf16"
+    return torch.autocast(device.type, torch.bfloat16, enabled=wanted)
+
+
+def device_named(name: str) -> torch.device:
+    """Return what ``auto``, ``cpu`` or ``cuda`` means here. Raises MissingExtraError for no GPU."""
+    if name == "cuda" and not torch.cuda.is_available():
+        raise MissingExtraError("training on a GPU, which this torch does not see,", "train")
+    if name == "auto":
+        name = "cuda" if torch.cuda.is_available() else "cpu"
+    return torch.device(name)
+
+
+def said_labels(
+    network: nn.Module,
+    frames: Frames,
+    rows: Sequence[int],
+    config: RunConfig,
+    *,
+    progress: Progress = silent,
+    stage: str = "score",
+) -> Iterator[np.ndarray]:
+    """Yield the likeliest class of each cell of some frames, uint8 [X, Y, Z], in their order.
+
+    The network is left in the mode that it was in.
+    """
+    device = next(network.parameters()).device
+    was_training = network.training
+    network.eval()
+    done = 0
+    try:
+        for batch in ordered_batches(frames, rows, config):
+            with torch.inference_mode(), autocast_of(config.precision, device):
+                logits = network(batch.inputs.to(device)).logits
+            for labels in logits.argmax(dim=1).to(torch.uint8).cpu().numpy():
+                yield labels
+                done += 1
+            progress(stage, done, len(rows))
+    finally:
+        network.train(was_training)
+
+
+def validated(
+    network: nn.Module, frames: Frames, rows: Sequence[int], config: RunConfig
+) -> OccupancyCounts:
+    """Return the counts of some frames, by the protocol ``monoscene``."""
+    total = OccupancyCounts()
+    said = said_labels(network, frames, rows, config)
+    for row, labels in zip(rows, said, strict=True):
+        total = total + count_occupancy(labels, frames[row].labels)
+    return total

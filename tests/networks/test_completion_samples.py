@@ -1,0 +1,116 @@
+"""Virtual scans to learn from: their truth, their noise, and that a seed is a seed."""
+
+import numpy as np
+import pytest
+
+from world2minecraft.core.errors import DamagedFileError
+from world2minecraft.core.files import write_npz
+from world2minecraft.networks.completion.augment import augmented, cropped, turned
+from world2minecraft.networks.completion.samples import (
+    cut,
+    make_samples,
+    read_samples,
+    write_samples,
+)
+from world2minecraft.networks.completion.sensor_noise import draw_noise, lost_pixels, wrong_labels
+from world2minecraft.reconstruction.semantics.completion_channels import network_input
+
+SEED = 9_500  # Held out.
+
+
+@pytest.fixture(scope="module")
+def samples():
+    return make_samples(SEED)
+
+
+def channels(sample):
+    return network_input(sample.sight)
+
+
+def test_a_seed_gives_walks_and_single_views(samples):
+    assert {sample.kind for sample in samples} >= {"walk", "single"}
+    walk = next(sample for sample in samples if sample.kind == "walk")
+    assert walk.hinted
+    assert 0 < walk.false_share < 0.6
+    known = walk.truth != 255
+    assert known.mean() > 0.5
+    assert set(np.unique(walk.truth)) >= {0, 2, 3, 255}
+
+
+def test_most_of_the_surface_is_true_and_lies_in_the_room(samples):
+    for sample in samples:
+        there = sample.truth.reshape(-1)[sample.sight.at]
+        assert (there != 255).mean() > 0.8
+        assert (there[there != 255] > 0).mean() == pytest.approx(1 - sample.false_share)
+
+
+def test_what_is_written_is_read(samples, tmp_path):
+    write_samples(tmp_path / "1.npz", samples)
+    for one, other in zip(samples, read_samples(tmp_path / "1.npz"), strict=True):
+        assert (one.kind, one.hinted) == (other.kind, other.hinted)
+        assert np.array_equal(one.truth, other.truth)
+        assert np.array_equal(channels(one), channels(other))
+
+
+def test_a_file_that_is_no_samples_is_told(tmp_path):
+    path = tmp_path / "1.npz"
+    path.write_bytes(b"no archive")
+    with pytest.raises(DamagedFileError, match="is not a readable .npz"):
+        read_samples(path)
+    write_npz(path, {"count": np.array(1)})
+    with pytest.raises(DamagedFileError, match="holds no samples"):
+        read_samples(path)
+
+
+def test_four_turns_and_two_mirrors_are_none(samples):
+    one = samples[0]
+    for other in (
+        turned(turned(one, 1, False), 3, False),
+        turned(turned(one, 0, True), 0, True),
+        turned(turned(turned(one, 1, True), 1, True), 0, False),
+    ):
+        assert np.array_equal(one.truth, other.truth)
+        assert np.array_equal(channels(one), channels(other))
+
+
+def test_a_turn_moves_truth_and_sight_alike(samples):
+    one = samples[0]
+    other = turned(one, 1, False)
+    assert np.array_equal(other.truth, np.rot90(one.truth, 1, (0, 1)))
+    wanted, told = np.rot90(channels(one), 1, (1, 2)), channels(other)
+    x, y = 10, 11  # The channels of the offset along x and y.
+    assert np.array_equal(told[:x], wanted[:x])
+    assert np.array_equal(told[y + 1 :], wanted[y + 1 :])
+    assert np.array_equal(told[x], -wanted[y])
+    assert np.array_equal(told[y], wanted[x])
+
+
+def test_a_window_holds_what_lay_there(samples):
+    one, start, shape = samples[0], np.array([-3, 5, -2]), (20, 24, 16)
+    part = cropped(one, start, shape)
+    whole = channels(one)
+    assert np.array_equal(channels(part)[:, 3:, :, 2:], whole[:, :17, 5:29, :14])
+    assert (part.truth[:3] == 255).all()
+    assert part.sight.bottom_m == pytest.approx(one.sight.bottom_m - 2 * 0.08)
+    assert not cut(one.sight, np.array([500, 0, 0]), shape).log_odds.any()
+
+
+def test_a_seed_augments_as_a_seed(samples):
+    one, other = (augmented(samples[0], np.random.default_rng(3), (32, 32, 24)) for _ in range(2))
+    assert one.truth.shape == (32, 32, 24)
+    assert np.array_equal(channels(one), channels(other))
+    assert np.array_equal(one.truth, other.truth)
+
+
+def test_glass_has_no_depth_and_wrong_labels_come_by_their_share():
+    rng = np.random.default_rng(0)
+    noise = next(
+        n for s in range(99) if (n := draw_noise(np.random.default_rng(s), "walk")).glass == 1
+    )
+    labels = np.full((48, 64), 3, np.uint8)
+    labels[10:20, 10:20] = 4
+    assert lost_pixels(noise, labels, np.ones(labels.shape), rng)[10:20, 10:20].all()
+    wrong = wrong_labels(np.full((480, 640), 3, np.uint8), 0.25, rng)
+    assert (wrong != 3).mean() == pytest.approx(0.25, abs=0.03)
+    assert wrong.min() >= 1
+    assert wrong.max() <= 11
