@@ -14,12 +14,12 @@ from statistics import median
 import numpy as np
 
 from benchmarks.rows import Row
+from world2minecraft.navigation.environment.action_spaces import Continuous
+from world2minecraft.navigation.environment.env import VlnEnv
+from world2minecraft.navigation.moves import moved
+from world2minecraft.navigation.scene import VlnScene, open_scene
+from world2minecraft.navigation.values import Move
 from world2minecraft.procgen.worlds import generate_world, write_house
-from world2minecraft.vln.environment.acting import Continuous
-from world2minecraft.vln.environment.env import VlnEnv
-from world2minecraft.vln.moves import moved
-from world2minecraft.vln.scene import VlnScene, open_scene
-from world2minecraft.vln.values import Move
 
 SEED, ROOMS = 700, 6
 RUNS, STEPS, MOVES, TICKS = 5, 60, 4_000, 200

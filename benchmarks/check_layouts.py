@@ -21,7 +21,7 @@ from world2minecraft.compare.importers import How, read_layouts_of
 from world2minecraft.compare.table import NOTES, layout_table, other_table
 from world2minecraft.compare.truths import true_scene
 from world2minecraft.core.files import write_json
-from world2minecraft.vln.running.tables import markdown_of, text_of
+from world2minecraft.navigation.running.tables import markdown_of, text_of
 
 EXPECTED = {  # By what the published file's name says.
     "bedroom": {"reaching_out": 0.138, "scenes_reaching_out": 0.511, "overlaps": 1.57},

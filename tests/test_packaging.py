@@ -72,7 +72,7 @@ def test_the_wheel_holds_the_built_page_and_not_what_it_is_built_of(tmp_path, mo
         every = set(wheel.namelist())
     names = {name for name in every if "/forge/" in name}
     body = ("body.mjs", "game_rules.mjs", "package.json", "package-lock.json")
-    assert {f"world2minecraft/vln/server/{name}" for name in body} <= every
+    assert {f"world2minecraft/navigation/server/{name}" for name in body} <= every
     assert "world2minecraft/forge/annotation/page/annotate.js" in every
     page = {name.partition("/static/")[2] for name in names if "/static/" in name}
     assert {"index.html", "index.js"} <= page

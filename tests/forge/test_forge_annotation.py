@@ -10,9 +10,12 @@ from starlette.testclient import TestClient
 from world2minecraft.core.errors import DamagedFileError, InputError
 from world2minecraft.forge.annotation.app import PAGE, annotation_server, build_app
 from world2minecraft.forge.annotation.desk import AnnotationDesk
-from world2minecraft.vln.language.humans import read_annotations, with_annotations
-from world2minecraft.vln.records import read_trajectories, write_trajectories
-from world2minecraft.vln.values import Instruction, Keyframe, Stance, Trajectory
+from world2minecraft.navigation.language.human_instructions import (
+    read_annotations,
+    with_annotations,
+)
+from world2minecraft.navigation.records import read_trajectories, write_trajectories
+from world2minecraft.navigation.values import Instruction, Keyframe, Stance, Trajectory
 
 TOKEN, PORT = "t" * 43, 8484
 GOOD = {"number": 1, "level": "goal", "text": "Walk over to the piano, please.",

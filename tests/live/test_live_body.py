@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 from mineflayer_rules import mineflayer_rules
 from test_live_walk import HERE, free_port, node
-from tests.vln.small_flat import SPAWN as FLAT_START
-from tests.vln.small_flat import write_flat
+from tests.navigation.small_flat import SPAWN as FLAT_START
+from tests.navigation.small_flat import write_flat
 
 from world2minecraft.core.coordinates import block_to_room
 from world2minecraft.core.jit import user_cache_dir
@@ -28,7 +28,7 @@ from world2minecraft.minecraft.physics import BlockWorld, Keys, standing_place
 from world2minecraft.minecraft.physics import player_motion as step
 from world2minecraft.minecraft.versions import game_version
 from world2minecraft.minecraft.worlds.world_writer import write_world
-from world2minecraft.vln.server.body import join
+from world2minecraft.navigation.server.body import join
 
 pytestmark = pytest.mark.live
 __all__ = ["node"]  # A fixture.
@@ -221,9 +221,9 @@ def test_plain_mineflayer_departs_from_the_game_by_three_rules(crowd, say, monke
 
 def test_moves_of_the_environment_end_where_ours_do(flat_server, say):
     """Walks of 6 random moves: turns by 15 degrees, steps of half a block, in a furnished flat."""
-    from world2minecraft.vln.environment.senses import Eyes
-    from world2minecraft.vln.server.env import ServerEnv
-    from world2minecraft.vln.values import Move
+    from world2minecraft.navigation.environment.observations import Eyes
+    from world2minecraft.navigation.server.env import ServerEnv
+    from world2minecraft.navigation.values import Move
 
     server, folder = flat_server
     version = server.plan["version"]
@@ -250,11 +250,11 @@ def test_moves_of_the_environment_end_where_ours_do(flat_server, say):
 
 
 def test_an_oracle_reaches_the_piano_on_a_server(flat_server):
-    from world2minecraft.vln.agents import agent_of
-    from world2minecraft.vln.running.asking import Wish, episode_of
-    from world2minecraft.vln.running.walking import walk_episode
-    from world2minecraft.vln.server.ground import ServerGround
-    from world2minecraft.vln.server.scene import open_server_scene
+    from world2minecraft.navigation.agents import agent_of
+    from world2minecraft.navigation.running.episode_runner import walk_episode
+    from world2minecraft.navigation.running.sentence_goals import Wish, episode_of
+    from world2minecraft.navigation.server.ground import ServerGround
+    from world2minecraft.navigation.server.scene import open_server_scene
 
     server, folder = flat_server
     with join(server.address, folder=user_cache_dir() / "live-test") as body:
@@ -265,7 +265,7 @@ def test_an_oracle_reaches_the_piano_on_a_server(flat_server):
 
 
 def test_the_eyes_see_what_is_built_while_one_looks(crowd):
-    from world2minecraft.vln.server.scene import open_server_scene
+    from world2minecraft.navigation.server.scene import open_server_scene
 
     with join(crowd.address, folder=user_cache_dir() / "live-test") as body:
         body.place((0.5, 64.0, 0.5))

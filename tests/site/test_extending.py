@@ -17,9 +17,9 @@ from world2minecraft.capture.sources import find_capture
 from world2minecraft.minecraft.formats import read_blocks, write_blocks
 from world2minecraft.minecraft.losses import Losses
 from world2minecraft.minecraft.unlabelled_volume import unlabelled
+from world2minecraft.navigation.agents.registry import AGENTS
 from world2minecraft.reconstruction.occupancy import predictor
 from world2minecraft.reconstruction.semantics import LABELLERS
-from world2minecraft.vln.agents.choice import AGENTS
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "extending.md").read_text()
 FILES = {
@@ -117,9 +117,9 @@ def test_the_network_learns():
 
 def test_the_agent_walks_turns_and_stops():
     pytest.importorskip("gymnasium", reason="gymnasium is not installed")
-    from world2minecraft.vln.agents import Sight, Task
-    from world2minecraft.vln.moves import named_set
-    from world2minecraft.vln.values import Move, Stance
+    from world2minecraft.navigation.agents import Sight, Task
+    from world2minecraft.navigation.moves import named_set
+    from world2minecraft.navigation.values import Move, Stance
 
     agent = AGENTS.load("wall_follower")()
     agent.begin(Task("Go to the table", named_set("vlnce"), 0.25, 5, 0.25))

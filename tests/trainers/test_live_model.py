@@ -13,21 +13,21 @@ import urllib.error
 import urllib.request
 
 import pytest
+from tests.navigation.small_flat import write_flat
+from tests.navigation.vln_sets import small_set
 from tests.trainers.test_trainers import HERE, python_of, run
-from tests.vln.small_flat import write_flat
-from tests.vln.vln_sets import small_set
 
 from world2minecraft.external_models.chat_client import open_chat
 from world2minecraft.external_models.reply_cache import ReplyStore
-from world2minecraft.vln.agents import ModelAgent
-from world2minecraft.vln.agents.answering import ModelAnswerer
-from world2minecraft.vln.records import read_items
-from world2minecraft.vln.running.asking import Wish, episode_of
-from world2minecraft.vln.running.evaluating import evaluate
-from world2minecraft.vln.running.scene_ground import SceneGround
-from world2minecraft.vln.running.trace import TraceWriter, read_trace
-from world2minecraft.vln.running.walking import walk_episode
-from world2minecraft.vln.scene import camera_of, open_scene
+from world2minecraft.navigation.agents import ModelAgent
+from world2minecraft.navigation.agents.answering import ModelAnswerer
+from world2minecraft.navigation.records import read_items
+from world2minecraft.navigation.running.episode_runner import walk_episode
+from world2minecraft.navigation.running.evaluating import evaluate
+from world2minecraft.navigation.running.scene_ground import SceneGround
+from world2minecraft.navigation.running.sentence_goals import Wish, episode_of
+from world2minecraft.navigation.running.trace import TraceWriter, read_trace
+from world2minecraft.navigation.scene import camera_of, open_scene
 
 pytestmark = pytest.mark.trainers
 

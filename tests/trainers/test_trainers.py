@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from tests.vln.vln_sets import small_set
+from tests.navigation.vln_sets import small_set
 
-from world2minecraft.vln.handoff import HandoffRule, export_set
+from world2minecraft.navigation.exporters import HandoffRule, export_set
 
 pytestmark = pytest.mark.trainers
 

@@ -65,7 +65,7 @@ def run(
     from world2minecraft.compare.judge import means_of, prompt_sum
     from world2minecraft.compare.table import grade_table
     from world2minecraft.core.files import read_bytes, write_json
-    from world2minecraft.vln.running.tables import text_of
+    from world2minecraft.navigation.running.tables import text_of
 
     told = read_bytes(wish, MOST_WISH_BYTES).decode("utf-8", "replace") if wish else ""
     chat = asked.open(agent, out)

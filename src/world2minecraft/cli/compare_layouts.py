@@ -61,7 +61,7 @@ def run(
     from world2minecraft.compare.table import NOTES, by_method, layout_table, other_table
     from world2minecraft.compare.truths import is_truth, true_scene
     from world2minecraft.core.files import write_json
-    from world2minecraft.vln.running.tables import markdown_of, text_of
+    from world2minecraft.navigation.running.tables import markdown_of, text_of
 
     option.check_px(px_m)
     known = score_scene(true_scene(truth)) if truth is not None else None

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.vln.data.building import BuildRule, Built
+    from world2minecraft.navigation.data.building import BuildRule, Built
 
 EXAMPLES = """\
 w2m vln build OUT --out SET                                of one reconstruction
@@ -95,9 +95,9 @@ def run(
         read. OutputError: the folder cannot be written.
     """
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.vln.data.building import BuildRule
-    from world2minecraft.vln.data.recorded import checked_at
-    from world2minecraft.vln.data.scene_work import WorkRule
+    from world2minecraft.navigation.data.building import BuildRule
+    from world2minecraft.navigation.data.recorded_walks import checked_at
+    from world2minecraft.navigation.data.scene_items import WorkRule
 
     work = WorkRule(
         views=views, move_set=_moves(moves), balanced=not every_keyframe, size_px=_size(size),
@@ -111,7 +111,7 @@ def run(
         raise UsageError("no scene is named; give paths of scenes, or --rooms 3 to make some")
     built = _built(out, list(scenes or []), (rooms, houses), rule, workers)
     if annotations is not None:
-        from world2minecraft.vln.data.rewording import annotate_set
+        from world2minecraft.navigation.data.rewording import annotate_set
 
         annotate_set(out, annotations)
     _say(out, built)
@@ -123,10 +123,10 @@ def _built(
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.machine import usable_cores
+    from world2minecraft.navigation.data.building import build_set
+    from world2minecraft.navigation.data.generated_scenes import make_scenes
+    from world2minecraft.navigation.records import SCENES_FOLDER
     from world2minecraft.reconstruction.run_folder import check_writable
-    from world2minecraft.vln.data.building import build_set
-    from world2minecraft.vln.data.made_scenes import make_scenes
-    from world2minecraft.vln.records import SCENES_FOLDER
 
     check_writable(out)
     compiling_note()
@@ -138,7 +138,7 @@ def _built(
 
 def _moves(name: str) -> str:
     from world2minecraft.core.errors import UnknownNameError
-    from world2minecraft.vln.values import MOVE_SETS
+    from world2minecraft.navigation.values import MOVE_SETS
 
     if name not in MOVE_SETS:
         raise UnknownNameError("set of moves", name, MOVE_SETS)

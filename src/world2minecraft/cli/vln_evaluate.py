@@ -8,7 +8,7 @@ import typer
 from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
-    from world2minecraft.vln.values import Item
+    from world2minecraft.navigation.values import Item
 
 EXAMPLES = """\
 w2m vln evaluate SET --agent http://localhost:8000/v1    a server of your own: vLLM, LLaMA-Factory
@@ -82,10 +82,10 @@ def run(
     """
     from world2minecraft.core.errors import UnknownNameError
     from world2minecraft.external_models.chat_endpoints import is_endpoint
-    from world2minecraft.vln.agents.answering import ModelAnswerer
-    from world2minecraft.vln.records import read_items
-    from world2minecraft.vln.running.evaluating import TRAININGS
-    from world2minecraft.vln.running.picking import picked_items
+    from world2minecraft.navigation.agents.answering import ModelAnswerer
+    from world2minecraft.navigation.records import read_items
+    from world2minecraft.navigation.running.evaluating import TRAININGS
+    from world2minecraft.navigation.running.picking import picked_items
 
     if training not in TRAININGS:
         raise UnknownNameError("training", training, TRAININGS)
@@ -111,7 +111,7 @@ def _evaluate(
     target: Path, items: "list[Item]", answerer: Any, jobs: int, facts: dict[str, str]
 ) -> None:
     from world2minecraft.cli.progress import shown
-    from world2minecraft.vln.running.evaluating import evaluate, write_result
+    from world2minecraft.navigation.running.evaluating import evaluate, write_result
 
     with shown() as progress:
         found = evaluate(items, answerer, jobs=jobs, progress=progress)
@@ -124,8 +124,8 @@ def _baseline(
     """Return a baseline and the items that it knows the task of."""
     from world2minecraft.core.errors import UnknownNameError, UsageError
     from world2minecraft.external_models.chat_endpoints import ENDPOINTS
-    from world2minecraft.vln.agents.answering import LetterAnswerer
-    from world2minecraft.vln.data.baselines import NAMES, baseline_letters
+    from world2minecraft.navigation.agents.answering import LetterAnswerer
+    from world2minecraft.navigation.data.blind_baselines import NAMES, baseline_letters
 
     if name not in NAMES:
         raise UnknownNameError("agent", name, [*NAMES, *ENDPOINTS])
@@ -137,7 +137,7 @@ def _baseline(
 
 
 def _say(target: Path, items: "list[Item]", chat: Any) -> None:
-    from world2minecraft.vln.running.tables import answers_table, read_result, text_of
+    from world2minecraft.navigation.running.tables import answers_table, read_result, text_of
 
     print()
     print(text_of(answers_table([read_result(target)])))

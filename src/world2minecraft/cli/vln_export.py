@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.vln.handoff import Handoff
+    from world2minecraft.navigation.exporters import Handoff
 
 EXAMPLES = """\
 w2m vln export SET --to llamafactory --out SFT         rows, dataset_info.json and the SFT recipe
@@ -54,7 +54,7 @@ def run(
     steps that it will take are told here, before a GPU is rented. docs/vln-finetuning.md has more.
     """
     from world2minecraft.cli.progress import shown
-    from world2minecraft.vln.handoff import HandoffRule, export_set
+    from world2minecraft.navigation.exporters import HandoffRule, export_set
 
     choices = {
         "tasks": None if task is None else (task,),

@@ -9,9 +9,9 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
-    from world2minecraft.vln.agents.values import Decision, Sight
-    from world2minecraft.vln.running.walking import Walk
-    from world2minecraft.vln.values import Episode, Move, Stance
+    from world2minecraft.navigation.agents.values import Decision, Sight
+    from world2minecraft.navigation.running.episode_runner import Walk
+    from world2minecraft.navigation.values import Episode, Move, Stance
 
 VIEW_COLUMNS, VIEW_ROWS = 64, 24
 ROWS_KEPT = 8
@@ -42,7 +42,7 @@ class LinesLive:
 
     def ended(self, walk: "Walk") -> None:
         """Say how it went."""
-        from world2minecraft.vln.running.film import end_text
+        from world2minecraft.navigation.running.film import end_text
 
         self._say(f"  {end_text(walk)}")
 
@@ -76,7 +76,7 @@ class ScreenLive(LinesLive):
 
     def ended(self, walk: "Walk") -> None:
         """Show how it went."""
-        from world2minecraft.vln.running.film import end_text
+        from world2minecraft.navigation.running.film import end_text
 
         self._foot = end_text(walk)
         self._draw()
@@ -128,7 +128,7 @@ def half_blocks(colour: Any) -> Any:
 
 def told_moves(decision: "Decision", made: "Sequence[tuple[Move, bool]]") -> str:
     """Return what a decision did, in a few words."""
-    from world2minecraft.vln.agents.words import MOVE_NAMES
+    from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
 
     if decision.outcome != "moves":
         return f"{decision.outcome.upper()}: {decision.told.get('problem', '')}"

@@ -10,7 +10,7 @@ from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
     from world2minecraft.external_models.chat_client import ChatModel
-    from world2minecraft.vln.data.rewording import NavigationSet
+    from world2minecraft.navigation.data.rewording import NavigationSet
 
 EXAMPLES = """\
 w2m vln reword SET --annotations words.csv                 people's words
@@ -53,7 +53,13 @@ def run(
         UsageError, InputError: an option or a file is wrong. ServerError: the model gives no reply.
     """
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.vln.data.rewording import ORDER, annotated, asked_by, read_set, write_set
+    from world2minecraft.navigation.data.rewording import (
+        ORDER,
+        annotated,
+        asked_by,
+        read_set,
+        write_set,
+    )
 
     if not (annotations or rewrite or plain):
         raise UsageError("nothing to do; give --annotations FILE, --rewrite MODEL or --plain")
@@ -74,7 +80,7 @@ def _rewritten(
     from world2minecraft.cli.progress import shown
     from world2minecraft.external_models.chat_messages import Turn
     from world2minecraft.external_models.structured_replies import spoken
-    from world2minecraft.vln.data.rewording import rewritten_set
+    from world2minecraft.navigation.data.rewording import rewritten_set
 
     def ask(prompt: str) -> str:
         return spoken(chat.ask((Turn("user", (prompt,)),))[1].text)

@@ -10,7 +10,7 @@ import typer
 from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
-    from world2minecraft.vln.values import Episode, Stance
+    from world2minecraft.navigation.values import Episode, Stance
 
 EXAMPLES = """\
 w2m vln run OUT "Go to the table"                        the oracle shows the way, no network needed
@@ -113,8 +113,8 @@ def run(
         UsageError: a name or an option is wrong. InputError: the scene or the goal cannot be had.
         ServerError: a model cannot be asked. BudgetError: a cap is reached.
     """
-    from world2minecraft.vln.agents import agent_of
-    from world2minecraft.vln.running.asking import Wish
+    from world2minecraft.navigation.agents import agent_of
+    from world2minecraft.navigation.running.sentence_goals import Wish
 
     folder = out or option.folder_of(agent)
     _check_apart(folder, scene)
@@ -136,7 +136,7 @@ def run(
 def _check_apart(folder: Path, scene: Path) -> None:
     """Refuse to write what was walked over the very episodes that are walked."""
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.vln.records import EPISODES
+    from world2minecraft.navigation.records import EPISODES
 
     source = scene if scene.suffix == ".jsonl" else scene / EPISODES
     if source.is_file() and source.resolve() == (folder / EPISODES).resolve():
@@ -152,15 +152,15 @@ class _Grounds:
         self._grounds: dict[tuple[str, str], Any] = {}
 
     def scene(self, path: str) -> Any:
-        from world2minecraft.vln.scene import open_scene
+        from world2minecraft.navigation.scene import open_scene
 
         if path not in self._scenes:
             self._scenes[path] = self._on_server(path) if self._server else open_scene(path)
         return self._scenes[path]
 
     def _on_server(self, path: str) -> Any:
-        from world2minecraft.vln.server.body import join
-        from world2minecraft.vln.server.scene import open_server_scene
+        from world2minecraft.navigation.server.body import join
+        from world2minecraft.navigation.server.scene import open_server_scene
 
         if not self._bodies:
             self._bodies.append(join(self._server))
@@ -171,13 +171,13 @@ class _Grounds:
             body.close()
 
     def __call__(self, episode: "Episode") -> Any:
-        from world2minecraft.vln.running.scene_ground import SceneGround
+        from world2minecraft.navigation.running.scene_ground import SceneGround
 
         key = (episode.scene, episode.move_set)
         if key not in self._grounds:
             scene = self.scene(episode.scene)
             if self._server:
-                from world2minecraft.vln.server.ground import ServerGround
+                from world2minecraft.navigation.server.ground import ServerGround
 
                 self._grounds[key] = ServerGround(scene, episode.move_set)
             else:
@@ -189,8 +189,8 @@ def _episodes(scene: Path, wish: Any, count: int | None, grounds: _Grounds) -> "
     from dataclasses import replace
 
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.vln.records import EPISODES, read_episodes, scene_place
-    from world2minecraft.vln.running.asking import episode_of
+    from world2minecraft.navigation.records import EPISODES, read_episodes, scene_place
+    from world2minecraft.navigation.running.sentence_goals import episode_of
 
     if scene.suffix == ".jsonl" or (scene / EPISODES).is_file():
         if wish.instruction or wish.goal:
@@ -211,10 +211,10 @@ def _walk(
 ) -> dict[str, Any]:  # fmt: skip
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.vln_live import live
-    from world2minecraft.vln.records import write_episodes
-    from world2minecraft.vln.running.course import run_course, write_course
-    from world2minecraft.vln.running.film import FILM_FILE, Film
-    from world2minecraft.vln.running.trace import TraceWriter
+    from world2minecraft.navigation.records import write_episodes
+    from world2minecraft.navigation.running.course import run_course, write_course
+    from world2minecraft.navigation.running.film import FILM_FILE, Film
+    from world2minecraft.navigation.running.trace import TraceWriter
 
     compiling_note()
     films: list[Film] = []
@@ -259,7 +259,7 @@ def _invited(walker: Any, no_browser: bool) -> Iterator[None]:
 
 def _people(walker: Any) -> list[Any]:
     """Return the walker in a list where it is a person, who hears how the walks went."""
-    from world2minecraft.vln.agents.human import HumanAgent
+    from world2minecraft.navigation.running.human_agent import HumanAgent
 
     return [walker] if isinstance(walker, HumanAgent) else []
 
@@ -272,7 +272,7 @@ def _place(episode: "Episode", episodes: "list[Episode]") -> str:
 def _say(
     folder: Path, told: dict[str, Any], episodes: "list[Episode]", video: bool, chats: list[Any]
 ) -> None:
-    from world2minecraft.vln.running.tables import HEADS_NOTE, text_of, walks_table
+    from world2minecraft.navigation.running.tables import HEADS_NOTE, text_of, walks_table
 
     print()
     print(f"{text_of(walks_table([told]))}\n{HEADS_NOTE}")
@@ -289,7 +289,7 @@ def _stance(text: str) -> "Stance | None":
     from math import isfinite
 
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.vln.values import Stance
+    from world2minecraft.navigation.values import Stance
 
     if not text:
         return None

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.vln.data.baselines import BaselineRow
+    from world2minecraft.navigation.data.blind_baselines import BaselineRow
 
 EXAMPLES = """\
 w2m vln stats SET                          lengths beside the paper's, balance, baselines
@@ -49,11 +49,11 @@ def run(
         InputError: it is no set, or a picture is missing.
     """
     from world2minecraft.core.files import write_json
-    from world2minecraft.vln.data.baselines import baselines as score
-    from world2minecraft.vln.data.leaks import leaks_of
-    from world2minecraft.vln.data.statistics import statistics_of
-    from world2minecraft.vln.data.statistics_text import figures, statistics_text
-    from world2minecraft.vln.records import read_items
+    from world2minecraft.navigation.data.blind_baselines import baselines as score
+    from world2minecraft.navigation.data.leaks import leaks_of
+    from world2minecraft.navigation.data.statistics import statistics_of
+    from world2minecraft.navigation.data.statistics_text import figures, statistics_text
+    from world2minecraft.navigation.records import read_items
 
     items = read_items(path)
     statistics, leaks = statistics_of(items), leaks_of(items)
@@ -64,7 +64,7 @@ def run(
         write_json(json_file, figures(statistics, leaks, rows))
         print(f"  wrote  {json_file}")
     if plot is not None:
-        from world2minecraft.vln.data.histograms import write_histograms
+        from world2minecraft.navigation.data.histograms import write_histograms
 
         write_histograms(items, plot)
         print(f"  wrote  {plot}")

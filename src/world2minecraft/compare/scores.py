@@ -25,7 +25,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Layout
 from world2minecraft.furniture.footprints import outside_share, shared_height_m, shared_volume_m3
 from world2minecraft.furniture.layout_checks import inside_polygon, overlap_depth_m, plan_corners_m
-from world2minecraft.vln.scores import rate
+from world2minecraft.navigation.scores import rate
 
 ANY_M3 = 1e-9  # Less is rounding: boxes that touch.
 

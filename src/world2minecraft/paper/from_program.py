@@ -9,11 +9,11 @@ import yaml
 from world2minecraft.minecraft.block_states import known_blocks
 from world2minecraft.minecraftocc.block_map import load_block_map
 from world2minecraft.minecraftocc.plan import PRESETS
+from world2minecraft.navigation.data.quotas import PAPER_HELD, PAPER_SIZE
+from world2minecraft.navigation.exporters import easyr1, llamafactory, steps
+from world2minecraft.navigation.exporters.recipes import rendered
+from world2minecraft.navigation.exporters.rules import HandoffRule
 from world2minecraft.paper.values import Ours, PaperTable
-from world2minecraft.vln.data.quotas import PAPER_HELD, PAPER_SIZE
-from world2minecraft.vln.handoff import easyr1, llamafactory, steps
-from world2minecraft.vln.handoff.recipes import rendered
-from world2minecraft.vln.handoff.rules import HandoffRule
 
 ROWS = 1151  # Of the paper's Combined, Next-View; a recipe is written for some number of rows.
 SHOWN = 3  # Blocks and words that a cell names.

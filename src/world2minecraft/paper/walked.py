@@ -7,15 +7,15 @@ import numpy as np
 
 from world2minecraft.capture.images import read_colour
 from world2minecraft.core.errors import InputError
-from world2minecraft.vln.running.scene_ground import SceneGround
-from world2minecraft.vln.running.trace import (
+from world2minecraft.navigation.running.scene_ground import SceneGround
+from world2minecraft.navigation.running.trace import (
     TRACE_FILE,
     VIEWS_FOLDER,
     read_trace,
     stances_of,
     traces_in,
 )
-from world2minecraft.vln.scene import open_scene
+from world2minecraft.navigation.scene import open_scene
 
 
 def views_of_walk(run: Path, walk: Path, most: int) -> list[np.ndarray]:

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from world2minecraft.minecraftocc.statistics.tables import escape
+from world2minecraft.navigation.running.tables import markdown_of
 from world2minecraft.paper.layout import Grid, grid_of
 from world2minecraft.paper.values import Ours, PaperTable
-from world2minecraft.vln.running.tables import markdown_of
 
 CELL_WIDTH = 36  # Longer cells are broken into lines.
 PAGE_WIDTH = 100  # Of the whole: what a terminal, a mail and a page in print hold.

@@ -1,0 +1,17 @@
+"""Agents: baselines that see nothing, experts that know the scene, and vision-language models."""
+
+from world2minecraft.navigation.agents.model import ModelAgent
+from world2minecraft.navigation.agents.registry import AGENTS, BESIDE, agent_of
+from world2minecraft.navigation.agents.values import Agent, Decision, Guide, Sight, Task
+
+__all__ = [
+    "AGENTS",
+    "BESIDE",
+    "Agent",
+    "Decision",
+    "Guide",
+    "ModelAgent",
+    "Sight",
+    "Task",
+    "agent_of",
+]

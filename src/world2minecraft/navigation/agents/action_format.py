@@ -1,0 +1,144 @@
+"""The form of a step: what a model must say to move, and how what it says is read.
+
+Strict where a server is: a JSON object with the four fields and nothing else. Where it says plain
+text, an ``Actions:`` line or tagged answer is read, or a reply that is actions alone. A word among
+prose is never taken for an action: "do not go forward" is no step forward.
+"""
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from world2minecraft.external_models.structured_replies import Form, UnreadableError, json_of
+from world2minecraft.navigation.values import Move
+
+MOST_MOVES = 4
+MOST_THOUGHT = 2000  # Characters that are kept.
+NAMES = {
+    "FORWARD": Move.FORWARD,
+    "LEFT": Move.LEFT,
+    "RIGHT": Move.RIGHT,
+    "STOP": Move.STOP,
+}
+# As papers and tuned models write them; NaVid, StreamVLN and Uni-NaVid among them.
+OTHER_NAMES = {
+    "MOVE_FORWARD": Move.FORWARD,
+    "GO_FORWARD": Move.FORWARD,
+    "MOVE_AHEAD": Move.FORWARD,
+    "TURN_LEFT": Move.LEFT,
+    "TURN_RIGHT": Move.RIGHT,
+    "↑": Move.FORWARD,
+    "←": Move.LEFT,
+    "→": Move.RIGHT,
+}
+_ALL = NAMES | OTHER_NAMES
+_TAGGED = re.compile(r"<(?:answer|actions?)>(.*?)</(?:answer|actions?)>", re.S | re.I)
+_LINE = re.compile(r"^\W*(?:actions?|answer)\W*[:=](.*)$", re.M | re.I)
+_THOUGHT = re.compile(r"^\W*thoughts?\W*[:=](.*)$", re.M | re.I)
+FIELDS = ("thought", "progress", "actions", "done")
+
+SCHEMA: dict[str, Any] = {
+    "type": "object",
+    "properties": {
+        "thought": {"type": "string", "description": "What you see and why you move so; short."},
+        "progress": {"type": "string", "description": "What of the instruction is done so far."},
+        "actions": {
+            "type": "array",
+            "items": {"type": "string", "enum": list(NAMES)},
+            "description": "The next moves, in turn. STOP only as the last one, at the goal.",
+        },
+        "done": {"type": "boolean", "description": "true with STOP, else false."},
+    },
+    "required": list(FIELDS),
+    "additionalProperties": False,
+}
+
+
+@dataclass(frozen=True)
+class Step:
+    """What a model said that it does."""
+
+    moves: tuple[Move, ...]
+    thought: str = ""
+    progress: str = ""
+
+
+def step_form(most: int = MOST_MOVES) -> Form[Step]:
+    """Return the form of a step of at most so many moves."""
+    count = "one action" if most == 1 else f"1 to {most} actions"
+    words = (
+        'Reply with one JSON object: {"thought": "...", "progress": "...", "actions": '
+        f'["FORWARD"], "done": false}}, with {count} of {", ".join(NAMES)} and nothing around it. '
+        "STOP comes last, alone with done true. If you cannot write JSON, end with one line: "
+        "Actions: FORWARD, LEFT"
+    )
+    return Form("step", SCHEMA, words, lambda text: read_step(text, most))
+
+
+def read_step(text: str, most: int = MOST_MOVES) -> Step:
+    r"""Return the step that a reply says.
+
+    Raises:
+        UnreadableError: it says none, or more than one way.
+
+    Example:
+        >>> read_step("Thought: the door is left.\nActions: turn left, move forward").moves
+        (<Move.LEFT: 2>, <Move.FORWARD: 1>)
+    """
+    found = json_of(text)
+    if found is not None:
+        return _of_json(found, most)
+    tagged, lines = _TAGGED.findall(text), _LINE.findall(text)
+    for said in (tagged[-1:], lines[-1:], [text]):
+        if said:
+            moves = tuple(_move(word) for word in _words(said[0]))
+            thought = (_THOUGHT.findall(text) or [""])[0].strip()
+            return Step(_checked(moves, None, most), thought[:MOST_THOUGHT])
+    raise UnreadableError("it is empty")
+
+
+def _of_json(found: dict[str, Any], most: int) -> Step:
+    actions, done = found.get("actions"), found.get("done")
+    if isinstance(actions, str):
+        actions = _words(actions)
+    if not isinstance(actions, list) or not all(isinstance(one, str) for one in actions):
+        raise UnreadableError("actions must be a list of action names")
+    if done is not None and not isinstance(done, bool):
+        raise UnreadableError("done must be true or false")
+    moves = _checked(tuple(_move(one) for one in actions), done, most)
+    texts = [found.get(name) for name in ("thought", "progress")]
+    thought, progress = (one[:MOST_THOUGHT] if isinstance(one, str) else "" for one in texts)
+    return Step(moves, thought, progress)
+
+
+def _words(said: str) -> list[str]:
+    """Return the actions of a plain list: parted by commas, lines, 'then' or spaces."""
+    plain = said.strip().strip("[]().\"'`* ")
+    parts = re.split(r"[,;|\n]+|\bthen\b|\band\b", plain, flags=re.I)
+    whole = [part.strip(" \t\"'`*.[]") for part in parts]
+    whole = [part for part in whole if part]
+    if len(whole) == 1 and _name(whole[0]) not in _ALL:
+        return whole[0].split()  # FORWARD FORWARD LEFT
+    return whole
+
+
+def _name(word: str) -> str:
+    return re.sub(r"[\s_-]+", "_", word.strip().upper())
+
+
+def _move(word: str) -> Move:
+    name = _name(word)
+    if name not in _ALL:
+        known = ", ".join(NAMES)
+        raise UnreadableError(f"{word[:40]!r} is no action; actions are {known}")
+    return _ALL[name]
+
+
+def _checked(moves: tuple[Move, ...], done: bool | None, most: int) -> tuple[Move, ...]:
+    if not 1 <= len(moves) <= most:
+        raise UnreadableError(f"it has {len(moves)} actions; 1 to {most} are taken")
+    if Move.STOP in moves[:-1]:
+        raise UnreadableError("an action comes after STOP, which ends the walk")
+    if done is True and moves[-1] != Move.STOP:
+        raise UnreadableError("done is true but the last action is not STOP")
+    return moves

@@ -1,0 +1,50 @@
+"""Agents by name: the baselines, agents of other packages, and any model on a server."""
+
+from collections.abc import Callable
+
+from world2minecraft.core.errors import UnknownNameError
+from world2minecraft.core.registry import Registry
+from world2minecraft.external_models.chat_client import ChatModel
+from world2minecraft.external_models.chat_endpoints import ENDPOINTS, is_endpoint
+from world2minecraft.external_models.chat_pictures import MOST_PX
+from world2minecraft.navigation.agents.action_format import MOST_MOVES
+from world2minecraft.navigation.agents.model import HISTORY, ModelAgent
+from world2minecraft.navigation.agents.values import Agent
+from world2minecraft.navigation.agents.vlm_prompts import MAPS, MapKind
+
+# Other packages add a class without parameters through the entry points world2minecraft.agent.
+AGENTS = Registry(
+    "agent",
+    {
+        "oracle": "world2minecraft.navigation.agents.guided:OracleAgent",
+        "shortest": "world2minecraft.navigation.agents.guided:ShortestAgent",
+        "random": "world2minecraft.navigation.agents.simple:RandomAgent",
+        "forward": "world2minecraft.navigation.agents.simple:ForwardAgent",
+        "stop": "world2minecraft.navigation.agents.simple:StopAgent",
+        "human": "world2minecraft.navigation.running.human_agent:HumanAgent",
+    },
+)
+BESIDE = ("stop", "random", "oracle")  # Told beside every result: what it is worth.
+
+
+def agent_of(
+    text: str,
+    chat: Callable[[], ChatModel],
+    *,
+    chunk: int = MOST_MOVES,
+    history: int = HISTORY,
+    map_kind: MapKind = "none",
+    most_px: int = MOST_PX,
+) -> Agent:
+    """Return an agent by its name, or the model that ``chat`` opens for a server's.
+
+    Raises:
+        UnknownNameError: no agent, no server or no map is called so.
+    """
+    if map_kind not in MAPS:
+        raise UnknownNameError("map", map_kind, MAPS)
+    if is_endpoint(text):
+        return ModelAgent(chat(), chunk=chunk, history=history, map_kind=map_kind, most_px=most_px)
+    if text not in AGENTS.names():
+        raise UnknownNameError("agent", text, [*AGENTS.names(), *ENDPOINTS])
+    return AGENTS.load(text)()

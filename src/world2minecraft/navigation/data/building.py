@@ -1,0 +1,206 @@
+"""A set of many scenes: walked, then asked about, then written.
+
+OUT/dataset.json      what it was made of, and how
+OUT/items.jsonl       questions
+OUT/trajectories.jsonl, OUT/episodes.jsonl
+OUT/images/SCENE/TRAJECTORY/NNN.jpg
+"""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from world2minecraft import __version__
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import write_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.minecraftocc.source import scene_id_of
+from world2minecraft.navigation.data.asking import items_of
+from world2minecraft.navigation.data.crew import SceneJob, work_jobs
+from world2minecraft.navigation.data.leaks import Leaks, leaks_of, without_shared_pictures
+from world2minecraft.navigation.data.quotas import COMPOSITIONS, PAPER_WALKS, cut_as_the_paper
+from world2minecraft.navigation.data.recorded_walks import At, streams_of
+from world2minecraft.navigation.data.scene_items import MADE_BY, SceneWork, WorkRule
+from world2minecraft.navigation.data.splits import UNSEEN_SHARE, paper_splits, scene_splits
+from world2minecraft.navigation.records import (
+    ABOUT,
+    EPISODES,
+    ITEMS,
+    TRAJECTORIES,
+    write_episodes,
+    write_items,
+    write_trajectories,
+)
+from world2minecraft.navigation.values import Item
+
+PER_SCENE = {"base": 30, "extend": 110}  # Trajectories: what the paper's size asks for.
+RECONSTRUCTED = ("room.npz", "placements.json")  # A run folder has them.
+
+
+@dataclass(frozen=True)
+class BuildRule:
+    """How a set is made. ``trajectories`` of each scene; None takes ``PER_SCENE``.
+
+    ``paper_size`` cuts to the paper's counts, and asks each scene for its share of them.
+    ``paper_split`` holds out walks of the same scenes, as the paper does; ``unseen_share`` of the
+    scenes are held out otherwise. ``streams`` are recorded walks: scenes that have some give those
+    alone; ``at`` is what x, y, z is in lines that do not say it.
+    """
+
+    composition: str = "combined"
+    trajectories: int | None = None
+    paper_size: bool = False
+    paper_split: bool = False
+    unseen_share: float = UNSEEN_SHARE
+    streams: tuple[str, ...] = ()
+    at: At = "eye"
+    work: WorkRule = field(default_factory=WorkRule)
+
+    def __post_init__(self):
+        if self.composition not in COMPOSITIONS:
+            raise UsageError(f"a composition is base, extend or combined, not {self.composition!r}")
+        if self.trajectories is not None and self.trajectories < 1:
+            raise UsageError(f"--trajectories must be 1 or more, not {self.trajectories}")
+        if self.paper_split and self.unseen_share not in (0, UNSEEN_SHARE):
+            raise UsageError("the paper's split holds out no scene; leave out --unseen-share")
+
+    def walks_of(self, kinds: Mapping[str, str]) -> dict[str, int]:
+        """Return how many walks each scene is asked for, by the scenes' compositions."""
+        scenes = Counter(kinds.values())
+        share = {kind: -(-PAPER_WALKS[kind] // scenes[kind]) for kind in scenes}
+        usual = share if self.paper_size else PER_SCENE
+        return {name: self.trajectories or usual[kind] for name, kind in kinds.items()}
+
+
+@dataclass(frozen=True)
+class Built:
+    """What came of building."""
+
+    items: list[Item]
+    works: list[SceneWork]
+    leaks: Leaks
+    left_out: list[str]  # scenes that are not of the composition
+
+
+def composition_of(path: str | Path) -> str:
+    """Return base for a reconstruction's run folder, extend for every other world."""
+    folder = Path(path)
+    places = (folder, folder.parent, folder.parent.parent)
+    found = any(all((place / name).is_file() for name in RECONSTRUCTED) for place in places)
+    return "base" if found else "extend"
+
+
+def build_set(
+    paths: Sequence[str | Path],
+    out: str | Path,
+    rule: BuildRule | None = None,
+    progress: Progress = silent,
+    workers: int = 1,
+) -> Built:
+    """Make a set of scenes.
+
+    Args:
+        paths: of the scenes, as ``open_scene`` takes them.
+        out: the folder to write; the same words and seed give the same bytes.
+        rule: what is made.
+        progress: told of the walks.
+        workers: how many processes walk; the bytes are the same for any number.
+
+    Raises:
+        UsageError: no scene is of the composition, two have one name, or none gives a trajectory.
+        InputError: a scene cannot be read. OutputError: the folder cannot be written.
+    """
+    how = rule or BuildRule()
+    kinds = {str(path): composition_of(path) for path in paths}
+    wanted = {path: kind for path, kind in kinds.items() if how.composition in ("combined", kind)}
+    if not wanted:
+        raise UsageError(
+            f"none of the {len(kinds)} scenes is of composition {how.composition}: base are runs "
+            "of w2m reconstruct, extend all other worlds"
+        )
+    scene_of = _names(list(wanted))
+    unseen = 0.0 if how.paper_split else how.unseen_share
+    named = {scene_of[path]: kind for path, kind in wanted.items()}
+    splits, walks = scene_splits(named, how.work.seed, unseen), how.walks_of(named)
+    streams = streams_of(how.streams, list(named))
+    jobs = [
+        SceneJob(
+            path, str(out), kind, splits[scene_of[path]],
+            replace(how.work, trajectories=walks[scene_of[path]]),
+            streams.get(scene_of[path], ()), how.at,
+        )
+        for path, kind in wanted.items()
+    ]  # fmt: skip
+    works = work_jobs(jobs, workers, progress)
+    if how.paper_split:
+        _split_as_the_paper(works, how.work.seed)
+    items = without_shared_pictures(items_of(works, how.work.seed))
+    items = cut_as_the_paper(items, how.paper_split) if how.paper_size else items
+    if not items:
+        raise UsageError(
+            "no scene gave an item: they lack things to go to, or floor to walk on; name furnished "
+            "ones, or have some made: --rooms 3"
+        )
+    _write(Path(out), how, works, items, splits, {scene_of[path]: path for path in wanted})
+    return Built(items, works, leaks_of(items), [path for path in kinds if path not in wanted])
+
+
+def _split_as_the_paper(works: Sequence[SceneWork], seed: int) -> None:
+    """Put walks and episodes of each composition into the paper's splits."""
+    for kind in {work.composition for work in works}:
+        own = [work for work in works if work.composition == kind]
+        splits = paper_splits([one for work in own for one in work.trajectories], seed)
+        for work in own:
+            work.trajectories = [
+                replace(one, split=splits[one.trajectory_id]) for one in work.trajectories
+            ]
+            work.episodes = [replace(one, split=splits[one.trajectory_id]) for one in work.episodes]
+
+
+def _names(paths: Sequence[str]) -> dict[str, str]:
+    names = {path: scene_id_of(Path(path)) for path in paths}
+    twice = [name for name in names.values() if list(names.values()).count(name) > 1]
+    if twice:
+        raise UsageError(
+            f"two scenes are called {twice[0]!r}: folders must have names of their own"
+        )
+    return names
+
+
+def _write(
+    out: Path,
+    how: BuildRule,
+    works: Sequence[SceneWork],
+    items: Sequence[Item],
+    splits: Mapping[str, str],
+    paths: Mapping[str, str],
+) -> None:
+    write_items(out / ITEMS, items)
+    write_trajectories(out / TRAJECTORIES, [one for work in works for one in work.trajectories])
+    write_episodes(out / EPISODES, [one for work in works for one in work.episodes])
+    about: dict[str, Any] = {
+        "format": "minecraftvln-1",
+        "version": __version__,
+        "oracle_version": MADE_BY,
+        "composition": how.composition,
+        "rule": asdict(how.work),
+        "streams": list(how.streams),
+        "scenes": [
+            {
+                "scene_id": work.scene_id,
+                "path": paths[work.scene_id],
+                "composition": work.composition,
+                "split": "by walk" if how.paper_split else splits[work.scene_id],
+                "metres_per_block": work.metres_per_block,
+                "tours": work.tours,
+                "trajectories": len(work.trajectories),
+                "landmarks": list(work.names),
+                "refused": dict(sorted(work.refused.items())),
+            }
+            for work in works
+        ],
+        "items": len(items),
+    }
+    write_json(out / ABOUT, about)

@@ -1,0 +1,192 @@
+"""Our own streams: someone walks through a scene from one landmark to the next and looks at each.
+
+The way is a shortest one that keeps from walls where there is room. At each stop the walker faces
+the thing for a while, so that the stream is cut there as a recorded one would be.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from world2minecraft.core.coordinates import apply, invert
+from world2minecraft.minecraft.physics.shortest_paths import elbow_room_m, shortest_path
+from world2minecraft.navigation.landmarks import Landmark
+from world2minecraft.navigation.language.landmark_names import told_apart
+from world2minecraft.navigation.scene import VlnScene
+from world2minecraft.navigation.values import Stance
+from world2minecraft.navigation.walk_stream import StreamFrame, wrapped_deg
+
+EVERY_S = 0.2
+SPEED_M_S, TURN_DEG_S = 1.0, 90.0
+PAUSE_S = 2.4  # Longer than what cuts a stream.
+ASIDE_DEG = (50.0, 125.0)  # From the way, where one looks before leaving,
+SPOKEN_DEG = 35.0  # and a turn at the end that counts.
+AHEAD_M = 0.6  # One looks to where one will be.
+ELBOW_M, NARROW_COST = 0.5, 3.0  # One keeps so far from walls; at a wall a metre counts four.
+STOPS = 8  # Of a tour.
+LEAST_LEG_M = 1.6  # Nearer things are no next stop.
+HUNG_M = 1.2  # What hangs so high over the floor is nothing to find one's way by,
+LEAST_SIDE_M = 0.4  # and what is smaller is no goal.
+PULL_M = 0.2  # A way is straightened where that leaves so much room.
+
+
+@dataclass(frozen=True)
+class Tour:
+    """A walk and the names of the landmarks that it goes to, by the time of the stop."""
+
+    frames: tuple[StreamFrame, ...]
+    targets: dict[float, str]
+
+    def target_at(self, t_s: float) -> str:
+        """Return the landmark that was being gone to at a time; "" after the last."""
+        later = [stop_s for stop_s in self.targets if stop_s >= t_s - 1e-9]
+        return self.targets[min(later)] if later else ""
+
+
+class Tourist:
+    """Someone who knows a scene; makes tour after tour."""
+
+    def __init__(self, scene: VlnScene):
+        self._scene, self._graph = scene, scene.graph
+        self._elbow = elbow_room_m(scene.graph)
+        self._weights = 1 + NARROW_COST * np.maximum(0.0, 1 - self._elbow / ELBOW_M)
+        self._tree = KDTree(scene.graph.feet)
+        self._goals = _goals(scene)
+
+    @property
+    def has_goals(self) -> bool:
+        """Whether there are two things to walk between."""
+        return len(self._goals) >= 2
+
+    def tour(self, tour_id: str, rng: np.random.Generator) -> Tour:
+        """Return a tour of some stops; the same for the same generator."""
+        here = int(rng.choice(self._scene.main_places))
+        frames = [self._frame(0.0, self._graph.feet[here], float(rng.uniform(-180, 180)), tour_id)]
+        targets: dict[float, str] = {}
+        for number in rng.permutation(len(self._goals))[:STOPS]:
+            landmark, places = self._goals[number]
+            goal = int(rng.choice(places))
+            path = shortest_path(self._graph, here, goal, self._weights)
+            if path is None or path.length_m < LEAST_LEG_M:
+                continue
+            way = self._straightened(path.feet)
+            facing = self._facing(way[-1], landmark)
+            self._look_aside(frames, way, facing, rng)
+            self._walk(frames, way, facing)
+            targets[frames[-1].t_s] = landmark.name
+            self._pause(frames)
+            here = goal
+        return Tour(tuple(frames), targets)
+
+    def _look_aside(
+        self, frames: list[StreamFrame], way: np.ndarray, facing: float, rng: np.random.Generator
+    ) -> None:
+        """Turn beside the way before leaving, so that legs begin with a turn, and turn both ways.
+
+        To the side from which one starts by the turn that the end does not have.
+        """
+        ahead = _yaw_of(way[1] - way[0])
+        last = float(wrapped_deg(facing - _yaw_of(way[-1] - way[-2])))
+        side = -np.sign(last) if abs(last) >= SPOKEN_DEG else float(rng.choice([-1, 1]))
+        angle = float(rng.uniform(*ASIDE_DEG))
+        self._turn(frames, float(wrapped_deg(ahead - side * angle)))
+        self._pause(frames)
+
+    def _walk(self, frames: list[StreamFrame], corners: np.ndarray, facing: float) -> None:
+        """Add the frames of a way and of turning to the thing at its end."""
+        way = _sampled(corners, SPEED_M_S * EVERY_S * self._graph.blocks_per_metre)
+        ahead = max(1, round(AHEAD_M / (SPEED_M_S * EVERY_S)))
+        for n in range(1, len(way)):
+            yaw = _yaw_of(way[min(n + ahead, len(way) - 1)] - way[n - 1])
+            if n == 1:
+                self._turn(frames, yaw)
+            self._add(frames, way[n], yaw)
+        self._turn(frames, facing)
+
+    def _facing(self, feet: np.ndarray, landmark: Landmark) -> float:
+        """Return the yaw of one who looks at a thing from a place."""
+        near = np.clip(self._scene.to_room_m(feet), landmark.low_m, landmark.high_m)
+        room_to_block = invert(self._scene.volume.block_to_room)
+        point = apply(room_to_block, (near + landmark.center_m)[None] / 2)[0]
+        return _yaw_of(point - feet)
+
+    def _straightened(self, feet: np.ndarray) -> np.ndarray:
+        """Return the corners of a way that is straight wherever there is room for that."""
+        kept, n = [0], 0
+        while n < len(feet) - 1:
+            n = next(m for m in range(len(feet) - 1, n, -1) if m == n + 1 or self._free(feet, n, m))
+            kept.append(n)
+        return feet[kept]
+
+    def _free(self, feet: np.ndarray, first: int, last: int) -> bool:
+        """Whether one may walk straight between two places of a way."""
+        begin, end = feet[first], feet[last]
+        count = int(np.linalg.norm(end - begin) / self._graph.spacing * 2) + 2
+        line = begin + np.linspace(0, 1, count)[:, None] * (end - begin)
+        away, near = self._tree.query(line)
+        if away.max() > 0.75 * self._graph.spacing:
+            return False
+        _, own = self._tree.query(feet[first : last + 1])
+        return bool(self._elbow[near].min() >= min(PULL_M, self._elbow[own].min()))
+
+    def _turn(self, frames: list[StreamFrame], yaw_deg: float) -> None:
+        """Add the frames of turning on the spot."""
+        last = frames[-1].stance
+        off = float(wrapped_deg(yaw_deg - last.yaw_deg))
+        count = int(np.ceil(abs(off) / (TURN_DEG_S * EVERY_S)))
+        for n in range(1, count + 1):
+            self._add(frames, np.array(last.feet), last.yaw_deg + off * n / count)
+
+    def _pause(self, frames: list[StreamFrame]) -> None:
+        last = frames[-1].stance
+        for _ in range(round(PAUSE_S / EVERY_S)):
+            self._add(frames, np.array(last.feet), last.yaw_deg)
+
+    def _add(self, frames: list[StreamFrame], feet: np.ndarray, yaw_deg: float) -> None:
+        t_s = round(frames[-1].t_s + EVERY_S, 6)
+        frames.append(self._frame(t_s, feet, yaw_deg, frames[-1].tour_id))
+
+    def _frame(self, t_s: float, feet: np.ndarray, yaw_deg: float, tour_id: str) -> StreamFrame:
+        x, y, z = (float(value) for value in feet)
+        stance = Stance(x, y, z, float(wrapped_deg(yaw_deg)))
+        return StreamFrame(t_s, stance, self._scene.scene_id, tour_id)
+
+
+def _yaw_of(direction: np.ndarray) -> float:
+    return float(np.degrees(np.arctan2(-direction[0], direction[2])))
+
+
+def _goals(scene: VlnScene) -> list[tuple[Landmark, list[int]]]:
+    """Return what one can go to, with the places before each that ways lead to."""
+    main = set(scene.main_places.tolist())
+    found = []
+    for landmark in standing(scene):
+        if landmark.size_m.max() < LEAST_SIDE_M:
+            continue
+        places = sorted({scene.graph.nearest(goal) for goal in scene.goals_at(landmark)} & main)
+        if places:
+            found.append((landmark, places))
+    return found
+
+
+def standing(scene: VlnScene) -> list[Landmark]:
+    """Return the landmarks that a person would find the way by: plain in name, not hung up high."""
+    floor = scene.to_room_m(scene.graph.feet[scene.main_places])
+    found = []
+    for one in told_apart(scene.landmarks):
+        under = floor[(floor[:, 2] < one.high_m[2]) & (floor[:, 2] > one.low_m[2] - 2.5)]
+        if not len(under):
+            continue
+        nearest = np.hypot(*(under[:, :2] - one.center_m[:2]).T).argmin()
+        if one.low_m[2] - under[nearest, 2] <= HUNG_M:
+            found.append(one)
+    return found
+
+
+def _sampled(feet: np.ndarray, step: float) -> np.ndarray:
+    """Return points every ``step`` along a way, its end among them, float64 [N, 3]."""
+    lengths = np.linalg.norm(np.diff(feet, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(lengths)])
+    at = np.append(np.arange(0.0, along[-1], step), along[-1])
+    return np.stack([np.interp(at, along, feet[:, axis]) for axis in range(3)], axis=1)

@@ -1,0 +1,207 @@
+"""A set in other words: what people wrote of its walks, and what a language model made of its own.
+
+Words are added to a walk, and none takes another's place: the items of a walk ask in a person's
+words where there are any, else in a model's, else in the program's. Where only the goal is told
+many ways lead there; so an item that tells the way goes on telling it, and keeps its level.
+"""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+from world2minecraft.core.errors import BudgetError, ServerError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.navigation.language.human_instructions import (
+    read_annotations,
+    with_annotations,
+)
+from world2minecraft.navigation.language.parsing import told_in
+from world2minecraft.navigation.language.rewriting import Ask, Rewriting, rewritten
+from world2minecraft.navigation.records import (
+    ABOUT,
+    EPISODES,
+    ITEMS,
+    TRAJECTORIES,
+    read_episodes,
+    read_items,
+    read_trajectories,
+    write_episodes,
+    write_items,
+    write_trajectories,
+)
+from world2minecraft.navigation.values import Episode, Instruction, Item, Trajectory
+
+ORDER = ("human", "llm", "template")  # Whose words are asked by, where there are any.
+NO_REPLY, NO_BUDGET = "no reply", "no budget left"
+
+
+@dataclass(frozen=True)
+class NavigationSet:
+    """The records of a set, and the names of things in each scene."""
+
+    items: list[Item]
+    trajectories: list[Trajectory]
+    episodes: list[Episode]
+    names: Mapping[str, tuple[str, ...]]
+
+
+def read_set(folder: str | Path) -> NavigationSet:
+    """Read a set of ``w2m vln build``. Raises InputError and its kinds."""
+    place = Path(folder)
+    walks = read_trajectories(place)
+    return NavigationSet(
+        read_items(place), walks, read_episodes(place), _names(place / ABOUT, walks)
+    )
+
+
+def write_set(folder: str | Path, made: NavigationSet) -> None:
+    """Write the records of a set; its pictures are as they were. Raises OutputError."""
+    place = Path(folder)
+    write_trajectories(place / TRAJECTORIES, made.trajectories)
+    write_episodes(place / EPISODES, made.episodes)
+    write_items(place / ITEMS, made.items)
+
+
+def asked_by(made: NavigationSet, order: Sequence[str] = ORDER) -> NavigationSet:
+    """Return a set whose items and episodes use the words of the first source that has some.
+
+    The items of a walk use the words of several people in turn.
+
+    Args:
+        made: the set.
+        order: of ``INSTRUCTION_SOURCES``; what is not named is not used.
+    """
+    words = {one.trajectory_id: one.instructions for one in made.trajectories}
+    turns: Counter[str] = Counter()
+    items = []
+    for item in made.items:
+        own = words.get(item.trajectory_id, ())
+        chosen = _chosen(own, item.instruction, order, turns[item.trajectory_id])
+        turns[item.trajectory_id] += 1
+        items.append(replace(item, instruction=chosen))
+    episodes = [
+        replace(
+            one,
+            instruction=_chosen(words.get(one.trajectory_id, ()), one.instruction, order, 0),
+        )
+        for one in made.episodes
+    ]
+    return replace(made, items=items, episodes=episodes)
+
+
+def annotated(made: NavigationSet, file: str | Path) -> NavigationSet:
+    """Return a set whose walks have what people wrote of them too, and the things it names.
+
+    Raises: as ``read_annotations`` and ``with_annotations``.
+    """
+    scene_of, told = {one.trajectory_id: one.scene_id for one in made.trajectories}, []
+    for walk, one in read_annotations(file):
+        names = made.names.get(scene_of.get(walk, ""), ())
+        told.append((walk, replace(one, landmarks=told_in(one.text, names).landmarks)))
+    return replace(made, trajectories=with_annotations(made.trajectories, told, str(file)))
+
+
+def annotate_set(folder: str | Path, file: str | Path) -> None:
+    """Add what people wrote to a set on disk, and ask by it. Raises as ``annotated``."""
+    write_set(folder, asked_by(annotated(read_set(folder), file)))
+
+
+def rewritten_set(
+    made: NavigationSet, ask: Ask, model: str, jobs: int = 1, progress: Progress = silent
+) -> tuple[NavigationSet, Counter[str]]:
+    """Return a set with the program's words, as items use them, said again by a model.
+
+    Args:
+        made: the set; walks that have the model's words of a level are not asked about again.
+        ask: the model; several threads may call it.
+        model: what it is called.
+        jobs: questions at a time.
+        progress: told of each.
+
+    Returns:
+        The set, and how often words were taken ("") or refused, by the reason.
+
+    Raises:
+        ServerError: there is not one reply.
+    """
+    levels = _levels_in_use(made)
+    asked = [
+        (one, words)
+        for one in made.trajectories
+        for words in one.instructions
+        if words.source == "template" and words.level in levels.get(one.trajectory_id, ())
+        and not any(w.source == "llm" and w.level == words.level for w in one.instructions)
+    ]  # fmt: skip
+    progress("words", 0, len(asked))
+    added: dict[str, list[Instruction]] = {}
+    outcomes, failures = Counter[str](), list[ServerError]()
+    again = partial(_again, made=made, ask=ask, model=model)
+    with ThreadPoolExecutor(max(1, jobs)) as pool:
+        for number, ((walk, _), (told, error)) in enumerate(
+            zip(asked, pool.map(again, asked), strict=True), 1
+        ):
+            outcomes[told.refusal] += 1
+            failures += [error] if error is not None else []
+            if told.instruction is not None:
+                added.setdefault(walk.trajectory_id, []).append(told.instruction)
+            progress("words", number, len(asked))
+    if failures and not added:
+        raise failures[0]
+    trajectories = [
+        replace(one, instructions=(*one.instructions, *added.get(one.trajectory_id, ())))
+        for one in made.trajectories
+    ]
+    return replace(made, trajectories=trajectories), outcomes
+
+
+def _again(
+    one: tuple[Trajectory, Instruction], made: NavigationSet, ask: Ask, model: str
+) -> tuple[Rewriting, ServerError | None]:
+    walk, words = one
+    try:
+        return rewritten(words, made.names.get(walk.scene_id, ()), ask, model), None
+    except BudgetError:
+        return Rewriting(None, NO_BUDGET), None
+    except ServerError as error:
+        return Rewriting(None, NO_REPLY), error
+
+
+def _levels_in_use(made: NavigationSet) -> dict[str, set[str]]:
+    levels: dict[str, set[str]] = {}
+    for one in (*made.items, *made.episodes):
+        levels.setdefault(one.trajectory_id, set()).add(one.instruction.level)
+    return levels
+
+
+def _chosen(
+    words: Sequence[Instruction], now: Instruction, order: Sequence[str], turn: int
+) -> Instruction:
+    """Return the words to use in place of those of now: of their level where there are such."""
+    for source in order:
+        own = [one for one in words if one.source == source]
+        fit = [one for one in own if one.level == now.level] or [
+            one for one in own if now.level == "goal" or one.level != "goal"
+        ]
+        if fit:
+            return replace(fit[turn % len(fit)], level=now.level)
+    return now
+
+
+def _names(path: Path, walks: Sequence[Trajectory]) -> dict[str, tuple[str, ...]]:
+    """Return what things are called in each scene: as the set tells, and as its words do."""
+    names: dict[str, set[str]] = {}
+    for walk in walks:
+        for words in walk.instructions:
+            names.setdefault(walk.scene_id, set()).update(words.landmarks)
+    told = read_json(path) if path.is_file() else {}
+    scenes = told.get("scenes", []) if isinstance(told, dict) else []
+    for scene in scenes if isinstance(scenes, list) else []:
+        own = scene.get("landmarks") if isinstance(scene, dict) else None
+        if isinstance(own, list):
+            known = [name for name in own if isinstance(name, str) and name]
+            names.setdefault(str(scene.get("scene_id")), set()).update(known)
+    return {scene: tuple(sorted(own)) for scene, own in names.items()}

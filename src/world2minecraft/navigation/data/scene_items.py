@@ -1,0 +1,271 @@
+"""What one scene gives a set: trajectories with pictures, questions about them, episodes."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from world2minecraft.core.types import Camera
+from world2minecraft.navigation.data.album import Album, Pictured
+from world2minecraft.navigation.data.next_action import action_steps
+from world2minecraft.navigation.data.next_view import (
+    GRADE_SHARES,
+    GRADES,
+    ViewQuestion,
+    view_question,
+    view_steps,
+)
+from world2minecraft.navigation.data.pictures import Shot, shot_of, vln_camera
+from world2minecraft.navigation.data.planned_walks import Tourist
+from world2minecraft.navigation.data.splits import split_of_tour
+from world2minecraft.navigation.data.taking import RankDeck
+from world2minecraft.navigation.data.trajectories import Candidate, Maker
+from world2minecraft.navigation.data.validity import fault_of_pictures
+from world2minecraft.navigation.data.wrong_views import Scout
+from world2minecraft.navigation.discretise import VERSION, Guide, Walker
+from world2minecraft.navigation.moves import moved
+from world2minecraft.navigation.oracle import ORACLE_VERSION, expert
+from world2minecraft.navigation.scene import VlnScene
+from world2minecraft.navigation.values import (
+    LEVELS,
+    MOVE_SETS,
+    Episode,
+    Instruction,
+    Keyframe,
+    Move,
+    MoveSet,
+    Stance,
+    Trajectory,
+)
+from world2minecraft.navigation.walk_stream import StreamFrame
+
+Tick = Callable[[int], None]
+"""Told how many walks more there are."""
+
+MADE_BY = f"{VERSION}+{ORACLE_VERSION}"
+LOOK_PX = (64, 36)  # Of pictures that are only to tell how like they are.
+MOST_RECORDED = 100_000  # Walks of one scene.
+MOST_TOURS = 60  # A scene that gives too little in so many gives no more.
+
+
+@dataclass(frozen=True)
+class WorkRule:
+    """How a scene is worked. ``levels`` are the shares of goal, route and landmark."""
+
+    trajectories: int = 24
+    views: int = 3  # Next-View questions of a trajectory, at most
+    move_set: str = "vlnce"
+    levels: tuple[float, float, float] = (0.15, 0.25, 0.6)
+    balanced: bool = True  # one Next-Action question of each action, see ``next_action``
+    size_px: tuple[int, int] = (640, 360)
+    seed: int = 0
+
+
+@dataclass
+class SceneWork:
+    """What came of a scene. Questions and pictures are by the trajectory's id."""
+
+    scene_id: str
+    composition: str
+    metres_per_block: float
+    names: tuple[str, ...] = ()  # of its landmarks
+    trajectories: list[Trajectory] = field(default_factory=list)
+    spoken: dict[str, Instruction] = field(default_factory=dict)  # the one that items ask by
+    pictures: dict[str, list[Pictured]] = field(default_factory=dict)
+    views: list[ViewQuestion] = field(default_factory=list)
+    actions: dict[str, list[int]] = field(default_factory=dict)
+    episodes: list[Episode] = field(default_factory=list)
+    refused: Counter[str] = field(default_factory=Counter)
+    tours: int = 0
+
+
+def scene_walker(scene: VlnScene, move_set: MoveSet) -> Walker:
+    """Return the physics of a scene as discretising wants it."""
+    return partial(moved, scene, move_set=move_set)
+
+
+def scene_guide(scene: VlnScene, move_set: MoveSet) -> Guide:
+    """Return the oracle as discretising wants it."""
+
+    def moves(stance: Stance, end: tuple[float, float, float]) -> tuple[Move, ...]:
+        way = expert(scene, stance, (end,), move_set)
+        return way.moves if way is not None else ()
+
+    return moves
+
+
+def work_scene(
+    scene: VlnScene,
+    folder: Path,
+    composition: str,
+    scene_split: str,
+    rule: WorkRule,
+    tick: Tick = lambda _: None,
+    recorded: Sequence[Sequence[StreamFrame]] = (),
+) -> SceneWork:
+    """Walk a scene until it has given as many trajectories as the rule asks for.
+
+    Args:
+        scene: the world.
+        folder: of the set; pictures go below it.
+        composition: base or extend.
+        scene_split: train or val_unseen.
+        rule: how much, and how.
+        tick: told of each walk.
+        recorded: tours that were recorded there: all walks of these are taken, and no others.
+
+    Raises:
+        OutputError: a picture cannot be written.
+    """
+    move_set = MOVE_SETS[rule.move_set]
+    walker = scene_walker(scene, move_set)
+    maker = Maker(scene, move_set, walker, scene_guide(scene, move_set), rule.seed)
+    names = tuple(sorted(one.name for one in scene.landmarks))
+    work = SceneWork(scene.scene_id, composition, scene.metres_per_block, names)
+    crew = _Crew(scene, folder, scene_split, rule, walker, work)
+    most = MOST_RECORDED if recorded else rule.trajectories
+    for frames, target_at, rng in _recorded(recorded, rule) if recorded else _tours(scene, rule):
+        work.tours += 1
+        for candidate in maker.candidates(frames, target_at):
+            if len(work.trajectories) == most:
+                break
+            tick(crew.take_in(candidate, rng))
+        if len(work.trajectories) == most:
+            break
+    work.refused += maker.refusals
+    return work
+
+
+Toured = tuple[Sequence[StreamFrame], Callable[[float], str] | None, np.random.Generator]
+"""Frames, what was being gone to at a time, and the tour's chances."""
+
+
+def _tours(scene: VlnScene, rule: WorkRule) -> Iterator[Toured]:
+    """Tour a scene again and again."""
+    tourist = Tourist(scene)
+    for number in range(MOST_TOURS if tourist.has_goals else 0):
+        tour_id = f"{scene.scene_id}_t{number:02d}"
+        rng = np.random.default_rng([rule.seed, *tour_id.encode()])
+        tour = tourist.tour(tour_id, rng)
+        yield tour.frames, tour.target_at, rng
+
+
+def _recorded(tours: Sequence[Sequence[StreamFrame]], rule: WorkRule) -> Iterator[Toured]:
+    for frames in tours:
+        if frames:
+            yield frames, None, np.random.default_rng([rule.seed, *frames[0].tour_id.encode()])
+
+
+class _Crew:
+    """Takes the pictures of candidates and makes trajectories of those that show something."""
+
+    def __init__(
+        self,
+        scene: VlnScene,
+        folder: Path,
+        scene_split: str,
+        rule: WorkRule,
+        walker: Walker,
+        work: SceneWork,
+    ):
+        self._scene, self._split, self._rule, self._work = scene, scene_split, rule, work
+        kept, small = vln_camera(*rule.size_px), vln_camera(*LOOK_PX)
+        self._album = Album(folder, partial(_taken, scene, kept), partial(_taken, scene, small))
+        self._ranks = RankDeck(np.random.default_rng([rule.seed, *scene.scene_id.encode()]))
+        self._scout = Scout(walker, scene.metres_per_block)
+
+    def take_in(self, candidate: Candidate, rng: np.random.Generator) -> int:
+        """Add a candidate with its questions, or count why it is none; return how many it is."""
+        shots = self._album.take([mark.stance for mark in candidate.marks])
+        fault = fault_of_pictures([one.mean for one in shots], [one.dhash for one in shots])
+        if fault:
+            self._work.refused[fault] += 1
+            return 0
+        split = split_of_tour(candidate.tour_id, self._split, self._rule.seed)
+        pictures = self._written(candidate, shots)
+        trajectory = _trajectory(self._scene, candidate, pictures, split)
+        spoken = _spoken(candidate.instructions, self._rule.levels, rng)
+        work, name = self._work, candidate.trajectory_id
+        work.trajectories.append(trajectory)
+        work.pictures[name], work.spoken[name] = pictures, spoken
+        balanced = self._rule.balanced
+        work.actions[name] = action_steps(candidate.marks, candidate.clear, rng, balanced)
+        work.views += self._views(candidate, pictures, spoken, rng)
+        work.episodes.append(_episode(self._scene, candidate, spoken, split, self._rule))
+        return 1
+
+    def _written(self, candidate: Candidate, shots: Sequence[Shot]) -> list[Pictured]:
+        folder = f"images/{self._scene.scene_id}/{candidate.trajectory_id}"
+        return [
+            self._album.write(f"{folder}/{n:03d}.jpg", mark.stance, shot)
+            for n, (mark, shot) in enumerate(zip(candidate.marks, shots, strict=True))
+        ]
+
+    def _views(
+        self,
+        candidate: Candidate,
+        pictures: Sequence[Pictured],
+        spoken: Instruction,
+        rng: np.random.Generator,
+    ) -> list[ViewQuestion]:
+        """Return questions; no hard ones where only the goal is told, as many ways lead there."""
+        steps = view_steps(candidate.clear, pictures)
+        chosen = sorted(rng.permutation(len(steps))[: self._rule.views])
+        grades, shares = list(GRADES), np.array(GRADE_SHARES)
+        shares = shares * [1, 1, spoken.level != "goal"]
+        return [
+            view_question(
+                candidate.trajectory_id, candidate.marks, pictures, steps[n],
+                str(rng.choice(grades, p=shares / shares.sum())), self._album, self._scout,
+                self._ranks, rng,
+            )
+            for n in chosen
+        ]  # fmt: skip
+
+
+def _taken(scene: VlnScene, camera: Camera, stances: Sequence[Stance]) -> list[Shot]:
+    return [
+        shot_of(np.asarray(scene.picture(stance, camera, outputs=("colour",)).colour))
+        for stance in stances
+    ]
+
+
+def _trajectory(
+    scene: VlnScene, candidate: Candidate, pictures: Sequence[Pictured], split: str
+) -> Trajectory:
+    keyframes = tuple(
+        Keyframe(one.image, mark.stance, mark.action, mark.chunk, one.sha256)
+        for mark, one in zip(candidate.marks, pictures, strict=True)
+    )
+    return Trajectory(
+        candidate.trajectory_id, scene.scene_id, keyframes, candidate.instructions,
+        round(candidate.path_m, 4), split, scene.metres_per_block,
+    )  # fmt: skip
+
+
+def _spoken(
+    instructions: Sequence[Instruction],
+    levels: tuple[float, float, float],
+    rng: np.random.Generator,
+) -> Instruction:
+    """Return the instruction that a trajectory's items ask by: of a level drawn by its share."""
+    weights = np.array([levels[LEVELS.index(one.level)] for one in instructions]) + 1e-9
+    return instructions[int(rng.choice(len(instructions), p=weights / weights.sum()))]
+
+
+def _episode(
+    scene: VlnScene, candidate: Candidate, spoken: Instruction, split: str, rule: WorkRule
+) -> Episode:
+    """Return the episode: to the end of the way, or anywhere before what alone is named."""
+    end = candidate.walk.stances[-1].feet
+    goals, name = (end,), candidate.way.stop
+    if spoken.level == "goal":
+        goals = (end, *scene.goals_at(scene.landmark(name)))
+    return Episode(
+        candidate.trajectory_id, scene.path, scene.scene_id, candidate.walk.stances[0], goals,
+        name, spoken, rule.move_set, candidate.walk.moves, candidate.walk.stances,
+        candidate.trajectory_id, split, oracle_version=MADE_BY,
+    )  # fmt: skip

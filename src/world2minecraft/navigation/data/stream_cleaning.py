@@ -1,0 +1,110 @@
+"""A stream cut into walks: at jumps, at gaps in time, where one stood still or looked around.
+
+What a person did between two such places is one segment, a candidate for a trajectory. The limits
+are those of reference points in the game at a player's size, in metres of the room.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.navigation.walk_stream import StreamFrame, feet_m, wrapped_deg
+
+
+@dataclass(frozen=True)
+class CleanRule:
+    """When a walk ends. Guesses, checked on walks of ours: a sprint is 5.6 m/s, a blink 0.1 s."""
+
+    gap_s: float = 1.0  # Longer between two frames, and something is missing,
+    fastest_m_s: float = 8.0  # faster, and one flew,
+    jump_m: float = 1.5  # farther at once, and one was teleported.
+    pause_s: float = 2.0  # Standing so long ends a walk,
+    still_m: float = 0.1  # within so much and
+    still_deg: float = 5.0  # without a turn;
+    look_deg: float = 300.0  # so does turning so far
+    look_m: float = 0.5  # within so much.
+    pitch_deg: float = 60.0  # Who looks at the feet or the sky sees no way.
+
+
+def segments_of(
+    frames: Sequence[StreamFrame], blocks_per_metre: float, rule: CleanRule | None = None
+) -> list[list[StreamFrame]]:
+    """Return the walks of a stream, in its order; frames that look up or down are dropped.
+
+    Args:
+        frames: in time's order, tour after tour.
+        blocks_per_metre: of the world.
+        rule: when a walk ends.
+    """
+    how = rule or CleanRule()
+    level = [frame for frame in frames if abs(frame.stance.pitch_deg) <= how.pitch_deg]
+    segments = []
+    for run in _unbroken(level, blocks_per_metre, how):
+        segments += _between_stops(run, blocks_per_metre, how)
+    return [segment for segment in segments if len(segment) >= 2]
+
+
+def _unbroken(
+    frames: Sequence[StreamFrame], blocks_per_metre: float, rule: CleanRule
+) -> list[list[StreamFrame]]:
+    """Cut where the place, the time, the tour or the scene jumps."""
+    if not frames:
+        return []
+    away_m = np.linalg.norm(np.diff(feet_m(frames, blocks_per_metre)[:, [0, 2]], axis=0), axis=1)
+    passed_s = np.diff([frame.t_s for frame in frames])
+    runs = [[frames[0]]]
+    for n, frame in enumerate(frames[1:]):
+        before = frames[n]
+        breaks = (
+            (frame.scene_id, frame.tour_id) != (before.scene_id, before.tour_id)
+            or not 0 < passed_s[n] <= rule.gap_s
+            or away_m[n] > rule.jump_m
+            or away_m[n] > rule.fastest_m_s * passed_s[n]
+        )
+        if breaks:
+            runs.append([])
+        runs[-1].append(frame)
+    return runs
+
+
+def _between_stops(
+    run: list[StreamFrame], blocks_per_metre: float, rule: CleanRule
+) -> list[list[StreamFrame]]:
+    """Cut where one stood still or looked around: a walk ends as that begins."""
+    places = feet_m(run, blocks_per_metre)[:, [0, 2]]
+    times = np.array([frame.t_s for frame in run])
+    yaws = np.array([frame.stance.yaw_deg for frame in run])
+    turned = np.concatenate([[0], np.cumsum(np.abs(wrapped_deg(np.diff(yaws))))])
+    segments, begin, n = [], 0, 0
+    while n < len(run):
+        end = _stop_from(n, places, times, turned, rule)
+        if end is None:
+            n += 1
+            continue
+        segments.append(run[begin : n + 1])
+        begin = n = end
+        n += 1
+    segments.append(run[begin:])
+    return segments
+
+
+def _stop_from(
+    first: int, places: np.ndarray, times: np.ndarray, turned: np.ndarray, rule: CleanRule
+) -> int | None:
+    """Return the last frame of the stop that begins at a frame; None where none does."""
+    still = _stay(first, places, rule.still_m)
+    calm_deg = turned[first] + rule.still_deg
+    steady = first + int(np.searchsorted(turned[first : still + 1], calm_deg, "right"))
+    if times[steady - 1] - times[first] >= rule.pause_s:
+        return steady - 1
+    around = _stay(first, places, rule.look_m)
+    return around if turned[around] - turned[first] >= rule.look_deg else None
+
+
+def _stay(first: int, places: np.ndarray, radius_m: float) -> int:
+    """Return the last frame in a row within a radius of a frame."""
+    last = first
+    while last + 1 < len(places) and np.linalg.norm(places[last + 1] - places[first]) <= radius_m:
+        last += 1
+    return last

@@ -1,0 +1,125 @@
+"""What an agent in the environment perceives: the senses, their spaces and their values."""
+
+import string
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.navigation.moves import wrapped_yaw
+from world2minecraft.navigation.scene import VlnScene, camera_of
+from world2minecraft.navigation.values import Stance
+from world2minecraft.rendering.light import LookLight
+from world2minecraft.rendering.light_parameters import DAY
+
+SENSES = ("rgb", "depth", "semantic", "instance", "pose", "instruction")
+USUAL = ("rgb", "pose", "instruction")
+FAR_M = 1_000.0  # Depths beyond are cut; where a ray meets nothing depth is 0.
+LONGEST = 512  # Characters of an instruction, or those of the longest there is.
+MOST_SIDE_PX = 4_096
+_RENDERED = {"rgb": "colour", "depth": "depth", "semantic": "semantic", "instance": "instance"}
+
+
+@dataclass(frozen=True)
+class Eyes:
+    """How the agent sees. ``hfov_deg`` is horizontal, as Habitat has it; pixels are square."""
+
+    width_px: int = 224
+    height_px: int = 224
+    hfov_deg: float = 90.0
+    light: LookLight = DAY
+    threads: int = 1
+
+    def __post_init__(self):
+        if not (1 <= self.width_px <= MOST_SIDE_PX and 1 <= self.height_px <= MOST_SIDE_PX):
+            raise UsageError(
+                f"a picture has 1 to {MOST_SIDE_PX} pixels a side, "
+                f"not {self.width_px}x{self.height_px}"
+            )
+        if not 10 <= self.hfov_deg <= 150:
+            raise UsageError(f"hfov_deg is 10 to 150 degrees, not {self.hfov_deg:g}")
+
+
+class Senses:
+    """The senses that were asked for, over one scene."""
+
+    def __init__(
+        self, scene: VlnScene, names: Collection[str], eyes: Eyes, texts: Iterable[str] = ()
+    ):
+        for name in names:
+            if name not in SENSES:
+                raise UnknownNameError("observation", name, SENSES)
+        if not names:
+            raise UsageError(f"observations are one or more of {', '.join(SENSES)}")
+        self.scene, self.eyes = scene, eyes
+        self.names = tuple(name for name in SENSES if name in names)
+        self.camera = camera_of(eyes.width_px, eyes.height_px, eyes.hfov_deg)
+        self._outputs = tuple(_RENDERED[name] for name in self.names if name in _RENDERED)
+        self._texts = tuple(texts)
+
+    @property
+    def space(self) -> spaces.Dict:
+        """The space of what ``look`` returns."""
+        return spaces.Dict({name: self._space(name) for name in self.names})
+
+    def look(self, stance: Stance, instruction: str) -> dict[str, Any]:
+        """Return what one perceives who stands so."""
+        seen = self._seen(stance, self._outputs) if self._outputs else {}
+        if "pose" in self.names:
+            seen["pose"] = self.pose(stance)
+        if "instruction" in self.names:
+            seen["instruction"] = instruction
+        return {name: seen[name] for name in self.names}
+
+    def rgb(self, stance: Stance) -> np.ndarray:
+        """Return the picture alone, uint8 [H, W, 3]."""
+        return self._seen(stance, ("colour",))["rgb"]
+
+    def pose(self, stance: Stance) -> np.ndarray:
+        """Return the feet in metres of the room, the game's yaw and pitch: float32 [5]."""
+        x, y, z = self.scene.to_room_m(stance.feet)
+        values = (x, y, z, wrapped_yaw(stance.yaw_deg), stance.pitch_deg)
+        return np.array(values, np.float32)
+
+    def _seen(self, stance: Stance, outputs: tuple[str, ...]) -> dict[str, Any]:
+        picture = self.scene.picture(
+            stance,
+            self.camera,
+            outputs=outputs,
+            light=self.eyes.light,
+            threads=self.eyes.threads,
+        )
+        seen = {
+            "rgb": picture.colour,
+            "depth": np.minimum(picture.depth_m, np.float32(FAR_M))[..., None],
+            "semantic": picture.semantic,
+            "instance": picture.instance,
+        }
+        return {name: value for name, value in seen.items() if value is not None}
+
+    def _space(self, name: str) -> spaces.Space:
+        size = (self.eyes.height_px, self.eyes.width_px)
+        if name == "pose":
+            return self._pose_space()
+        if name == "instruction":
+            letters = set(string.printable).union(*self._texts)
+            longest = max([LONGEST, *map(len, self._texts)])
+            return spaces.Text(longest, min_length=0, charset="".join(sorted(letters)))
+        return {
+            "rgb": spaces.Box(0, 255, (*size, 3), np.uint8),
+            "depth": spaces.Box(0.0, FAR_M, (*size, 1), np.float32),
+            "semantic": spaces.Box(0, 255, size, np.uint8),
+            "instance": spaces.Box(0, 65_535, size, np.uint16),
+        }[name]
+
+    def _pose_space(self) -> spaces.Box:
+        """Return the box of the build in metres and a metre around, and of the angles."""
+        volume = self.scene.volume
+        corners = np.array([volume.corner, np.add(volume.corner, volume.states.shape)], float)
+        ends = self.scene.to_room_m(corners)
+        low = np.concatenate([ends.min(axis=0) - 1, [-180.0, -90.0]]).astype(np.float32)
+        high = np.concatenate([ends.max(axis=0) + 1, [180.0, 90.0]]).astype(np.float32)
+        return spaces.Box(low, high, (5,), np.float32)

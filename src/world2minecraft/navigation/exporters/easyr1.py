@@ -1,0 +1,164 @@
+"""EasyR1: parquet rows, the format prompt, the reward, and the paper's GRPO recipe for each set.
+
+::
+
+    mcvln_TASK_COMPOSITION_SPLIT.parquet   content, answer, images, id
+    TASK_COMPOSITION_grpo.yaml             python3 -m verl.trainer.main config=THIS
+    mc.jinja                               what a prompt is set in; its blank is ``content``
+    reward.py                              compute_score
+    images/...                             where ``images`` are paths
+
+Its loader splits a rendered prompt at ``<image>``, joins paths to ``image_dir``, drops prompts that
+are too long without a word, and drops the last batch that is not full.
+"""
+
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.files import write_bytes, write_text
+from world2minecraft.navigation.exporters.loader_checks import check_easyr1, parquet_modules
+from world2minecraft.navigation.exporters.parts import TRAIN, Part, held_out
+from world2minecraft.navigation.exporters.pictures import Pictures
+from world2minecraft.navigation.exporters.recipes import rendered, verbatim
+from world2minecraft.navigation.exporters.rules import HandoffRule, Written
+from world2minecraft.navigation.exporters.steps import (
+    GRPO_BATCH,
+    GRPO_EPOCHS,
+    GRPO_ROLLOUTS,
+    GrpoPlan,
+    grpo_plan,
+)
+from world2minecraft.navigation.exporters.tokens import longest, row_tokens
+from world2minecraft.navigation.prompts import question_of
+from world2minecraft.navigation.values import Item
+
+PROMPT_TOKENS, RESPONSE_TOKENS = 4096, 1024  # The paper's.
+GPUS = 8  # The paper's node.
+ROWS_A_GROUP = 256  # Of parquet: embedded pictures of so many rows are in memory at once.
+
+
+def most_tokens(part: Part, pictures: Pictures, rule: HandoffRule) -> int:
+    """Return the most tokens that a prompt of a part can take.
+
+    Raises:
+        MissingExtraError: pyarrow is not installed. UsageError: a row does not fit the recipe.
+        InputError: a picture is not as it was.
+    """
+    parquet_modules("writing parquet")
+    form = verbatim("mc.jinja")
+    lengths = (
+        (item, row_tokens(item, question_of(item), pictures, rule.max_pixels, form))
+        for item in part.items
+    )
+    return longest(lengths, PROMPT_TOKENS, "a prompt")
+
+
+def write_easyr1(
+    root: Path,
+    parts: Sequence[Part],
+    pictures: Pictures,
+    rule: HandoffRule,
+    tokens: Sequence[int],
+) -> list[Written]:
+    """Write the parts for EasyR1 and return what was written.
+
+    ``tokens`` are those of ``most_tokens``, by part. Raises OutputError.
+    """
+    written = []
+    for part, most in zip(parts, tokens, strict=True):
+        write_bytes(root / f"{part.name}.parquet", _parquet(part, pictures, rule))
+        if rule.image_style == "paths":
+            for name in (name for item in part.items for name in item.images):
+                pictures.copy(name, root)
+        recipe = Written(part.name, len(part.items))
+        if part.split == TRAIN:
+            recipe = _write_recipe(root, part, held_out(parts, part), rule)
+        written.append(
+            Written(part.name, recipe.rows, recipe.command, recipe.steps, most, recipe.notes)
+        )
+    write_text(root / "mc.jinja", verbatim("mc.jinja"))
+    write_text(root / "reward.py", _reward())
+    check_easyr1(root, "." if rule.image_style == "paths" else None)
+    return written
+
+
+def _parquet(part: Part, pictures: Pictures, rule: HandoffRule) -> bytes:
+    pa, pq = parquet_modules("writing parquet")
+    embedded = rule.image_style == "embedded"
+    kind = pa.struct({"bytes": pa.binary(), "path": pa.string()}) if embedded else pa.string()
+    schema = pa.schema(
+        {"content": pa.string(), "answer": pa.string(), "images": pa.list_(kind), "id": pa.string()}
+    )
+    buffer = io.BytesIO()
+    with pq.ParquetWriter(buffer, schema, compression="zstd") as writer:
+        for start in range(0, len(part.items), ROWS_A_GROUP):
+            rows = [
+                _row(item, pictures if embedded else None)
+                for item in part.items[start : start + ROWS_A_GROUP]
+            ]
+            writer.write_table(pa.Table.from_pylist(rows, schema))
+    return buffer.getvalue()
+
+
+def _row(item: Item, pictures: Pictures | None) -> dict[str, Any]:
+    asked = question_of(item)
+    images: list[Any] = list(asked.images)
+    if pictures is not None:
+        images = [{"bytes": pictures.read(name), "path": name} for name in images]
+    return {"content": asked.text, "answer": asked.answer, "images": images, "id": item.item_id}
+
+
+def _write_recipe(root: Path, part: Part, val: Part | None, rule: HandoffRule) -> Written:
+    rows, gpus, file = len(part.items), rule.gpus or GPUS, f"{part.stem}_grpo.yaml"
+    try:
+        plan = grpo_plan(rows, gpus)
+    except UsageError as error:  # The other parts may well do.
+        return Written(part.name, rows, notes=(f"{part.name}: has no recipe, because {error}",))
+    text = rendered(
+        "easyr1_grpo.yaml",
+        file=file,
+        name=part.stem,
+        rows=rows,
+        plan=plan,
+        gpus=gpus,
+        train=f"{part.name}.parquet",
+        val=f"{(val or part).name}.parquet",
+        has_val=val is not None,
+        val_batch=min(1024, len((val or part).items)),
+        image_dir="." if rule.image_style == "paths" else "null",
+        prompt_tokens=PROMPT_TOKENS,
+        response_tokens=RESPONSE_TOKENS,
+        seed=rule.seed,
+        max_pixels=rule.max_pixels,
+        model=rule.model,
+        rollouts=GRPO_ROLLOUTS,
+        most_images=max(len(item.images) for one in (part, val or part) for item in one.items),
+        epochs=GRPO_EPOCHS,
+    )
+    write_text(root / file, text)
+    command = f"python3 -m verl.trainer.main config={file}"
+    return Written(part.name, rows, command, plan.steps, notes=_notes(part, val, plan))
+
+
+def _notes(part: Part, val: Part | None, plan: GrpoPlan) -> tuple[str, ...]:
+    notes = []
+    if plan.batch < GRPO_BATCH:
+        notes.append(
+            f"{part.name}: {len(part.items)} rows do not fill the paper's batch of {GRPO_BATCH}; "
+            f"the recipe says {plan.batch}"
+        )
+    if plan.left_out:
+        notes.append(
+            f"{part.name}: the loader drops what fills no batch, {plan.left_out} of "
+            f"{len(part.items)} rows an epoch, others each time"
+        )
+    if val is None:
+        notes.append(f"{part.name}: the set holds nothing out; the recipe does not validate")
+    return tuple(notes)
+
+
+def _reward() -> str:
+    return (Path(__file__).parent / "reward.py").read_text("utf-8")

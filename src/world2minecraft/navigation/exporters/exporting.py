@@ -1,0 +1,168 @@
+"""From a set's folder to a folder that a trainer or simulator takes as it is."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from world2minecraft import __version__
+from world2minecraft.core.errors import ConflictError, UnknownNameError, UsageError
+from world2minecraft.core.files import read_json, write_json, write_text
+from world2minecraft.core.progress import Progress, silent
+from world2minecraft.navigation.exporters import easyr1, llamafactory
+from world2minecraft.navigation.exporters.parts import parts_of
+from world2minecraft.navigation.exporters.pictures import Pictures
+from world2minecraft.navigation.exporters.r2r import write_r2r
+from world2minecraft.navigation.exporters.recipes import rendered
+from world2minecraft.navigation.exporters.rules import HandoffRule, Written
+from world2minecraft.navigation.exporters.trl import write_trl
+from world2minecraft.navigation.exporters.vlnce import write_vlnce
+from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories
+
+# How long rows are, and what writes them.
+TRAINERS = {
+    "llamafactory": (llamafactory.most_tokens, llamafactory.write_llamafactory),
+    "easyr1": (easyr1.most_tokens, easyr1.write_easyr1),
+    "trl": (llamafactory.most_tokens, write_trl),
+}
+FORMATS = (*TRAINERS, "vlnce", "r2r")
+RECORD = "handoff.json"  # What was chosen, in the folder's root.
+TITLES = {
+    "llamafactory": "MinecraftVLN for LLaMA-Factory",
+    "easyr1": "MinecraftVLN for EasyR1",
+    "trl": "MinecraftVLN for TRL",
+    "vlnce": "MinecraftVLN as VLN-CE episodes",
+    "r2r": "MinecraftVLN as R2R writes its paths",
+}
+
+
+@dataclass(frozen=True)
+class Handoff:
+    """What an export wrote."""
+
+    out: Path
+    format: str
+    written: list[Written] = field(default_factory=list)
+
+    @property
+    def notes(self) -> list[str]:
+        """What a user would not expect, in sentences."""
+        return [note for one in self.written for note in one.notes]
+
+
+def export_set(
+    folder: str | Path,
+    format: str,
+    out: str | Path,
+    rule: HandoffRule | None = None,
+    *,
+    progress: Progress = silent,
+) -> Handoff:
+    """Write a set in one of ``FORMATS``. The same set and choices give the same bytes.
+
+    All is read and checked before the first file is written.
+
+    Args:
+        folder: of the set: ``items.jsonl`` and ``images/``; ``episodes.jsonl`` for vlnce,
+            ``trajectories.jsonl`` for r2r.
+        format: llamafactory, easyr1, trl, vlnce or r2r.
+        out: the folder to write; new, empty, or of an export by the same choices.
+        rule: the choices that the format leaves open.
+        progress: told when a part of the work is done.
+
+    Raises:
+        UnknownNameError: there is no such format. ConflictError: the folder holds something else.
+        UsageError: there is nothing to export, or it does not fit the recipe.
+        InputError: the set cannot be read. OutputError: the folder cannot be written.
+    """
+    source, root, chosen = Path(folder), Path(out), rule or HandoffRule()
+    if format not in FORMATS:
+        raise UnknownNameError("format", format, FORMATS)
+    choices = {"format": format, **chosen.as_data()}
+    _check_free(root, choices)
+    progress("export", 0, 2, "reading")
+    write = _planned(source, format, chosen)
+    progress("export", 1, 2, "writing")
+    write_json(root / RECORD, {"choices": choices, "version": __version__})
+    written = write(root)
+    write_text(root / "README.md", _readme(format, written))
+    progress("export", 2, 2)
+    return Handoff(root, format, written)
+
+
+def _planned(source: Path, format: str, rule: HandoffRule) -> Callable[[Path], list[Written]]:
+    """Read and check a set, and return what writes it to a folder."""
+    if format in TRAINERS:
+        most_tokens, write = TRAINERS[format]
+        parts, pictures = parts_of(read_items(source), rule), Pictures(source)
+        tokens = [most_tokens(part, pictures, rule) for part in parts]
+        return lambda root: write(root, parts, pictures, rule, tokens)
+    if format == "vlnce":
+        episodes = read_episodes(source)
+        scales = {item.scene_id: item.metres_per_block for item in read_items(source)}
+        if episodes:
+            return lambda root: write_vlnce(root, episodes, source, scales)
+    walks = read_trajectories(source) if format == "r2r" else []
+    if any(one.instructions for one in walks):
+        return lambda root: write_r2r(root, walks)
+    told = "episodes" if format == "vlnce" else "walks with instructions"
+    raise UsageError(f"{source} holds no {told}, which {format} tells of; w2m vln build makes them")
+
+
+def _check_free(root: Path, choices: dict[str, Any]) -> None:
+    """Refuse a folder that holds something other than this very export."""
+    record = root / RECORD
+    if record.is_file():
+        told = read_json(record)
+        held = told.get("choices") if isinstance(told, dict) else None
+        if held != choices:
+            held = held if isinstance(held, dict) else {}
+            other = [
+                f"{k} {held.get(k)!r}, not {v!r}" for k, v in choices.items() if held.get(k) != v
+            ]
+            raise ConflictError(
+                root, f"holds an export by other choices ({', '.join(other)}); name another folder"
+            )
+    elif root.is_dir() and any(root.iterdir()):
+        raise ConflictError(root, "is not empty and no export; name another folder")
+
+
+def _readme(format: str, written: list[Written]) -> str:
+    lines = ["| file | rows | steps | longest row, tokens | command |", "|---|---|---|---|---|"]
+    for one in written:
+        command = f"`{one.command}`" if one.command else ""
+        steps, tokens = (f"{n:,}" if n else "" for n in (one.steps, one.tokens))
+        lines.append(f"| {one.name} | {one.rows:,} | {steps} | {tokens} | {command} |")
+    return rendered(
+        "readme.md",
+        title=TITLES[format],
+        table="\n".join(lines),
+        notes=[note for one in written for note in one.notes],
+        more=_MORE[format],
+    )
+
+
+_MORE = {
+    "llamafactory": (
+        "Rows are shuffled, because `max_samples` takes the first ones of a file. One `<image>` "
+        "stands for each picture. To train on several sets at once, use a `combined` file: a list "
+        "of names would take `max_samples` of each."
+    ),
+    "easyr1": (
+        "Run EasyR1 from this folder: paths in the recipe begin here. The reward is nine parts "
+        "the right letter and one part the form that `mc.jinja` asks for."
+    ),
+    "trl": (
+        "`sft.py` and `grpo.py` are whole: read them, change them. `--cpu --max-steps 3` tries "
+        "them out without a GPU."
+    ),
+    "vlnce": (
+        "Stages are `SCENE/stages/SCENE.glb`: `w2m convert SCENE_PATH SCENE.habitat` writes them, "
+        "in the same metres. `names.json` tells which number is which episode. "
+        "`geodesic_distance` is the length of the expert's way."
+    ),
+    "r2r": (
+        "`viewpoints.json` tells where each viewpoint is and which pictures were taken there; "
+        "`connectivity/` is the graph of each scene."
+    ),
+}

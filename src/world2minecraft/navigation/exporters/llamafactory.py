@@ -1,0 +1,149 @@
+"""LLaMA-Factory: sharegpt rows, ``dataset_info.json``, and the paper's SFT recipe for each set.
+
+::
+
+    dataset_info.json          names the sets, one for each task, composition and split
+    mcvln_TASK_COMPOSITION_SPLIT.json
+    TASK_COMPOSITION_sft.yaml  llamafactory-cli train THIS
+    ds_z3.json                 DeepSpeed ZeRO 3
+    images/...
+
+Its converter drops a row whose turns do not alternate, and fails late where marks and pictures
+differ in number; relative pictures are looked for beside ``dataset_info.json``.
+"""
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.files import write_json, write_text
+from world2minecraft.navigation.exporters.loader_checks import check_llamafactory
+from world2minecraft.navigation.exporters.parts import TRAIN, Part
+from world2minecraft.navigation.exporters.pictures import Pictures
+from world2minecraft.navigation.exporters.recipes import rendered, verbatim
+from world2minecraft.navigation.exporters.rules import HandoffRule, Written
+from world2minecraft.navigation.exporters.steps import (
+    SFT_ACCUMULATED,
+    SFT_BATCH,
+    SFT_EPOCHS,
+    sft_steps,
+)
+from world2minecraft.navigation.exporters.tokens import longest, row_tokens
+from world2minecraft.navigation.prompts import LETTER_ALONE, question_of
+from world2minecraft.navigation.values import Item
+
+CUTOFF = 8192  # The paper's.
+COLUMNS = {"messages": "messages", "images": "images"}
+TAGS = {
+    "role_tag": "role",
+    "content_tag": "content",
+    "user_tag": "user",
+    "assistant_tag": "assistant",
+}
+
+
+def most_tokens(part: Part, pictures: Pictures, rule: HandoffRule) -> int:
+    """Return the most tokens that a row of a part can take.
+
+    Raises:
+        UsageError: a row does not fit the recipe. InputError: a picture is not as it was.
+    """
+    lengths = (
+        (item, row_tokens(item, question_of(item), pictures, rule.max_pixels, LETTER_ALONE))
+        for item in part.items
+    )
+    return longest(lengths, CUTOFF, "cutoff_len")
+
+
+def write_llamafactory(
+    root: Path,
+    parts: Sequence[Part],
+    pictures: Pictures,
+    rule: HandoffRule,
+    tokens: Sequence[int],
+) -> list[Written]:
+    """Write the parts for LLaMA-Factory and return what was written.
+
+    ``tokens`` are those of ``most_tokens``, by part. Raises OutputError.
+    """
+    written = []
+    for part, most in zip(parts, tokens, strict=True):
+        _write_rows(root, part, pictures)
+        recipe = _write_recipe(root, part, rule) if part.split == TRAIN else Written("", 0)
+        written.append(
+            Written(part.name, len(part.items), recipe.command, recipe.steps, most, recipe.notes)
+        )
+    write_json(root / "dataset_info.json", {part.name: _entry(part) for part in parts})
+    write_text(root / "ds_z3.json", verbatim("ds_z3.json"))
+    check_llamafactory(root)
+    return written
+
+
+def row_of(item: Item) -> dict[str, Any]:
+    """Return the row of an item."""
+    asked = question_of(item)
+    return {
+        "messages": [
+            {"role": "user", "content": f"{asked.text}\n{LETTER_ALONE}"},
+            {"role": "assistant", "content": asked.answer},
+        ],
+        "images": list(asked.images),
+        "id": item.item_id,  # The converter passes over what it does not know.
+    }
+
+
+def rows_left_out(part: Part, rule: HandoffRule) -> tuple[str, ...]:
+    """Return a note where ``max_samples`` leaves rows of a part out."""
+    left_out = len(part.items) - rule.max_samples
+    if not rule.max_samples or left_out <= 0:
+        return ()
+    return (
+        f"{part.name}: max_samples {rule.max_samples} leaves {left_out} rows out, the same in "
+        "every epoch, as in the paper; --max-samples 0 takes all",
+    )
+
+
+def _write_rows(root: Path, part: Part, pictures: Pictures) -> None:
+    rows = []
+    for item in part.items:
+        rows.append(json.dumps(row_of(item), ensure_ascii=False))
+        for name in item.images:
+            pictures.copy(name, root)
+    write_text(root / f"{part.name}.json", "[\n" + ",\n".join(rows) + "\n]\n")
+
+
+def _entry(part: Part) -> dict[str, Any]:
+    return {
+        "file_name": f"{part.name}.json",
+        "formatting": "sharegpt",
+        "columns": COLUMNS,
+        "tags": TAGS,
+    }
+
+
+def _write_recipe(root: Path, part: Part, rule: HandoffRule) -> Written:
+    rows, gpus, file = len(part.items), rule.gpus or 1, f"{part.stem}_sft.yaml"
+    steps = sft_steps(rows, rule.max_samples, gpus)
+    used = min(rows, rule.max_samples) if rule.max_samples else rows
+    text = rendered(
+        "llamafactory_sft.yaml",
+        file=file,
+        rows=rows,
+        used=used,
+        steps=steps,
+        warmup=math.ceil(0.1 * steps),
+        gpus=gpus,
+        model=rule.model,
+        max_pixels=rule.max_pixels,
+        dataset=part.name,
+        cutoff=CUTOFF,
+        max_samples=rule.max_samples,
+        batch=SFT_BATCH,
+        accumulated=SFT_ACCUMULATED,
+        epochs=SFT_EPOCHS,
+    )
+    write_text(root / file, text)
+    command = f"llamafactory-cli train {file}"
+    return Written(part.name, rows, command, steps, notes=rows_left_out(part, rule))

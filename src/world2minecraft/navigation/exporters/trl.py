@@ -1,0 +1,116 @@
+"""TRL: JSONL rows with typed content, and two plain scripts with the paper's two recipes.
+
+::
+
+    mcvln_TASK_COMPOSITION_SPLIT.jsonl   prompt, completion, images, answer, id
+    sft.py, grpo.py                      python sft.py mcvln_TASK_COMPOSITION_train.jsonl
+    reward.py
+    images/...
+
+The words are those of the other exports, so SFT here and with LLaMA-Factory has the same losses.
+"""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.files import write_text
+from world2minecraft.navigation.exporters.easyr1 import GPUS, RESPONSE_TOKENS
+from world2minecraft.navigation.exporters.llamafactory import rows_left_out
+from world2minecraft.navigation.exporters.loader_checks import check_trl
+from world2minecraft.navigation.exporters.parts import TRAIN, Part
+from world2minecraft.navigation.exporters.pictures import Pictures
+from world2minecraft.navigation.exporters.recipes import rendered, verbatim
+from world2minecraft.navigation.exporters.rules import HandoffRule, Written
+from world2minecraft.navigation.exporters.steps import (
+    GRPO_BATCH,
+    GRPO_EPOCHS,
+    GRPO_ROLLOUTS,
+    SFT_ACCUMULATED,
+    SFT_BATCH,
+    SFT_EPOCHS,
+    sft_steps,
+)
+from world2minecraft.navigation.prompts import LETTER_ALONE, question_of
+from world2minecraft.navigation.values import Item
+
+
+def write_trl(
+    root: Path,
+    parts: Sequence[Part],
+    pictures: Pictures,
+    rule: HandoffRule,
+    tokens: Sequence[int],
+) -> list[Written]:
+    """Write the parts for TRL and return what was written.
+
+    ``tokens`` are those of ``llamafactory.most_tokens``, by part: the rows say the same. Raises
+    OutputError.
+    """
+    written = []
+    for part, most in zip(parts, tokens, strict=True):
+        lines = [json.dumps(row_of(item), ensure_ascii=False) + "\n" for item in part.items]
+        write_text(root / f"{part.name}.jsonl", "".join(lines))
+        for name in (name for item in part.items for name in item.images):
+            pictures.copy(name, root)
+        is_train = part.split == TRAIN
+        steps = sft_steps(len(part.items), rule.max_samples, 1) if is_train else 0
+        command = f"python sft.py {part.name}.jsonl" if is_train else ""
+        notes = rows_left_out(part, rule) if is_train else ()
+        written.append(Written(part.name, len(part.items), command, steps, most, notes))
+    _write_scripts(root, next((p for p in parts if p.split == TRAIN), parts[0]), rule)
+    check_trl(root)
+    return written
+
+
+def row_of(item: Item) -> dict[str, Any]:
+    """Return the row of an item: a prompt of typed parts, the letter, the pictures' paths."""
+    asked = question_of(item)
+    content = [
+        {"type": "text", "text": value} if kind == "text" else {"type": "image"}
+        for kind, value in asked.parts
+    ]
+    ending = f"\n{LETTER_ALONE}"
+    if content[-1]["type"] == "text":
+        content[-1]["text"] += ending
+    else:
+        content.append({"type": "text", "text": ending})
+    return {
+        "prompt": [{"role": "user", "content": content}],
+        "completion": [{"role": "assistant", "content": [{"type": "text", "text": asked.answer}]}],
+        "images": list(asked.images),
+        "answer": asked.answer,
+        "id": item.item_id,
+    }
+
+
+def _write_scripts(root: Path, example: Part, rule: HandoffRule) -> None:
+    gpus = rule.gpus or GPUS
+    common = {
+        "example": f"{example.name}.jsonl",
+        "model": rule.model,
+        "max_pixels": rule.max_pixels,
+    }
+    sft = rendered(
+        "trl_sft.py",
+        **common,
+        max_samples=rule.max_samples,
+        epochs=SFT_EPOCHS,
+        batch=SFT_BATCH,
+        accumulated=SFT_ACCUMULATED,
+    )
+    grpo = rendered(
+        "trl_grpo.py",
+        **common,
+        gpus=gpus,
+        epochs=GRPO_EPOCHS,
+        batch=GRPO_BATCH,
+        rollouts=GRPO_ROLLOUTS,
+        response_tokens=RESPONSE_TOKENS,
+        letter_alone=LETTER_ALONE,
+        form=verbatim("mc.jinja").strip().splitlines()[-1],
+    )
+    write_text(root / "sft.py", sft)
+    write_text(root / "grpo.py", grpo)
+    write_text(root / "reward.py", (Path(__file__).parent / "reward.py").read_text("utf-8"))

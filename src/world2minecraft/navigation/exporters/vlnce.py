@@ -1,0 +1,136 @@
+"""VLN-CE: ``SPLIT/SPLIT.json.gz`` and ``SPLIT/SPLIT_gt.json.gz``, as VLN-CE-v1 reads them.
+
+Its loader makes an object of each episode by its keys, so no other key may stand there; what is
+ours goes into ``info``. ``instruction_tokens`` are numbers of the one vocabulary of all splits,
+filled up with 0 to 200, and an instruction that is longer is cut, as in R2R's.
+"""
+
+import gzip
+import json
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.core.files import write_bytes, write_json
+from world2minecraft.navigation.exporters.frames import block_to_habitat, positions, rotation
+from world2minecraft.navigation.exporters.rules import Written
+from world2minecraft.navigation.values import SPLITS, Episode, Move
+
+PAD, UNKNOWN = "<pad>", "<unk>"
+TOKENS = 200  # Of VLN-CE's own episodes.
+GOAL_RADIUS_M = 3.0  # Its success distance.
+SPARSE_M = 2.0  # Between two points of a reference path, about as far apart as R2R's are.
+
+
+def write_vlnce(
+    root: Path, episodes: Sequence[Episode], set_folder: Path, metres_per_block: dict[str, float]
+) -> list[Written]:
+    """Write episodes for VLN-CE and return what was written.
+
+    Args:
+        root: the folder to write.
+        episodes: of all splits.
+        set_folder: where the paths of scenes may begin.
+        metres_per_block: of each scene, for those without a ``scene.json``.
+
+    Raises:
+        DamagedFileError: a scene's ``scene.json`` says no transform. OutputError: the folder
+            cannot be written.
+    """
+    words = vocabulary(episode.instruction.text for episode in episodes)
+    numbers = {word: number for number, word in enumerate(words)}
+    frames = {
+        episode.scene_id: block_to_habitat(
+            episode.scene, set_folder, metres_per_block.get(episode.scene_id, 1.0)
+        )
+        for episode in episodes
+    }
+    written, ids = [], {episode.episode_id: n for n, episode in enumerate(episodes, 1)}
+    ways = {name: n for n, name in enumerate(sorted({_way(one) for one in episodes}), 1)}
+    for split in SPLITS:
+        chosen = [episode for episode in episodes if episode.split == split]
+        if not chosen:
+            continue
+        entries, truths = [], {}
+        for episode in chosen:
+            frame, number = frames[episode.scene_id], ids[episode.episode_id]
+            entry = _entry(episode, number, ways[_way(episode)], frame, numbers)
+            entries.append(entry)
+            truths[str(number)] = _truth(episode, frame)
+        whole = {"episodes": entries, "instruction_vocab": {"word_list": words}}
+        write_bytes(root / split / f"{split}.json.gz", _gzip(whole))
+        write_bytes(root / split / f"{split}_gt.json.gz", _gzip(truths))
+        written.append(Written(split, len(chosen)))
+    write_json(root / "names.json", {"episodes": ids, "trajectories": ways})
+    return written
+
+
+def vocabulary(texts: Any) -> list[str]:
+    """Return the words of texts in their order, behind the marks of nothing and of the unknown."""
+    return [PAD, UNKNOWN, *sorted({word for text in texts for word in split_words(text)})]
+
+
+def split_words(text: str) -> list[str]:
+    """Return the words and signs of a sentence, in lower case, as Habitat's own splits it."""
+    return re.findall(r"[^\W_]+|[^\w\s]", text.lower())
+
+
+def _way(episode: Episode) -> str:
+    return episode.trajectory_id or episode.episode_id
+
+
+def _entry(
+    episode: Episode, number: int, way: int, frame: np.ndarray, numbers: dict[str, int]
+) -> dict[str, Any]:
+    text = episode.instruction.text
+    tokens = [numbers[word] for word in split_words(text)][:TOKENS]
+    way_points = [stance.feet for stance in episode.reference] or [episode.start.feet]
+    way_m = positions(frame, way_points)
+    return {
+        "episode_id": number,
+        "trajectory_id": way,
+        "scene_id": f"{episode.scene_id}/stages/{episode.scene_id}.glb",
+        "start_position": positions(frame, [episode.start.feet])[0],
+        "start_rotation": rotation(episode.start),
+        "info": {"geodesic_distance": _length_m(way_m), "name": episode.episode_id},
+        "goals": [
+            {"position": place, "radius": GOAL_RADIUS_M}
+            for place in positions(frame, episode.goals)
+        ],
+        "instruction": {
+            "instruction_text": text,
+            "instruction_tokens": tokens + [0] * (TOKENS - len(tokens)),
+        },
+        "reference_path": sparse(way_m),
+    }
+
+
+def _truth(episode: Episode, frame: np.ndarray) -> dict[str, Any]:
+    places = [stance.feet for stance in episode.reference] or [episode.start.feet]
+    return {
+        "locations": positions(frame, places),
+        "actions": [int(move) for move in episode.moves],
+        "forward_steps": sum(move == Move.FORWARD for move in episode.moves),
+    }
+
+
+def sparse(way_m: list[list[float]]) -> list[list[float]]:
+    """Return points of a way about ``SPARSE_M`` apart, its first and its last among them."""
+    kept = [way_m[0]]
+    for place in way_m[1:-1]:
+        if np.linalg.norm(np.subtract(place, kept[-1])) >= SPARSE_M:
+            kept.append(place)
+    return kept if way_m[-1] == kept[-1] else [*kept, way_m[-1]]
+
+
+def _length_m(way_m: list[list[float]]) -> float:
+    steps = np.diff(np.array(way_m), axis=0)
+    return round(float(np.linalg.norm(steps, axis=1).sum()), 4)
+
+
+def _gzip(value: Any) -> bytes:
+    """Pack JSON so that the same value gives the same bytes."""
+    return gzip.compress(json.dumps(value, allow_nan=False).encode(), mtime=0)

@@ -1,0 +1,36 @@
+"""A stroll through a scene: a person walks as agents walk and sees as they see, with no task."""
+
+from world2minecraft.navigation.keyboard import PATIENCE_S, pressed_move
+from world2minecraft.navigation.moves import moved
+from world2minecraft.navigation.scene import VlnScene, camera_of
+from world2minecraft.navigation.values import Move
+from world2minecraft.navigation.window import Window
+
+VIEW_PX, VIEW_FOV_DEG = (640, 480), 79.0  # RxR's camera, as runs have it.
+
+
+def stroll(
+    scene: VlnScene, window: Window, *, move_set: str = "vlnce", patience_s: float = PATIENCE_S
+) -> None:
+    """Walk where the keys say until nobody presses one; space leads back to the start.
+
+    Raises:
+        UsageError: nobody pressed a key for that long.
+    """
+    camera = camera_of(*VIEW_PX, VIEW_FOV_DEG)
+    stance, collided = scene.start, False
+    while True:
+        seen = scene.picture(stance, camera, outputs=("colour",)).colour
+        if seen is not None:
+            window.show(seen, _told(scene, stance.feet, collided))
+        move = pressed_move(window, patience_s)
+        if move == Move.STOP:
+            stance, collided = scene.start, False
+        else:
+            stance, collided = moved(scene, stance, move, move_set, sliding=True)
+
+
+def _told(scene: VlnScene, feet: tuple[float, float, float], collided: bool) -> str:
+    room = scene.room_at(feet)
+    name = scene.rooms[room].name if 0 <= room < len(scene.rooms) else "no room"
+    return f"{scene.scene_id}, {name}" + (": something is in the way" if collided else "")

@@ -1,0 +1,93 @@
+"""Instructions that people wrote, read from a table and added to trajectories.
+
+Columns: trajectory_id, instruction; where known annotator_id, language and level. A trajectory may
+have many; none takes another's place.
+"""
+
+import csv
+import io
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.errors import DamagedFileError, InputError, LimitError
+from world2minecraft.core.files import json_rows, read_bytes
+from world2minecraft.navigation.prompts import mark_in
+from world2minecraft.navigation.values import LEVELS, Instruction, Trajectory
+
+MAX_BYTES = 64 << 20
+MAX_TEXT = 4_000  # Characters; the paper's longest instruction has 334.
+MAX_ROWS = 1_000_000
+
+
+def read_annotations(path: str | Path) -> list[tuple[str, Instruction]]:
+    """Read annotations, each with the trajectory that it is of.
+
+    Args:
+        path: CSV with a first line of names, or JSONL.
+
+    Raises:
+        InputError: it is not there. DamagedFileError: a line lacks what it needs; the message
+            names the line. LimitError: it is too large.
+    """
+    source = Path(path)
+    try:
+        text = read_bytes(source, MAX_BYTES).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise DamagedFileError(source, "is no text in UTF-8") from error
+    rows = _csv_rows(text) if source.suffix.lower() == ".csv" else json_rows(text, source)
+    if len(rows) > MAX_ROWS:
+        raise LimitError(source, f"has {len(rows):,} lines; at most {MAX_ROWS:,} are read")
+    return [_annotation(row, number, source) for number, row in rows]
+
+
+def with_annotations(
+    trajectories: Sequence[Trajectory], annotations: Iterable[tuple[str, Instruction]], source: str
+) -> list[Trajectory]:
+    """Return trajectories with what people said of them added; what is there already is not again.
+
+    Args:
+        trajectories: of a set.
+        annotations: of ``read_annotations``.
+        source: what errors call their file.
+
+    Raises:
+        InputError: an annotation is of no trajectory.
+    """
+    of = {one.trajectory_id: one for one in trajectories}
+    for trajectory_id, instruction in annotations:
+        if trajectory_id not in of:
+            some = f"; one that is: {min(of)}" if of else ""
+            raise InputError(
+                source, f"speaks of trajectory {trajectory_id!r}, which is not there{some}"
+            )
+        one = of[trajectory_id]
+        if instruction not in one.instructions:
+            of[trajectory_id] = replace(one, instructions=(*one.instructions, instruction))
+    return [of[one.trajectory_id] for one in trajectories]
+
+
+def _annotation(row: Mapping[str, Any], number: int, source: Path) -> tuple[str, Instruction]:
+    values = {}
+    for key in ("trajectory_id", "instruction"):
+        value = row.get(key)
+        if not isinstance(value, str) or not value.strip() or len(value) > MAX_TEXT:
+            raise DamagedFileError(source, f"line {number}: {key} must be a text, up to {MAX_TEXT}")
+        values[key] = value.strip()
+    if mark := mark_in(values["instruction"]):
+        raise DamagedFileError(source, f"line {number}: models take {mark!r} for more than words")
+    who, language = str(row.get("annotator_id") or ""), str(row.get("language") or "en")
+    level = str(row.get("level") or "landmark")
+    if level not in LEVELS:
+        told = ", ".join(LEVELS)
+        raise DamagedFileError(source, f"line {number}: level must be one of {told}, not {level!r}")
+    text = " ".join(values["instruction"].split())
+    return values["trajectory_id"], Instruction(
+        text, "human", level, annotator=who[:200], language=language[:20]
+    )
+
+
+def _csv_rows(text: str) -> list[tuple[int, Mapping[str, Any]]]:
+    reader = csv.DictReader(io.StringIO(text), skipinitialspace=True)
+    return [(number, row) for number, row in enumerate(reader, 2)]

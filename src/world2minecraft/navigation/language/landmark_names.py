@@ -1,0 +1,47 @@
+"""Whether a name means one thing to a person who hears it, not only to the program."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from world2minecraft.navigation.landmarks import BESIDE_M, Landmark
+
+
+def told_apart(landmarks: Sequence[Landmark]) -> list[Landmark]:
+    """Return the landmarks that a name is plain for: nothing else answers to it.
+
+    "the table" is not plain where a coffee table stands too; "the coffee table" is.
+
+    Args:
+        landmarks: all of a scene.
+    """
+    return [one for one in landmarks if one.is_told and meant(one.name, landmarks) == [one]]
+
+
+def meant(phrase: str, landmarks: Sequence[Landmark]) -> list[Landmark]:
+    """Return the landmarks that a phrase may mean: by their own name, colour or noun's end.
+
+    Args:
+        phrase: as a person says it, without "the".
+        landmarks: all of a scene.
+    """
+    said, _, beside = phrase.partition(" beside the ")
+    found = [one for one in landmarks if one.name == phrase or _answers(said.split(), one)]
+    if not beside:
+        return found
+    anchors = meant(beside, landmarks)
+    return [one for one in found if any(_is_beside(one, other) for other in anchors)]
+
+
+def _is_beside(one: Landmark, other: Landmark) -> bool:
+    gap = np.maximum(0.0, np.maximum(one.low_m - other.high_m, other.low_m - one.high_m))
+    return one is not other and float(np.linalg.norm(gap)) <= BESIDE_M
+
+
+def _answers(words: Sequence[str], landmark: Landmark) -> bool:
+    noun = landmark.noun.split()
+    for split in range(len(words)):
+        said, colour = list(words[split:]), " ".join(words[:split])
+        if noun[-len(said) :] == said and colour in ("", landmark.colour):
+            return True
+    return False

@@ -1,0 +1,83 @@
+"""Instructions said in other words by a language model, and taken only where they say the same.
+
+The model is any function from a prompt to a reply. What it may not change, the turns, the
+landmarks and their order, is read from its words again; a text that differs is dropped.
+"""
+
+import json
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+from world2minecraft.navigation.language.parsing import told_in
+from world2minecraft.navigation.prompts import mark_in
+from world2minecraft.navigation.values import Instruction
+
+Ask = Callable[[str], str]
+"""A language model: the prompt in, its reply out."""
+
+MOST_CHARACTERS = 600
+PROMPT = """\
+Say this walking instruction again in natural English, as a person would say it to a guest.
+Keep every turn and every thing, by exactly these names and in this order, and add none.
+Turns: {turns}. Things: {things}.
+Reply with the instruction alone, in one line.
+
+{text}
+"""
+
+
+@dataclass(frozen=True)
+class Rewriting:
+    """What came of it: the new instruction, or why the reply was refused."""
+
+    instruction: Instruction | None
+    refusal: str = ""
+
+
+def rewritten(
+    instruction: Instruction, names: Iterable[str], ask: Ask, annotator: str = "model"
+) -> Rewriting:
+    """Ask a model for an instruction in other words.
+
+    Args:
+        instruction: of the grammar.
+        names: all that landmarks of the scene are called.
+        ask: the model. What it raises is not caught.
+        annotator: what the model is called; stays with the instruction.
+
+    Example:
+        >>> told = Instruction("Turn left at the sofa and stop.", landmarks=("sofa",))
+        >>> rewritten(told, ["sofa"], lambda _: "At the sofa go left, then stop.").refusal
+        ''
+        >>> rewritten(told, ["sofa"], lambda _: "Go right at the sofa.").refusal
+        'other turns'
+    """
+    known = list(names)
+    expected = told_in(instruction.text, known)
+    prompt = PROMPT.format(
+        turns=", ".join(expected.turns) or "none",
+        things=", ".join(expected.landmarks) or "none",
+        text=instruction.text,
+    )
+    text = _plain(ask(prompt))
+    if not text or len(text) > MOST_CHARACTERS:
+        return Rewriting(None, "empty" if not text else "too long")
+    if not text.isprintable() or mark_in(text):
+        return Rewriting(None, "strange marks")
+    found = told_in(text, known)
+    if found.turns != expected.turns:
+        return Rewriting(None, "other turns")
+    if found.landmarks != expected.landmarks:
+        return Rewriting(None, "other landmarks")
+    return Rewriting(replace(instruction, text=text, source="llm", annotator=annotator))
+
+
+def _plain(reply: str) -> str:
+    """Return a reply as one line without the quotes that models like to put around it."""
+    text = reply[: 4 * MOST_CHARACTERS].strip()
+    if text.startswith('"'):
+        try:
+            text = str(json.loads(text))
+        except ValueError:
+            text = text.strip('"')
+    return " ".join(text.split())

@@ -1,0 +1,245 @@
+"""What happens on a way, as a person would tell it: turns, stretches, things passed, where it ends.
+
+Small corrections are no turns, and what was not seen is not spoken of. Places are metres of the
+room; a turn's angle is that of the game, clockwise from above: positive to the right.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from world2minecraft.navigation.landmarks import Landmark
+from world2minecraft.navigation.simplify import corners_of
+from world2minecraft.navigation.walk_stream import wrapped_deg
+
+CORNER_M = 0.3  # What lies nearer to a straight line is walked straight.
+SHORT_M = 0.7  # A shorter stretch between two turns is a part of the next.
+TURN_DEG = 35.0  # A smaller turn is not spoken of.
+CORNER_AT_M = 0.6  # Moves turn so near to where a turn is told of.
+AHEAD_DEG = 15.0  # What is walked towards lies so far from the heading at most,
+FAR_M = 7.0  # and so far away.
+SIDE_M = (0.1, 1.8)  # What is passed lies so far from the line walked.
+AT_M = 1.0  # A turn is "at" what is so near.
+STOP_M = 1.3  # One stops in front of what is so near,
+FRONT_DEG = 35.0  # and before one's eyes.
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A turn on the spot, then straight on. Names are those of landmarks; "" for none."""
+
+    turn_deg: float
+    length_m: float
+    at: str = ""  # where the turn is
+    towards: str = ""
+    passing: tuple[tuple[str, str], ...] = ()  # name and side, in order
+    into: str = ""  # the name of a room that one comes into
+
+
+@dataclass(frozen=True)
+class Way:
+    """Stretches, a last turn, and the landmark that one stands before at the end."""
+
+    stretches: tuple[Stretch, ...]
+    last_turn_deg: float
+    stop: str = ""
+    stop_side: str = ""  # "front", "left" or "right" of the walker
+    corners_m: tuple[tuple[float, float], ...] = ()  # where each turn is, the last one's too
+
+    def tells_turn(self, place_m: np.ndarray, side: str) -> bool:
+        """Return whether a turn to a side, at a place [2] of the room, is one that is spoken of."""
+        every = [one.turn_deg for one in self.stretches] + [self.last_turn_deg]
+        return any(
+            abs(turn) >= TURN_DEG
+            and side_of_turn(turn) == side
+            and float(np.hypot(corner[0] - place_m[0], corner[1] - place_m[1])) <= CORNER_AT_M
+            for turn, corner in zip(every, self.corners_m, strict=True)
+        )
+
+    @property
+    def turns(self) -> tuple[str, ...]:
+        """The turns that are spoken of: left, right or around."""
+        every = [one.turn_deg for one in self.stretches] + [self.last_turn_deg]
+        return tuple(side_of_turn(turn) for turn in every if abs(turn) >= TURN_DEG)
+
+    @property
+    def length_m(self) -> float:
+        """How long the stretches are together."""
+        return sum(one.length_m for one in self.stretches)
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """A walk as its walker had it: N stances, and what was in the picture at some of them."""
+
+    places_m: np.ndarray  # float64 [N, 2], metres of the room
+    yaws_deg: np.ndarray  # float64 [N], the game's
+    looks: dict[int, frozenset[int]]  # landmark numbers in the picture, by stance
+    rooms: Sequence[str] = field(
+        default_factory=tuple
+    )  # the room's name at each stance, "" unknown
+
+
+def way_of(walk: Seen, landmarks: Sequence[Landmark], target: str = "") -> Way:
+    """Return what happens on a walk.
+
+    Args:
+        walk: where one was and what one saw.
+        landmarks: those with a name that means one thing; others are left out.
+        target: the landmark that the walk was made to, where that is known. It is the end if one
+            stands before it; else the nearest thing in sight is.
+    """
+    corners = _merged(walk.places_m, list(corners_of(walk.places_m, CORNER_M)))
+    yaws = np.unwrap(walk.yaws_deg, period=360.0)  # Who turns left by 190 degrees turns left.
+    stretches, before, used = [], float(yaws[0]), set[str]()
+    for first, last in _pairs(corners):
+        heading = _heading(walk.places_m[first], walk.places_m[last])
+        walked = float(yaws[(first + last + 1) // 2])
+        heading = walked + float(wrapped_deg(heading - walked))
+        turn = heading - before
+        stretch = _stretch(walk, landmarks, first, last, turn, used, target)
+        used |= {stretch.at, stretch.towards, *(name for name, _ in stretch.passing)} - {""}
+        stretches.append(stretch)
+        before = heading
+    last_turn = float(yaws[-1]) - before
+    stop, side = _stop(walk, landmarks, target)
+    places = [walk.places_m[n] for n in corners]
+    where = tuple((float(x), float(y)) for x, y in places)
+    return Way(tuple(stretches), last_turn, stop, side, where)
+
+
+def side_of_turn(turn_deg: float) -> str:
+    """Return the word for a turn.
+
+    Example:
+        >>> [side_of_turn(turn) for turn in (-90, 40, 170)]
+        ['left', 'right', 'around']
+    """
+    if abs(turn_deg) > 150:
+        return "around"
+    return "right" if turn_deg > 0 else "left"
+
+
+def _pairs(corners: Sequence[int]) -> list[tuple[int, int]]:
+    return list(pairwise(corners))
+
+
+def _merged(places: np.ndarray, corners: list[int]) -> list[int]:
+    """Leave out corners at which one hardly turns, or between which one hardly walks."""
+    while len(corners) > 2:
+        lengths = [float(np.linalg.norm(places[b] - places[a])) for a, b in _pairs(corners)]
+        headings = [_heading(places[a], places[b]) for a, b in _pairs(corners)]
+        turns = np.abs(wrapped_deg(np.diff(headings)))
+        if turns.min() < TURN_DEG:
+            del corners[1 + int(turns.argmin())]
+        elif min(lengths) < SHORT_M:
+            shortest = int(np.argmin(lengths))
+            del corners[max(1, min(shortest, len(corners) - 2))]
+        else:
+            break
+    return corners
+
+
+def _heading(begin: np.ndarray, end: np.ndarray) -> float:
+    """Return the game's yaw of a direction in the room: yaw 0 looks along -y, 90 along -x."""
+    x, y = end - begin
+    return float(np.degrees(np.arctan2(-x, -y)))
+
+
+def _stretch(
+    walk: Seen,
+    landmarks: Sequence[Landmark],
+    first: int,
+    last: int,
+    turn_deg: float,
+    used: set[str],
+    target: str,
+) -> Stretch:
+    begin, end = walk.places_m[first], walk.places_m[last]
+    length = float(np.linalg.norm(end - begin))
+    before = _looked(walk, 0, first)
+    during = _looked(walk, first, last)
+    at = _turn_at(begin, [one for one in landmarks if one.number in before], used)
+    fresh = [one for one in landmarks if one.name != at and one.number in during]
+    ahead = _ahead(begin, end, [one for one in fresh if one.name not in used - {target}])
+    passing = [] if length < SHORT_M else _passed(begin, end, fresh, {ahead, *used})
+    into = ""
+    if walk.rooms and walk.rooms[last] != walk.rooms[first]:
+        into = walk.rooms[last]
+    return Stretch(
+        turn_deg, length, at if first and abs(turn_deg) >= TURN_DEG else "", ahead,
+        tuple(passing), into,
+    )  # fmt: skip
+
+
+def _looked(walk: Seen, first: int, last: int) -> frozenset[int]:
+    """Return what was in the pictures of some stances, the last left out."""
+    seen = [look for at, look in walk.looks.items() if first <= at < max(last, first + 1)]
+    return frozenset().union(*seen)
+
+
+def _turn_at(place: np.ndarray, seen: Sequence[Landmark], used: set[str]) -> str:
+    near = [(gap_m(place, one), one.name) for one in seen if one.name not in used]
+    return min(near)[1] if near and min(near)[0] <= AT_M else ""
+
+
+def _ahead(begin: np.ndarray, end: np.ndarray, seen: Sequence[Landmark]) -> str:
+    """Return what one walks towards: ahead, and not reached before the stretch ends."""
+    found = []
+    length = np.linalg.norm(end - begin)
+    for one in seen:
+        away = float(np.linalg.norm(one.center_m[:2] - begin))
+        off = abs(wrapped_deg(_heading(begin, one.center_m[:2]) - _heading(begin, end)))
+        if length - 0.2 <= away <= FAR_M and off <= AHEAD_DEG:
+            found.append((away, one.name))
+    return min(found)[1] if found else ""
+
+
+def _passed(
+    begin: np.ndarray, end: np.ndarray, seen: Sequence[Landmark], left_out: set[str]
+) -> list[tuple[str, str]]:
+    """Return what one passes: beside the middle of the line walked, and not across it."""
+    along = (end - begin) / np.linalg.norm(end - begin)
+    left = np.array([-along[1], along[0]])
+    found = []
+    for one in seen:
+        low, high = one.low_m[:2] - begin, one.high_m[:2] - begin
+        box = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])])
+        far, aside = box @ along, box @ left
+        middle = float(far.mean()) / float(np.linalg.norm(end - begin))
+        near = float(np.abs(aside).min())
+        crosses = aside.min() < 0 < aside.max()
+        if one.name in left_out or crosses or not 0.2 <= middle <= 0.85:
+            continue
+        if SIDE_M[0] <= near <= SIDE_M[1]:
+            found.append((middle, one.name, "left" if aside.mean() > 0 else "right"))
+    return [(name, side) for _, name, side in sorted(found)]
+
+
+def _stop(walk: Seen, landmarks: Sequence[Landmark], target: str) -> tuple[str, str]:
+    place, yaw = walk.places_m[-1], float(walk.yaws_deg[-1])
+    seen = walk.looks.get(len(walk.places_m) - 1, frozenset())
+    found = []
+    for one in landmarks:
+        gap, off = gap_m(place, one), _off_deg(place, yaw, one)
+        if gap <= STOP_M and one.number in seen:
+            found.append((one.name != target, abs(off) > FRONT_DEG, gap, one.name, off))
+    if not found:
+        return "", ""
+    _, aside, _, name, off = min(found)
+    return name, ("right" if off > 0 else "left") if aside else "front"
+
+
+def gap_m(place: np.ndarray, landmark: Landmark) -> float:
+    """Return how far a place [2] is from a landmark's box, seen from above, metres."""
+    low, high = landmark.low_m[:2], landmark.high_m[:2]
+    return float(np.linalg.norm(np.maximum(0.0, np.maximum(low - place, place - high))))
+
+
+def _off_deg(place: np.ndarray, yaw_deg: float, landmark: Landmark) -> float:
+    """Return where the nearest part of a thing lies from straight ahead, positive to the right."""
+    near = np.clip(place, landmark.low_m[:2], landmark.high_m[:2])
+    point = (near + landmark.center_m[:2]) / 2
+    return float(wrapped_deg(_heading(place, point) - yaw_deg))

@@ -1,0 +1,88 @@
+"""Many episodes walked by one agent, beside those that any result has to be held against.
+
+``result.json`` has the scores of the agent, of Stop, Random and the oracle on the very same
+episodes, and each episode's own.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.files import write_json
+from world2minecraft.navigation.agents import AGENTS, BESIDE, Agent
+from world2minecraft.navigation.running.episode_runner import Observer, Walk, walk_episode
+from world2minecraft.navigation.running.evaluating import RESULT_FILE
+from world2minecraft.navigation.running.ground import Ground
+from world2minecraft.navigation.running.trace import score_told
+from world2minecraft.navigation.scores import summarise
+from world2minecraft.navigation.values import Episode, check_reachable
+
+Observers = Callable[[Episode, Ground], Sequence[Observer]]
+
+
+def run_course(
+    episodes: Iterable[Episode],
+    ground_of: Callable[[Episode], Ground],
+    agent: Agent,
+    *,
+    observers: Observers,
+    seed: int = 0,
+) -> tuple[list[Walk], dict[str, list[Walk]]]:
+    """Walk episodes, and return the agent's walks and those beside them by name.
+
+    Raises:
+        InputError: one of them cannot be walked; this is found before the first is.
+        What ``walk_episode`` raises.
+    """
+    walks: list[Walk] = []
+    beside: dict[str, list[Walk]] = {name: [] for name in BESIDE}
+    asked = list(episodes)
+    for episode in asked:
+        check_reachable(episode, ground_of(episode).distance_m(episode.start, episode.goals))
+    for episode in asked:
+        ground = ground_of(episode)
+        watching = observers(episode, ground)
+        walks.append(walk_episode(ground, episode, agent, observers=watching, seed=seed))
+        for name, own in beside.items():
+            own.append(walk_episode(ground, episode, AGENTS.load(name)(), seed=seed))
+    return walks, beside
+
+
+def course_told(walks: Sequence[Walk]) -> dict[str, Any]:
+    """Return the means of walks, with how many decisions could not be used."""
+    told = summarise([walk.score for walk in walks])
+    return told | {
+        "invalid": sum(walk.invalid for walk in walks),
+        "failed": sum(walk.failed for walk in walks),
+        "decisions": sum(walk.decisions for walk in walks),
+        "ends": {end: sum(walk.end == end for walk in walks) for end in {w.end for w in walks}},
+    }
+
+
+def write_course(
+    folder: str | Path,
+    walks: Sequence[Walk],
+    beside: dict[str, list[Walk]],
+    facts: dict[str, Any],
+) -> dict[str, Any]:
+    """Write ``result.json`` and return what it holds."""
+    told = {
+        "kind": "walks",
+        "agent": walks[0].agent,
+        "summary": course_told(walks),
+        "beside": {name: course_told(own) for name, own in beside.items()},
+        "episodes": [
+            {
+                "episode_id": walk.episode.episode_id,
+                "instruction": walk.episode.instruction.text,
+                "end": walk.end,
+                "invalid": walk.invalid,
+                "failed": walk.failed,
+                "score": score_told(walk),
+            }
+            for walk in walks
+        ],
+        **facts,
+    }
+    write_json(Path(folder) / RESULT_FILE, told)
+    return told

@@ -1,0 +1,182 @@
+"""One episode: an agent sees, decides and moves until it stops, and is scored.
+
+Moves of a decision are made in turn; after a collision the rest of them is dropped and the agent
+looks again. A decision without moves takes a step too, and after three of them in a row the walk
+ends, not stopped. Observers are told of all of it as it happens.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from world2minecraft.navigation.agents.values import Agent, Decision, Sight, Task
+from world2minecraft.navigation.running.ground import Ground, GroundGuide
+from world2minecraft.navigation.scores import EpisodeScore, Walked, score_episode
+from world2minecraft.navigation.values import Episode, Move, Stance, check_reachable
+
+MOST_SILENT = 3  # Decisions without moves in a row that end a walk.
+ENDS = ("stopped", "out of steps", "gave up")
+_DARK = np.zeros((1, 1, 3), np.uint8)  # What the blind are shown.
+
+
+@dataclass(frozen=True, eq=False)
+class Walk:
+    """What became of an episode. ``stances`` are T, one more than ``made``, STOP not included."""
+
+    episode: Episode
+    agent: str
+    stances: tuple[Stance, ...]
+    made: tuple[tuple[Move, bool], ...]
+    end: str
+    steps: int
+    decisions: int
+    invalid: int  # decisions that could not be read
+    failed: int  # decisions for which a server did not answer
+    score: EpisodeScore
+
+
+class Observer(Protocol):
+    """What is told of a walk while it goes on."""
+
+    def began(self, episode: Episode, agent: str) -> None:
+        """Hear that an episode begins."""
+        ...
+
+    def decided(self, sight: Sight, decision: Decision, made: Sequence[tuple[Move, bool]]) -> None:
+        """Hear what an agent saw and decided, and what was made of it."""
+        ...
+
+    def stood(
+        self, stance: Stance, step: int, decision: Decision | None, move: Move | None
+    ) -> None:
+        """Hear where the agent stands, after a move and at the start."""
+        ...
+
+    def ended(self, walk: Walk) -> None:
+        """Hear how it went."""
+        ...
+
+
+def walk_episode(
+    ground: Ground,
+    episode: Episode,
+    agent: Agent,
+    *,
+    observers: Sequence[Observer] = (),
+    seed: int = 0,
+) -> Walk:
+    """Walk an episode and return what became of it.
+
+    Raises:
+        InputError: no way leads to the goal. BudgetError, ServerError: a model cannot be asked.
+    """
+    check_reachable(episode, ground.distance_m(episode.start, episode.goals))
+    state = _State(ground, episode, agent, observers)
+    guide = GroundGuide(ground, episode) if agent.is_privileged else None
+    agent.begin(
+        Task(
+            episode.instruction.text, ground.move_set, ground.step_m, episode.max_steps,
+            ground.metres_per_block, seed, guide, ground.plan,
+        )
+    )  # fmt: skip
+    for observer in observers:
+        observer.began(episode, agent.name)
+        observer.stood(episode.start, 0, None, None)
+    while state.end is None:
+        state.decide()
+    walk = state.walk()
+    for observer in observers:
+        observer.ended(walk)
+    return walk
+
+
+class _State:
+    """A walk under way."""
+
+    def __init__(
+        self, ground: Ground, episode: Episode, agent: Agent, observers: Sequence[Observer]
+    ):
+        self.ground, self.episode, self.agent, self.observers = ground, episode, agent, observers
+        self.stances: list[Stance] = [episode.start]
+        self.made: list[tuple[Move, bool]] = []
+        self.last: tuple[tuple[Move, bool], ...] = ()
+        self.steps = self.decisions = self.silent = 0
+        self.counts = {"invalid": 0, "failed": 0}
+        self.end: str | None = None
+
+    def decide(self) -> None:
+        here = self.stances[-1]
+        colour = _DARK if self.agent.is_blind else self.ground.view(here)
+        sight = Sight(self.steps, colour, here, self.last)
+        decision = self.agent.decide(sight)
+        self.decisions += 1
+        before = len(self.made)
+        if decision.moves:
+            self.silent = 0
+            self._make(decision)
+        else:
+            self._pass(decision)
+        self.last = tuple(self.made[before:])
+        told = self.last if self.end != "stopped" else (*self.last, (Move.STOP, False))
+        for observer in self.observers:
+            observer.decided(sight, decision, told)
+        if self.end is None and self.steps >= self.episode.max_steps:
+            self.end = "out of steps"
+
+    def walk(self) -> Walk:
+        return Walk(
+            self.episode, self.agent.name, tuple(self.stances), tuple(self.made),
+            self.end or "", self.steps, self.decisions, self.counts["invalid"],
+            self.counts["failed"], self._score(),
+        )  # fmt: skip
+
+    def _pass(self, decision: Decision) -> None:
+        self.steps += 1
+        self.silent += 1
+        self.counts[decision.outcome] += 1
+        self._tell(decision, None)
+        if self.silent >= MOST_SILENT:
+            self.end = "gave up"
+
+    def _make(self, decision: Decision) -> None:
+        for move in decision.moves:
+            if self.steps >= self.episode.max_steps:
+                return
+            self.steps += 1
+            if move == Move.STOP:
+                self.end = "stopped"
+                self._tell(decision, move)
+                return
+            stance, collided = self.ground.after(self.stances[-1], move)
+            self.stances.append(stance)
+            self.made.append((move, collided))
+            self._tell(decision, move)
+            if collided:
+                return
+
+    def _tell(self, decision: Decision, move: Move | None) -> None:
+        for observer in self.observers:
+            observer.stood(self.stances[-1], self.steps, decision, move)
+
+    def _score(self) -> EpisodeScore:
+        goals = self.episode.goals
+        positions = self.ground.to_room_m(np.array([one.feet for one in self.stances]))
+        distance = np.array([self.ground.distance_m(one, goals) for one in self.stances])
+        walked = Walked(
+            positions, distance, self.end == "stopped", self.steps,
+            sum(collided for _, collided in self.made),
+        )  # fmt: skip
+        return score_episode(walked, reference_m(self.ground, self.episode))
+
+
+def reference_m(ground: Ground, episode: Episode) -> np.ndarray:
+    """Return the way to walk, float64 [M, 3] metres: the episode's own, or the oracle's."""
+    stances = list(episode.reference)
+    if not stances:
+        stances = [episode.start]
+        for move in ground.expert(episode.start, episode.goals, episode.facing):
+            if move != Move.STOP:
+                stances.append(ground.imagined.after(stances[-1], move)[0])
+    return ground.to_room_m(np.array([one.feet for one in stances]))

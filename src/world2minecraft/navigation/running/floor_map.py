@@ -1,0 +1,133 @@
+"""A plan of a scene with the way that was walked drawn into it, a storey at a time."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.navigation.scene import VlnScene
+from world2minecraft.navigation.values import Stance
+from world2minecraft.rendering.cutaway import storeys_of
+from world2minecraft.rendering.preview import plan_view
+
+WAY, HERE, GOAL, BEGIN = (235, 90, 20), (200, 20, 30), (20, 130, 60), (40, 80, 200)
+PAPER = (244, 243, 240)
+SIDE_PX = 320
+MARGIN_M = 1.0  # Around the floor: walls, and furniture along them.
+FINE = 2  # A plan is drawn so many times larger and then made small.
+
+
+def plan_of(scene: VlnScene, size_px: int = SIDE_PX) -> "PlanMap":
+    """Return the plans of a scene, cut to the rooms that one can stand in and what is near them.
+
+    A garden as large as the house would leave half of the picture to the house.
+    """
+    floor = scene.graph.feet[scene.main_places][:, [0, 2]]
+    margin = MARGIN_M * scene.blocks_per_metre
+    (x0, z0), (x1, z1) = floor.min(axis=0) - margin, floor.max(axis=0) + margin
+    return PlanMap(scene.volume, size_px, (float(x0), float(z0), float(x1), float(z1)))
+
+
+class PlanMap:
+    """Plans of the storeys of a volume, each drawn once."""
+
+    def __init__(
+        self,
+        volume: BlockVolume,
+        size_px: int,
+        box: tuple[float, float, float, float] | None = None,
+    ):
+        """Take a volume and the part to draw: least x and z, most x and z, world blocks."""
+        self.size_px, self._box = size_px, box
+        self._storeys = storeys_of(volume)
+        self._drawn: dict[int, tuple[Image.Image, float, tuple[float, float]]] = {}
+
+    def picture(
+        self, stances: Sequence[Stance], goals: Sequence[tuple[float, float, float]]
+    ) -> Image.Image:
+        """Return the plan of the storey of the last stance, with the way and the goals on it."""
+        here = stances[-1]
+        storey = self._storey(here.y)
+        plain, scale, (left, top) = self._plan(storey)
+        picture = plain.copy()
+        draw = ImageDraw.Draw(picture)
+
+        def place(x: float, z: float) -> tuple[float, float]:
+            return ((x - left) * scale, (z - top) * scale)
+
+        radius = self.size_px * FINE / 70
+        for x, y, z in goals:
+            if self._storey(y) == storey:
+                _dot(draw, place(x, z), radius, GOAL)
+        way = [place(one.x, one.z) for one in stances if self._storey(one.y) == storey]
+        if len(way) > 1:
+            draw.line(way, WAY, round(radius * 0.7), "curve")
+        if self._storey(stances[0].y) == storey:
+            _dot(draw, place(stances[0].x, stances[0].z), radius * 0.8, BEGIN)
+        _arrow(draw, place(here.x, here.z), here.yaw_deg, radius * 2.2)
+        return picture.resize((self.size_px, self.size_px), Image.Resampling.LANCZOS)
+
+    def _storey(self, y: float) -> int:
+        floors = [n for n, one in enumerate(self._storeys) if one.corner[1] <= y + 0.5]
+        return floors[-1] if floors else 0
+
+    def _plan(self, storey: int) -> tuple[Image.Image, float, tuple[float, float]]:
+        """Return a square plan, its pixels a block, and the block at its corner."""
+        if storey not in self._drawn:
+            volume = self._storeys[storey]
+            side = self.size_px * FINE
+            x0, z0, x1, z1 = self._cut(volume)
+            most = max(x1 - x0, z1 - z0)
+            fine = max(1, side // most)
+            image = Image.fromarray(plan_view(volume, fine))
+            image = image.crop((x0 * fine, z0 * fine, x1 * fine, z1 * fine))
+            scale = side / most
+            image = image.resize(
+                (max(1, round((x1 - x0) * scale)), max(1, round((z1 - z0) * scale))),
+                Image.Resampling.LANCZOS,
+            )
+            square = Image.new("RGB", (side, side), PAPER)
+            offset = ((side - image.width) // 2, (side - image.height) // 2)
+            square.paste(image, offset)
+            corner = (
+                volume.corner[0] + x0 - offset[0] / scale,
+                volume.corner[2] + z0 - offset[1] / scale,
+            )
+            self._drawn[storey] = (square, scale, corner)
+        return self._drawn[storey]
+
+    def _cut(self, volume: BlockVolume) -> tuple[int, int, int, int]:
+        """Return the columns of a storey to draw: from x, from z, to x, to z."""
+        wide, _, deep = volume.states.shape
+        if self._box is None:
+            return 0, 0, wide, deep
+        x0, z0, x1, z1 = self._box
+        left, top = math.floor(x0) - volume.corner[0], math.floor(z0) - volume.corner[2]
+        right, foot = math.ceil(x1) - volume.corner[0], math.ceil(z1) - volume.corner[2]
+        found = (max(0, left), max(0, top), min(wide, right), min(deep, foot))
+        return found if found[0] < found[2] and found[1] < found[3] else (0, 0, wide, deep)
+
+
+def _dot(
+    draw: ImageDraw.ImageDraw,
+    at: tuple[float, float],
+    radius: float,
+    colour: tuple[int, int, int],
+) -> None:
+    x, y = at
+    draw.ellipse((x - radius, y - radius, x + radius, y + radius), colour, (255, 255, 255), 2)
+
+
+def _arrow(
+    draw: ImageDraw.ImageDraw, at: tuple[float, float], yaw_deg: float, length: float
+) -> None:
+    """Draw where one stands and looks; on the plan x is right and z is down."""
+    yaw = np.radians(yaw_deg)
+    ahead = np.array([-np.sin(yaw), np.cos(yaw)])
+    side = np.array([ahead[1], -ahead[0]])
+    points = [ahead * length, -ahead * length * 0.6 + side * length * 0.7,
+              -ahead * length * 0.6 - side * length * 0.7]  # fmt: skip
+    corners = [(float(at[0] + x), float(at[1] + y)) for x, y in points]
+    draw.polygon(corners, HERE, (255, 255, 255), 2)

@@ -1,0 +1,126 @@
+"""An episode of a sentence: "Go to the piano", told in a scene, with the goal that it names."""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from world2minecraft.core.errors import InputError, UsageError
+from world2minecraft.navigation.episodes import target_of
+from world2minecraft.navigation.landmarks import Landmark
+from world2minecraft.navigation.moves import wrapped_yaw
+from world2minecraft.navigation.scene import VlnScene
+from world2minecraft.navigation.values import Episode, Instruction, Stance
+
+MAX_INSTRUCTION = 4000
+YAW_STEP_DEG = 15.0  # A turn of most sets of moves.
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is wished: the sentence, and the goal where the sentence does not say it."""
+
+    instruction: str
+    goal: str = ""
+    start: Stance | None = None
+    move_set: str = "vlnce"
+    max_steps: int = 120
+
+
+def episode_of(scene: VlnScene, wish: Wish) -> Episode:
+    """Return the episode of a wish.
+
+    Raises:
+        UsageError: the sentence names no thing of the scene, or several things are called so.
+        InputError: nobody can stand before the goal, or no way leads there.
+    """
+    if len(wish.instruction) > MAX_INSTRUCTION:
+        count = len(wish.instruction)
+        raise UsageError(
+            f"an instruction has at most {MAX_INSTRUCTION:,} characters, not {count:,}; shorten it"
+        )
+    target = named_in(scene, wish.goal or wish.instruction)
+    goals = scene.goals_at(target)
+    if not goals:
+        raise InputError(
+            scene.path,
+            f"nobody can stand before the {target.name}; name another thing, or make room there",
+        )
+    start = _looking_in(scene) if wish.start is None else _standing(scene, wish.start)
+    if scene.distance_m(start.feet, goals) == float("inf"):
+        raise InputError(
+            scene.path,
+            f"no way leads from the start to the {target.name}; begin elsewhere: --start X,Y,Z",
+        )
+    return Episode(
+        episode_id="wish",
+        scene=scene.path,
+        scene_id=scene.scene_id,
+        start=start,
+        goals=goals,
+        goal_name=target.name,
+        instruction=Instruction(wish.instruction, "human", "goal", (target.name,)),
+        move_set=wish.move_set,
+        max_steps=wish.max_steps,
+        split="val_unseen",
+        facing=target_of(scene, target, goals).point,
+    )
+
+
+def named_in(scene: VlnScene, sentence: str) -> Landmark:
+    """Return the thing of a scene that a sentence names last; that is where it ends.
+
+    The last word of what a thing is called will do, such as piano for an upright piano.
+
+    Raises:
+        UsageError: it names none, or what it names is several things.
+    """
+    text = " ".join(sentence.lower().split())
+    named = _phrases(scene.landmarks)
+    spans = [
+        (found.end(), -found.start(), phrase)
+        for phrase in named
+        for found in re.finditer(rf"(?<!\w){re.escape(phrase)}(?!\w)", text)
+    ]
+    if not spans:
+        some = ", ".join(sorted(one.name for one in scene.landmarks)[:12]) or "nothing"
+        raise UsageError(f"nothing of {scene.scene_id} is named by {text[:60]!r}; it has {some}")
+    phrase = max(spans)[2]
+    if len(named[phrase]) > 1:
+        some = ", ".join(repr(one.name) for one in named[phrase][:6])
+        raise UsageError(
+            f"{len(named[phrase])} things are called {phrase!r}; say one of {some}, or --goal NAME"
+        )
+    return named[phrase][0]
+
+
+def _phrases(landmarks: Sequence[Landmark]) -> dict[str, list[Landmark]]:
+    """Return what phrases mean: names before nouns, whole nouns before their last words."""
+    names: dict[str, list[Landmark]] = {}
+    nouns: dict[str, list[Landmark]] = {}
+    ends: dict[str, list[Landmark]] = {}
+    for one in landmarks:
+        names.setdefault(one.name.lower(), []).append(one)
+        nouns.setdefault(one.noun.lower(), []).append(one)
+        words = one.noun.lower().split()
+        for n in range(1, len(words)):
+            ends.setdefault(" ".join(words[n:]), []).append(one)
+    return {**ends, **nouns, **names}
+
+
+def _looking_in(scene: VlnScene) -> Stance:
+    """Return the scene's start, looking to the middle of the floor and not at the nearest wall."""
+    start = scene.start
+    x, _, z = scene.graph.feet[scene.main_places].mean(axis=0) - np.array(start.feet)
+    yaw_deg = math.degrees(math.atan2(-x, z))
+    return replace(start, yaw_deg=wrapped_yaw(YAW_STEP_DEG * round(yaw_deg / YAW_STEP_DEG)))
+
+
+def _standing(scene: VlnScene, wished: Stance) -> Stance:
+    """Return the place of the rooms' floor nearest to a wished one, looking the wished way."""
+    floor = scene.graph.feet[scene.main_places]
+    away = ((floor - np.array(wished.feet)) ** 2).sum(axis=1)
+    x, y, z = map(float, floor[away.argmin()])
+    return Stance(x, y, z, wished.yaw_deg, wished.pitch_deg)

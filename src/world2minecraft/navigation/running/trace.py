@@ -1,0 +1,164 @@
+"""The trace of a walk: a line a decision, with its view, the model's words and what came of it.
+
+``trace.jsonl`` begins with the episode and ends with its score. Lines are added as they come, so
+that a run can be followed and what a crash leaves can be read.
+"""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+
+from world2minecraft.core.errors import DamagedFileError, OutputError
+from world2minecraft.core.files import json_rows, read_bytes, write_bytes
+from world2minecraft.navigation.agents.model import jpeg
+from world2minecraft.navigation.agents.values import Decision, Sight
+from world2minecraft.navigation.agents.vlm_prompts import MOVE_NAMES
+from world2minecraft.navigation.running.episode_runner import Walk
+from world2minecraft.navigation.values import Episode, Move, Stance
+
+TRACE_FILE, VIEWS_FOLDER = "trace.jsonl", "views"
+MAX_TRACE_BYTES = 256 << 20
+
+
+class TraceWriter:
+    """Writes the trace of one episode into a folder; an observer."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+        self._stream: TextIO | None = None
+        self._number = 0
+
+    def began(self, episode: Episode, agent: str) -> None:
+        """Begin the file anew, without the views of a walk before."""
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            for old in (self.folder / VIEWS_FOLDER).glob("[0-9]*.jpg"):
+                old.unlink()  # Of a longer walk that was kept here before.
+            self._stream = (self.folder / TRACE_FILE).open("w", encoding="utf-8")
+        except OSError as error:
+            raise OutputError(
+                self.folder, f"cannot be written: {error.strerror or error}"
+            ) from error
+        self._number = 0
+        goals = [list(goal) for goal in episode.goals]
+        self._line(
+            {
+                "episode": episode.episode_id,
+                "scene": episode.scene_id,
+                "agent": agent,
+                "instruction": episode.instruction.text,
+                "goal": episode.goal_name,
+                "goals": goals,
+                "start": asdict(episode.start),
+                "move_set": episode.move_set,
+            }
+        )
+
+    def decided(self, sight: Sight, decision: Decision, made: Sequence[tuple[Move, bool]]) -> None:
+        """Write a decision and the view that it was made from."""
+        line: dict[str, Any] = {
+            "decision": self._number,
+            "step": sight.step,
+            "stance": asdict(sight.stance),
+            "outcome": decision.outcome,
+            "moves": [MOVE_NAMES[move] for move in decision.moves],
+            "made": [[MOVE_NAMES[move], collided] for move, collided in made],
+            "thought": decision.thought,
+            "progress": decision.progress,
+            **({"told": decision.told} if decision.told else {}),
+        }
+        if sight.colour.shape[0] > 1:
+            data = jpeg(sight.colour)
+            name = f"{VIEWS_FOLDER}/{self._number:04d}.jpg"
+            write_bytes(self.folder / name, data)
+            line |= {"view": name, "view_sha256": hashlib.sha256(data).hexdigest()}
+        self._number += 1
+        self._line(line)
+
+    def stood(
+        self, stance: Stance, step: int, decision: Decision | None, move: Move | None
+    ) -> None:
+        """Write nothing: decisions tell it."""
+
+    def ended(self, walk: Walk) -> None:
+        """Write the score and close the file."""
+        self._line(
+            {
+                "end": walk.end,
+                "stance": asdict(walk.stances[-1]),
+                "steps": walk.steps,
+                "invalid": walk.invalid,
+                "failed": walk.failed,
+                "score": score_told(walk),
+            }
+        )
+        if self._stream is not None:
+            self._stream.close()
+            self._stream = None
+
+    def _line(self, value: dict[str, Any]) -> None:
+        if self._stream is None:
+            return
+        try:
+            self._stream.write(json.dumps(value, allow_nan=False) + "\n")
+            self._stream.flush()
+        except OSError as error:
+            reason = f"cannot be written: {error.strerror or error}"
+            raise OutputError(self.folder / TRACE_FILE, reason) from error
+
+
+def score_told(walk: Walk) -> dict[str, Any]:
+    """Return the score of a walk for JSON: an infinite error is null."""
+    told = asdict(walk.score)
+    return {
+        name: None if isinstance(value, float) and value == float("inf") else value
+        for name, value in told.items()
+    }
+
+
+def read_trace(path: str | Path) -> list[dict[str, Any]]:
+    """Return the lines of a trace: the episode, its decisions, the score.
+
+    Raises:
+        InputError: it is missing. DamagedFileError: it is empty, or a line is no object.
+        LimitError: too large.
+    """
+    data = read_bytes(path, MAX_TRACE_BYTES)
+    try:
+        lines = [row for _, row in json_rows(data.decode(), Path(path))]
+    except UnicodeDecodeError as error:
+        raise DamagedFileError(path, "is no text in UTF-8") from error
+    if not lines:
+        raise DamagedFileError(path, "is empty; it is no trace of w2m vln run")
+    return lines
+
+
+def traces_in(folder: Path) -> list[Path]:
+    """Return where the traces of a run are, one a walk; of one walk the one that has to be."""
+    several = sorted(folder.glob(f"episodes/*/{TRACE_FILE}"))
+    return several if several and not (folder / TRACE_FILE).is_file() else [folder / TRACE_FILE]
+
+
+def stances_of(lines: Sequence[Mapping[str, Any]], path: Path) -> list[Stance]:
+    """Return where a walker stood at each decision of a trace, and in the end.
+
+    Raises:
+        DamagedFileError: a line's stance is none.
+    """
+    stances = []
+    for number, line in enumerate(lines, 1):
+        if "stance" not in line:
+            continue
+        try:
+            values = {key: float(value) for key, value in line["stance"].items()}
+            stances.append(Stance(**values))
+        except (AttributeError, TypeError, ValueError) as error:
+            raise DamagedFileError(path, f"line {number} has no stance ({error})") from error
+        if not np.isfinite(list(values.values())).all():
+            raise DamagedFileError(path, f"line {number} has a stance that is not finite")
+    return stances

@@ -1,0 +1,30 @@
+"""How well an agent walked and answered: pure functions over paths and answers.
+
+``navigation`` scores episodes (NE, SR, OSR, SPL, SoftSPL, nDTW, SDTW, CLS), ``paths`` compares two
+paths, ``rates`` tells how sure a rate is and whether two agents differ.
+"""
+
+from world2minecraft.navigation.scores.confidence import Rate, paired_p, rate
+from world2minecraft.navigation.scores.navigation import (
+    RADII_M,
+    EpisodeScore,
+    Walked,
+    score_episode,
+    summarise,
+)
+from world2minecraft.navigation.scores.path_similarity import cls, dtw_m, ndtw, path_length_m
+
+__all__ = [
+    "RADII_M",
+    "EpisodeScore",
+    "Rate",
+    "Walked",
+    "cls",
+    "dtw_m",
+    "ndtw",
+    "paired_p",
+    "path_length_m",
+    "rate",
+    "score_episode",
+    "summarise",
+]

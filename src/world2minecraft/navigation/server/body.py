@@ -1,0 +1,234 @@
+"""A player on a server: it stands where it is put, holds keys for ticks and tells what is around.
+
+Its time stands still between two calls; the server's goes on. Where it is, the server knows by the
+packets of any player's client, so that all who play there see it walk.
+"""
+
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, NamedTuple
+
+from world2minecraft.core.errors import ServerError, UsageError
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.minecraft.physics import TICKS_PER_S, Body, Keys
+from world2minecraft.navigation.server.blocks import (
+    checked_box,
+    data_version_of,
+    read_blocks,
+    state_of,
+)
+from world2minecraft.navigation.server.bridge import Bridge
+from world2minecraft.navigation.server.installing import body_folder, node, script
+
+PORT = 25565
+NAME = "w2m_walker"
+JOIN_S = 45.0
+MOVE_S = 5.0  # Until a server has done what /tp says.
+STREAM_S = 10.0  # Until a chunk that is near has come.
+SLACK_S = 10.0
+MOST_TICKS = 400  # In one question, as body.mjs has it.
+PLACE_TRIES = 4
+SETTLE_TICKS = 80  # A fall of 20 blocks takes 40.
+NEAR = 0.05  # Blocks: where /tp leads to.
+_KEYS = ("forward", "back", "left", "right", "jump", "sneak", "sprint")
+_ADDRESS = re.compile(r"(?P<host>\[[0-9A-Fa-f:.%]+\]|[A-Za-z0-9.-]+)(?::(?P<port>[0-9]{1,5}))?")
+_PLAYER = re.compile(r"[A-Za-z0-9_]{3,16}")
+_VERSION = re.compile(r"1\.[0-9]{1,2}(\.[0-9]{1,2})?")
+
+
+class Change(NamedTuple):
+    """A block that became another."""
+
+    place: tuple[int, int, int]
+    state: str
+
+
+class ServerBody:
+    """A player that has joined. Use it in a ``with``; ``join`` makes one.
+
+    ``changes`` are the blocks that changed since they were last taken; ``has_many_changes`` says
+    that there were too many to list. ``corrections`` counts how often the server put the player
+    somewhere while keys were held, since ``place``.
+    """
+
+    def __init__(self, bridge: Bridge, address: str, told: dict[str, Any]):
+        self._bridge = bridge
+        self.address, self.version = address, str(told.get("version", ""))[:20]
+        self.name = str(told.get("name", NAME))[:16]
+        self.changes: list[Change] = []
+        self.has_many_changes, self.corrections = False, 0
+        self._take(told)
+        self.body = _body(told.get("pose"), Keys())
+
+    def __enter__(self) -> "ServerBody":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def hold(self, keys: Sequence[Keys], pitch_deg: float = 0.0) -> list[Body]:
+        """Hold keys, a tick each, and return the body after each tick.
+
+        Raises:
+            ServerError: the player is gone, or the ground under it has not been streamed.
+        """
+        poses: list[Body] = []
+        for start in range(0, len(keys), MOST_TICKS):
+            part = keys[start : start + MOST_TICKS]
+            ticks = [[_bits(one), one.yaw_deg, pitch_deg] for one in part]
+            limit_s = SLACK_S + 5 * len(part) / TICKS_PER_S
+            answer = self._bridge.ask("hold", limit_s, ticks=ticks)
+            found = answer.get("poses")
+            if not isinstance(found, list) or len(found) != len(part):
+                raise ServerError("the body tells of other ticks than it was asked for")
+            self._take(answer)
+            self.corrections += int(answer.get("forced", 0))
+            poses += [_body(pose, one) for pose, one in zip(found, part, strict=True)]
+        self.body = poses[-1] if poses else self.body
+        return poses
+
+    def place(self, feet: tuple[float, float, float], yaw_deg: float = 0.0) -> Body:
+        """Put the player somewhere by the command /tp, and let it come to rest there.
+
+        Raises:
+            ServerError: the server does not do so; players need to be operators for /tp.
+        """
+        for _ in range(PLACE_TRIES):
+            self._put(feet)
+            self.corrections = 0
+            self.settle(yaw_deg)
+            if not self.corrections and _beside(self.body.position, feet) <= NEAR:
+                return self.body  # A busy server may still move one to its spawn after joining.
+        x, _, z = self.body.position
+        raise ServerError(
+            f"the server moves the player away from where it is put, to {x:.1f} {z:.1f}"
+        )
+
+    def _put(self, feet: tuple[float, float, float]) -> None:
+        """Say /tp, and wait until the player is there."""
+        x, y, z = feet
+        answer = self._bridge.ask("place", MOVE_S + SLACK_S, x=x, y=y, z=z, wait_ms=MOVE_S * 1e3)
+        self._take(answer)
+        self.body = _body(answer.get("pose"), Keys())
+        if not answer.get("moved") or math.dist(self.body.position, feet) > NEAR:
+            raise ServerError(
+                f"the server did not put the player at {x:.1f} {y:.1f} {z:.1f}; "
+                f"on its console say: op {self.name}"
+            )
+
+    def settle(self, yaw_deg: float = 0.0) -> Body:
+        """Hold no key until the player stands at rest, and return it."""
+        for _ in range(0, SETTLE_TICKS, 4):
+            self.hold([Keys(yaw_deg=yaw_deg)] * 4)
+            vx, _, vz = self.body.velocity
+            if self.body.on_ground and vx == vz == 0.0:
+                break
+        return self.body
+
+    def read(self, box: Sequence[int]) -> BlockVolume:
+        """Return the blocks of a box, x0 y0 z0 x1 y1 z1, its last corner not included.
+
+        Raises:
+            UsageError: it is no box. ServerError: a part of it has not been streamed.
+        """
+
+        def ask(act: str, **values: Any) -> dict[str, Any]:
+            return self._bridge.ask(act, STREAM_S + SLACK_S, wait_ms=STREAM_S * 1e3, **values)
+
+        return read_blocks(ask, checked_box(box), self.version)
+
+    def take_changes(self) -> list[Change]:
+        """Return the changed blocks in the order in which they changed first, and forget them."""
+        taken, self.changes, self.has_many_changes = self.changes, [], False
+        return taken
+
+    def close(self) -> None:
+        """Leave the server."""
+        try:
+            self._bridge.ask("leave", SLACK_S)
+        except ServerError:
+            pass
+        finally:
+            self._bridge.close()
+
+    def _take(self, answer: dict[str, Any]) -> None:
+        found = answer.get("changed", [])
+        if not isinstance(found, list):
+            raise ServerError("the body tells of changed blocks that are no list")
+        data_version = data_version_of(self.version)
+        for row in found:
+            if not isinstance(row, list) or len(row) != 4:
+                raise ServerError("a changed block is no place and state")
+            x, y, z = (_number(value) for value in row[:3])
+            self.changes.append(Change((int(x), int(y), int(z)), state_of(row[3], data_version)))
+        self.has_many_changes |= bool(answer.get("too_many"))
+
+
+def join(
+    address: str, *, name: str = NAME, version: str = "", folder: Path | None = None
+) -> ServerBody:
+    """Join a server that lets players in without an account (``online-mode=false``).
+
+    Args:
+        address: HOST or HOST:PORT; the port is 25565 where it is left out.
+        name: of the player.
+        version: of the game, such as 1.20.1; the server is asked where it is left out.
+        folder: whose ``node_modules`` hold mineflayer; what ``installing.install`` made if None.
+
+    Raises:
+        UsageError: the address or a name cannot be, or mineflayer is not installed.
+        ServerError: nobody answers there, or it lets the player not in.
+    """
+    found = _ADDRESS.fullmatch(address)
+    port = int(found["port"] or PORT) if found else 0
+    if not found or not 1 <= port <= 65535:
+        raise UsageError(f"a server is HOST:PORT, such as localhost:{PORT}, not {address!r}")
+    if not _PLAYER.fullmatch(name):
+        raise UsageError(f"a player's name is 3 to 16 letters, digits and _, not {name!r}")
+    if version and not _VERSION.fullmatch(version):
+        raise UsageError(f"a version is like 1.20.1, not {version!r}")
+    place = folder or body_folder()
+    bridge = Bridge([node(), str(script()), str(place)], place)
+    try:
+        told = bridge.ask(
+            "join", JOIN_S + SLACK_S, host=found["host"].strip("[]"), port=port, name=name,
+            version=version, wait_ms=JOIN_S * 1e3,
+        )  # fmt: skip
+        return ServerBody(bridge, address, told)
+    except BaseException:
+        bridge.close()
+        raise
+
+
+def _beside(one: tuple[float, float, float], other: tuple[float, float, float]) -> float:
+    """Return how far places are from each other along the ground, blocks."""
+    return math.hypot(one[0] - other[0], one[2] - other[2])
+
+
+def _bits(keys: Keys) -> int:
+    return sum(int(getattr(keys, key)) << bit for bit, key in enumerate(_KEYS))
+
+
+def _body(pose: Any, keys: Keys) -> Body:
+    """Return the body that eight numbers tell of."""
+    if not isinstance(pose, list) or len(pose) != 8:
+        raise ServerError("the body does not tell where it is")
+    x, y, z, vx, vy, vz, on_ground, hit_wall = (_number(value) for value in pose)
+    return Body(
+        (x, y, z), (vx, vy, vz), on_ground=bool(on_ground), crouched=keys.sneak,
+        hit_wall=bool(hit_wall),
+    )  # fmt: skip
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e8:
+        raise ServerError("the body tells of a place that is no number")
+    return float(value)

@@ -1,0 +1,69 @@
+"""``World2Minecraft-VLN-Server-v0``: the same environment, by a player on a running server."""
+
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.navigation.environment.action_spaces import Acting
+from world2minecraft.navigation.environment.env import VlnEnv
+from world2minecraft.navigation.server.acting import KeysOnServer, MovesOnServer
+from world2minecraft.navigation.server.blocks import Box
+from world2minecraft.navigation.server.body import NAME, ServerBody, join
+from world2minecraft.navigation.server.scene import open_server_scene
+from world2minecraft.navigation.values import MoveSet
+
+
+class ServerEnv(VlnEnv):
+    """An agent whose body plays on a server.
+
+    Args:
+        server: HOST or HOST:PORT, or a player that has joined.
+        labels, box, blocks_per_metre: as ``open_server_scene`` takes them.
+        name: of the player; it needs to be an operator, for /tp.
+        version: of the game; the server is asked where it is left out.
+        options: those of ``VlnEnv``, but ``scene``, ``body`` and ``sliding``.
+
+    Raises:
+        UsageError: an option cannot be, or mineflayer is not installed. ServerError: the server
+            lets the player not in. InputError: nobody can stand there.
+    """
+
+    def __init__(
+        self,
+        server: str | ServerBody,
+        *,
+        labels: str | Path | None = None,
+        box: Box | None = None,
+        blocks_per_metre: float | None = None,
+        name: str = NAME,
+        version: str = "",
+        **options: Any,
+    ):
+        for option in ("scene", "body", "sliding"):
+            if option in options:
+                raise UsageError(f"a body on a server has no option {option!r}; leave it out")
+        owned = not isinstance(server, ServerBody)
+        self.server = join(server, name=name, version=version) if owned else server
+        self._is_owned = owned
+        try:
+            scene = open_server_scene(
+                self.server, labels=labels, box=box, blocks_per_metre=blocks_per_metre
+            )
+            super().__init__(scene, **options)
+        except BaseException:
+            self._leave()
+            raise
+
+    def close(self) -> None:
+        """Close the window and leave the server."""
+        super().close()
+        self._leave()
+
+    def _leave(self) -> None:
+        if self._is_owned:
+            self.server.close()
+
+    def _acting(self, by_keys: bool, move_set: MoveSet, sliding: bool) -> Acting:
+        if by_keys:
+            return KeysOnServer(self.scene, self.server)
+        return MovesOnServer(self.scene, move_set, self.server)

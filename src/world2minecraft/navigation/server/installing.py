@@ -1,0 +1,96 @@
+"""Node's packages of the body, fetched by npm when the user asks for it, and only then."""
+
+import hashlib
+import re
+import shutil
+import subprocess
+from importlib.resources import files
+from pathlib import Path
+
+from world2minecraft.core.errors import ServerError, UsageError
+from world2minecraft.core.files import write_text
+from world2minecraft.core.jit import user_cache_dir
+
+LEAST_NODE = 18
+LIMIT_S = 900.0
+SCRIPT = "body.mjs"
+_STATED = ("package.json", "package-lock.json")
+_DONE = "installed"
+_HOW = "w2m vln server --install"
+
+
+def is_installed() -> bool:
+    """Whether the pinned packages are there."""
+    return (_folder() / _DONE).is_file()
+
+
+def body_folder() -> Path:
+    """Return the folder that holds the packages.
+
+    Raises:
+        UsageError: they are not installed, or Node is not there.
+    """
+    if not is_installed():
+        raise UsageError(f"a body on a server needs mineflayer; fetch it once with {_HOW}")
+    node()
+    return _folder()
+
+
+def install() -> Path:
+    """Fetch the packages that ``package-lock.json`` pins, with their digests; run none of them.
+
+    Raises:
+        UsageError: Node or npm is not there. ServerError: npm fails.
+    """
+    node()
+    npm = shutil.which("npm")
+    if npm is None:
+        raise UsageError("npm is not installed; it comes with Node from https://nodejs.org")
+    folder = _folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in _STATED:
+        write_text(folder / name, _shipped(name))
+    command = [npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund"]
+    try:
+        done = subprocess.run(
+            command, cwd=folder, check=False, capture_output=True, text=True, timeout=LIMIT_S
+        )
+    except subprocess.TimeoutExpired as error:
+        raise ServerError(f"npm took longer than {LIMIT_S:g} s; try {_HOW} again") from error
+    if done.returncode:
+        last = " ".join(done.stderr.split())[-300:]
+        raise ServerError(f"npm could not fetch mineflayer: {last}")
+    write_text(folder / _DONE, "")
+    return folder
+
+
+def node() -> str:
+    """Return the path of Node.
+
+    Raises:
+        UsageError: it is not there, or too old.
+    """
+    found = shutil.which("node")
+    if found is None:
+        raise UsageError(f"Node is not installed; a body needs Node {LEAST_NODE} or newer")
+    told = subprocess.run(
+        [found, "--version"], check=False, capture_output=True, text=True, timeout=30
+    ).stdout
+    version = re.match(r"v(\d+)\.", told)
+    if version is None or int(version[1]) < LEAST_NODE:
+        raise UsageError(f"a body needs Node {LEAST_NODE} or newer, not {told.strip() or 'this'}")
+    return found
+
+
+def script() -> Path:
+    """Return the path of the body's program."""
+    return Path(str(files("world2minecraft.navigation.server").joinpath(SCRIPT)))
+
+
+def _folder() -> Path:
+    digest = hashlib.sha256(_shipped("package-lock.json").encode()).hexdigest()[:12]
+    return user_cache_dir() / f"server-body-{digest}"
+
+
+def _shipped(name: str) -> str:
+    return files("world2minecraft.navigation.server").joinpath(name).read_text("utf-8")

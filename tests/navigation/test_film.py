@@ -1,0 +1,76 @@
+"""Plans and films: the way is drawn where it was walked, and any text can be shown."""
+
+import numpy as np
+from PIL import ImageFont
+from small_flat import flat_volume
+
+from world2minecraft.navigation.running.film import compose, plain, wrapped
+from world2minecraft.navigation.running.floor_map import GOAL, HERE, PlanMap, plan_of
+from world2minecraft.navigation.values import Stance
+
+
+def near(picture, colour):
+    """The middle of the pixels that are nearly of a colour, as x and y in pixels."""
+    off = np.abs(np.asarray(picture, int) - np.array(colour)).max(axis=2)
+    rows, columns = np.nonzero(off < 25)
+    return columns.mean(), rows.mean()
+
+
+def test_a_place_is_drawn_where_it_is_on_the_plan():
+    volume, _, _ = flat_volume()  # 19 blocks along x, 10 along z, from 0.
+    plan = PlanMap(volume, 190)
+    for x, z in ((3.0, 3.0), (14.0, 6.5)):
+        # Ten pixels a block; the plan is square, so z begins 45 pixels down.
+        picture = plan.picture([Stance(1.5, 65.0, 1.5), Stance(x, 65.0, z, -90.0)], ())
+        assert np.allclose(near(picture, HERE), (10 * x, 45 + 10 * z), atol=3)
+        picture = plan.picture([Stance(1.5, 65.0, 1.5)], [(x, 65.0, z)])
+        assert np.allclose(near(picture, GOAL), (10 * x, 45 + 10 * z), atol=3)
+
+
+def test_a_plan_is_cut_to_a_part():
+    volume, _, _ = flat_volume()
+    plan = PlanMap(volume, 190, (9.2, 0.5, 18.5, 9.5))  # Columns 9 to 19 and 0 to 10: a square.
+    for x, z in ((11.0, 3.0), (16.0, 6.5)):
+        picture = plan.picture([Stance(x, 65.0, z, -90.0)], ())
+        assert np.allclose(near(picture, HERE), (19 * (x - 9), 19 * z), atol=4)
+    whole = PlanMap(volume, 190).picture([Stance(3.0, 65.0, 3.0)], ())
+    beyond = PlanMap(volume, 190, (40.0, 40.0, 50.0, 50.0)).picture([Stance(3.0, 65.0, 3.0)], ())
+    np.testing.assert_array_equal(beyond, whole)  # Nothing lies there: all is drawn.
+
+
+def test_a_plan_of_a_scene_shows_its_rooms(flat):
+    x0, z0, x1, z1 = plan_of(flat)._box
+    assert x0 < 1 and z0 < 1 and x1 > 18 and z1 > 8  # Both rooms with their walls.
+
+
+def test_the_arrow_points_where_one_looks():
+    volume, _, _ = flat_volume()
+    plan = PlanMap(volume, 760)
+    rows = {}
+    for yaw in (0.0, 180.0):  # South is down on the plan, north is up.
+        picture = plan.picture([Stance(9.5, 65.0, 4.5, yaw)], ())
+        off = np.abs(np.asarray(picture, int) - np.array(HERE)).max(axis=2) < 25
+        wide = off.sum(axis=1)
+        rows[yaw] = (wide * np.arange(len(wide))).sum() / wide.sum(), wide.argmax()
+    assert (
+        rows[0.0][1] < rows[0.0][0] and rows[180.0][1] > rows[180.0][0]
+    )  # The wide end is behind.
+
+
+def test_texts_of_anyone_fit():
+    font = ImageFont.load_default(14)
+    texts = ["a" * 5000, "word " * 900, "", "\u4e2d\u6587 \x1b[31m\n\n end", "\U0001f600"]
+    for text in texts:
+        lines = wrapped(text, font, 200, 3)
+        assert len(lines) <= 3 and all(font.getlength(line) <= 200 for line in lines)
+    assert plain("a\u4e2d\x1bb\tc") == "a??b c"
+
+
+def test_a_frame_has_one_size_whatever_the_view():
+    volume, _, _ = flat_volume()
+    plan = PlanMap(volume, 320).picture([Stance(3.0, 65.0, 3.0)], ())
+    frames = [
+        compose(np.zeros(shape, np.uint8), plan, "Go on " * 80, [("thinks", "x" * 900)] * 9)
+        for shape in ((480, 640, 3), (224, 224, 3), (10, 900, 3))
+    ]
+    assert {frame.size for frame in frames} == {(960, 536)}
