@@ -45,20 +45,23 @@ def main() -> int:
         os.environ.get("W2M_COMPARE_CACHE", Path(tempfile.gettempdir()) / "w2m-compare-outputs")
     ).resolve()
     shared = Path(os.environ.get("W2M_SHARED_DATA", REPOSITORY.parent / "shared" / "data"))
-    tree = words.tree.resolve()
-    key = hashlib.sha256(str(tree).encode()).hexdigest()[:12]
-    base_work, tree_work = cache / f"base-{commit[:12]}", cache / f"tree-{key}"
-    code = cache / f"code-{commit[:12]}"
-    base = Side(code, base_work, True, shared, base_work)
-    ours = Side(tree, tree_work, False, shared, base_work)
+    tree = Path(words.tree)
+    key = _commit(words.tree) if not tree.is_dir() else _sum(tree.resolve())
+    base_work, tree_work = cache / f"base-{commit[:12]}", cache / f"tree-{key[:12]}"
+    base = Side(cache / f"base-code-{commit[:12]}", base_work, True, shared, base_work)
+    ours = Side(cache / f"tree-code-{key[:12]}", tree_work, False, shared, base_work)
     skipped = {step.name: why for step in chosen if (why := missing_for(step, ours))}
     chosen = [step for step in chosen if step.name not in skipped]
     began = time.monotonic()
     with locked(base_work):
-        unpacked(REPOSITORY, commit, code)
+        unpacked(REPOSITORY, commit, base.code)
         before = run_steps(base, _with_those_before(chosen), words.jobs, _teller("base"))
         middle = time.monotonic()
         with locked(tree_work):
+            if tree.is_dir():
+                copied(tree, ours.code)
+            else:
+                unpacked(REPOSITORY, key, ours.code)
             after = run_steps(ours, chosen, words.jobs, _teller("tree"))
             end = time.monotonic()
             tell("")
@@ -158,7 +161,12 @@ def _words() -> argparse.Namespace:
     parser.add_argument("--list", action="store_true", help="list the steps")
     parser.add_argument("--jobs", type=int, default=min(os.cpu_count() or 1, 2))
     parser.add_argument("--show", type=int, default=6, help="differences of a step to print")
-    parser.add_argument("--tree", type=Path, default=REPOSITORY, help=argparse.SUPPRESS)
+    parser.add_argument(
+        "--tree",
+        default=str(REPOSITORY),
+        metavar="FOLDER_OR_COMMIT",
+        help="what is compared; this work tree, as it stands when the base is done",
+    )
     return parser.parse_args()
 
 
@@ -178,6 +186,10 @@ def _with_those_before(chosen: list[Step]) -> list[Step]:
         wanted.add(name)
         left += by_name[name].before
     return [step for step in STEPS if step.name in wanted]
+
+
+def _sum(folder: Path) -> str:
+    return hashlib.sha256(str(folder).encode()).hexdigest()
 
 
 def _commit(name: str) -> str:

@@ -146,6 +146,16 @@ def unpacked(repository: Path, commit: str, target: Path) -> None:
     half.rename(target)
 
 
+def copied(tree: Path, target: Path) -> None:
+    """Lay the code of a work tree into a folder, as it stands now: others may go on in the tree.
+
+    Times stay as they are, so that kernels compiled before are known again.
+    """
+    shutil.rmtree(target, ignore_errors=True)
+    left_out = shutil.ignore_patterns("__pycache__", "node_modules")
+    shutil.copytree(tree / "src", target / "src", ignore=left_out)
+
+
 def sum_of(step: Step, steps: dict[str, Step]) -> str:
     """Return a sum of all that a step's outcome on one commit depends on."""
     known = [FORM, repr(step), *(sum_of(steps[name], steps) for name in step.before)]

@@ -8,7 +8,7 @@ import typer
 from world2minecraft.cli import compare_options as option
 
 if TYPE_CHECKING:
-    from world2minecraft.compare import ComparedScene
+    from world2minecraft.paper.layouts import ComparedScene
 
 EXAMPLES = """\
 w2m compare build scene_graph.json --out ROOM                  I-Design's room as a world
@@ -51,8 +51,8 @@ def run(
     """
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
-    from world2minecraft.compare.building import build_scene
-    from world2minecraft.compare.importers import How, read_layouts_of
+    from world2minecraft.paper.layouts.importers import How, read_layouts_of
+    from world2minecraft.paper.layouts.world import build_scene
     from world2minecraft.reconstruction.parameters import Parameters
 
     option.check_px(px_m)

@@ -60,16 +60,16 @@ def run(
     Raises:
         InputError: the scene cannot be read. ServerError, BudgetError: the model cannot be asked.
     """
-    from world2minecraft.compare.describing import (
+    from world2minecraft.core.errors import UnknownNameError, UsageError
+    from world2minecraft.core.files import write_text
+    from world2minecraft.paper.layouts.describing import (
         METHODS,
         describe_scene,
         for_method,
         layoutgpt_px_m,
     )
-    from world2minecraft.compare.importers import read_layouts_of
-    from world2minecraft.compare.truths import true_scene
-    from world2minecraft.core.errors import UnknownNameError, UsageError
-    from world2minecraft.core.files import write_text
+    from world2minecraft.paper.layouts.importers import read_layouts_of
+    from world2minecraft.paper.layouts.reference import true_scene
 
     if method not in METHODS:
         raise UnknownNameError("form", method, METHODS)
@@ -96,7 +96,7 @@ def run(
 
 def photo_words(capture: Path, count: int, chat: object) -> str:
     """Return what a model says of photos spread over a capture."""
-    from world2minecraft.compare.describing import describe_photos
-    from world2minecraft.compare.photos import capture_photos
+    from world2minecraft.paper.layouts.describing import describe_photos
+    from world2minecraft.paper.layouts.photos import capture_photos
 
     return describe_photos(chat, capture_photos(capture, count))  # type: ignore[arg-type]

@@ -8,8 +8,8 @@ import typer
 from world2minecraft.cli import model_options as option
 
 if TYPE_CHECKING:
-    from world2minecraft.compare.judge import Grades
     from world2minecraft.external_models.chat_client import ChatModel
+    from world2minecraft.paper.layouts.judge import Grades
 
 EXAMPLES = """\
 w2m compare judge ROOMS/* OUT --agent gemini --max-usd 1 --out JUDGED
@@ -62,10 +62,10 @@ def run(
     Raises:
         InputError: a world cannot be read. ServerError, BudgetError: the model cannot be asked.
     """
-    from world2minecraft.compare.judge import means_of, prompt_sum
-    from world2minecraft.compare.table import grade_table
     from world2minecraft.core.files import read_bytes, write_json
     from world2minecraft.navigation.running.tables import text_of
+    from world2minecraft.paper.layouts.judge import means_of, prompt_sum
+    from world2minecraft.paper.layouts.table import grade_table
 
     told = read_bytes(wish, MOST_WISH_BYTES).decode("utf-8", "replace") if wish else ""
     chat = asked.open(agent, out)
@@ -91,10 +91,10 @@ def graded(
     """Return the grades of built rooms; their pictures are written to ``out/pictures``."""
     from world2minecraft.cli.compare_build import folder_names
     from world2minecraft.cli.progress import shown
-    from world2minecraft.compare.importers import read_layouts_of
-    from world2minecraft.compare.judge import grade, pictures_of
     from world2minecraft.core.files import write_bytes
     from world2minecraft.formats.build_source import read_source
+    from world2minecraft.paper.layouts.importers import read_layouts_of
+    from world2minecraft.paper.layouts.judge import grade, pictures_of
 
     scenes = [read_layouts_of(place)[0] for place in places]
     names, grades = folder_names(scenes), []

@@ -56,12 +56,12 @@ def run(
         InputError: a layout cannot be read. UsageError: an option is wrong.
     """
     from world2minecraft.cli.progress import shown
-    from world2minecraft.compare import score_scene, summary_of
-    from world2minecraft.compare.importers import How, read_layouts_of
-    from world2minecraft.compare.table import NOTES, by_method, layout_table, other_table
-    from world2minecraft.compare.truths import is_truth, true_scene
     from world2minecraft.core.files import write_json
     from world2minecraft.navigation.running.tables import markdown_of, text_of
+    from world2minecraft.paper.layouts import score_scene, summary_of
+    from world2minecraft.paper.layouts.importers import How, read_layouts_of
+    from world2minecraft.paper.layouts.reference import is_truth, true_scene
+    from world2minecraft.paper.layouts.table import NOTES, by_method, layout_table, other_table
 
     option.check_px(px_m)
     known = score_scene(true_scene(truth)) if truth is not None else None

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from world2minecraft.compare import ComparedScene
+    from world2minecraft.paper.layouts import ComparedScene
 
 USUAL_PX_M = 3.5 / 256  # As compare.importers has it, which a help page need not import.
 MOST_TOLD = 5

@@ -76,7 +76,7 @@ class Grades:
 
 def prompt_text(name: str = PROMPT) -> str:
     """Return a prompt of this package."""
-    return (files("world2minecraft.compare") / "prompts" / name).read_text(encoding="utf-8")
+    return (files("world2minecraft.paper.layouts") / "prompts" / name).read_text(encoding="utf-8")
 
 
 def prompt_sum() -> str:

@@ -2,7 +2,7 @@
 
 import pytest
 from benchmarks import check_layouts
-from tests.compare.made_layouts import gpt_record, write
+from tests.paper.layouts.made_layouts import gpt_record, write
 
 CHAIR = ("dining_chair", 2.0, 1.5, 0.45, 0.5, 0.5, 0.9, 0)
 OUTSIDE = ("sofa", 4.2, 1.5, 0.4, 0.9, 0.9, 0.8, 0)

@@ -3,7 +3,12 @@
 import pytest
 from tests.external_models.scripted_server import proper, scripted
 
-from world2minecraft.compare.judge import (
+from world2minecraft.core.errors import UsageError
+from world2minecraft.external_models.chat_client import open_chat
+from world2minecraft.external_models.chat_messages import Picture
+from world2minecraft.external_models.reply_cache import ReplyStore
+from world2minecraft.external_models.structured_replies import UnreadableError
+from world2minecraft.paper.layouts.judge import (
     ASPECTS,
     Grades,
     grade,
@@ -12,12 +17,7 @@ from world2minecraft.compare.judge import (
     prompt_text,
     read_grades,
 )
-from world2minecraft.compare.table import grade_table
-from world2minecraft.core.errors import UsageError
-from world2minecraft.external_models.chat_client import open_chat
-from world2minecraft.external_models.chat_messages import Picture
-from world2minecraft.external_models.reply_cache import ReplyStore
-from world2minecraft.external_models.structured_replies import UnreadableError
+from world2minecraft.paper.layouts.table import grade_table
 
 SHOWN = (Picture(b"one"), Picture(b"two"))
 

@@ -7,9 +7,9 @@ from PIL import Image
 
 from world2minecraft.capture.images import read_colour
 from world2minecraft.capture.sources import find_capture
-from world2minecraft.compare.judge import QUALITY
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.external_models.chat_messages import Picture
+from world2minecraft.paper.layouts.judge import QUALITY
 from world2minecraft.rendering.output.images import colour_bytes
 
 LONGEST_PX = 1024

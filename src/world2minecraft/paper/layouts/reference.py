@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from world2minecraft.compare.importers import read_layouts_of
-from world2minecraft.compare.values import ComparedScene
 from world2minecraft.core.errors import InputError
 from world2minecraft.evaluation.scoring.truth import read_truth
+from world2minecraft.paper.layouts.importers import read_layouts_of
+from world2minecraft.paper.layouts.values import ComparedScene
 
 TRUTH = "truth"
 

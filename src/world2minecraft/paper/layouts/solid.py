@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from world2minecraft.compare.designs import design_of
-from world2minecraft.compare.values import ComparedScene
 from world2minecraft.core.types import LayoutObject
 from world2minecraft.furniture import template
 from world2minecraft.furniture.layout_checks import OVERLAP_M, overlap_depth_m, overlapping_boxes
+from world2minecraft.paper.layouts.designs import design_of
+from world2minecraft.paper.layouts.values import ComparedScene
 from world2minecraft.reconstruction.floorplans.furniture_categories import OWN_CELLS
 
 

@@ -18,7 +18,8 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from world2minecraft.compare.importers.reading import (
+from world2minecraft.core.types import LayoutObject
+from world2minecraft.paper.layouts.importers.reading import (
     MOST_OBJECTS,
     MOST_SCENES,
     READ_ERRORS,
@@ -31,11 +32,10 @@ from world2minecraft.compare.importers.reading import (
     rectangle,
     why,
 )
-from world2minecraft.compare.values import ComparedScene
-from world2minecraft.core.types import LayoutObject
+from world2minecraft.paper.layouts.values import ComparedScene
 
 if TYPE_CHECKING:
-    from world2minecraft.compare.importers import How
+    from world2minecraft.paper.layouts.importers import How
 
 METHOD = "LayoutGPT"
 _SIDE = r"\s*([0-9]+(?:\.[0-9]+)?)\s*(px|m)?\b"

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from world2minecraft.compare import ComparedScene, Margins, score_scene, summary_of
-from world2minecraft.compare.scores import integrity
-from world2minecraft.compare.table import layout_table, other_table
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Layout, LayoutObject, Opening, Placement
+from world2minecraft.paper.layouts import ComparedScene, Margins, score_scene, summary_of
+from world2minecraft.paper.layouts.scores import integrity
+from world2minecraft.paper.layouts.table import layout_table, other_table
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.5)
 

@@ -17,7 +17,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from world2minecraft.compare.importers.reading import (
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.files import read_json
+from world2minecraft.core.types import Layout, LayoutObject
+from world2minecraft.paper.layouts.importers.reading import (
     FARTHEST_M,
     MOST_CORNERS,
     MOST_OBJECTS,
@@ -30,13 +33,10 @@ from world2minecraft.compare.importers.reading import (
     object_of,
     why,
 )
-from world2minecraft.compare.values import ComparedScene
-from world2minecraft.core.errors import InputError
-from world2minecraft.core.files import read_json
-from world2minecraft.core.types import Layout, LayoutObject
+from world2minecraft.paper.layouts.values import ComparedScene
 
 if TYPE_CHECKING:
-    from world2minecraft.compare.importers import How
+    from world2minecraft.paper.layouts.importers import How
 
 METHOD = "LayoutVLM"
 LAYOUT_FILE = "layout.json"

@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from world2minecraft.compare.values import SCENE_FILE, ComparedScene, read_scene
+from world2minecraft.paper.layouts.values import SCENE_FILE, ComparedScene, read_scene
 
 if TYPE_CHECKING:
-    from world2minecraft.compare.importers import How
+    from world2minecraft.paper.layouts.importers import How
 
 
 class Format:

@@ -10,10 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.compare.importers.layoutgpt import SHORTER_PX
-from world2minecraft.compare.importers.reading import clean_name
-from world2minecraft.compare.judge import prompt_text
-from world2minecraft.compare.values import ComparedScene
 from world2minecraft.core.classes import CLASS_NAMES
 from world2minecraft.core.errors import ServerError, UnknownNameError
 from world2minecraft.core.types import Layout, LayoutObject, Opening, Placement
@@ -21,6 +17,10 @@ from world2minecraft.external_models.chat_client import ChatModel
 from world2minecraft.external_models.chat_messages import Picture, Turn
 from world2minecraft.external_models.structured_replies import spoken
 from world2minecraft.furniture import TEMPLATES, template
+from world2minecraft.paper.layouts.importers.layoutgpt import SHORTER_PX
+from world2minecraft.paper.layouts.importers.reading import clean_name
+from world2minecraft.paper.layouts.judge import prompt_text
+from world2minecraft.paper.layouts.values import ComparedScene
 
 METHODS = ("text", "layoutgpt", "idesign", "layoutvlm")
 AT_WALL_M = 0.25  # What is nearer to a wall stands at it.

@@ -10,8 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from world2minecraft.compare.importers.reading import MOST_OBJECTS
-from world2minecraft.compare.values import ComparedScene
 from world2minecraft.core.errors import InputError
 from world2minecraft.core.types import Layout
 from world2minecraft.evaluation.scoring.layout import in_room
@@ -20,9 +18,11 @@ from world2minecraft.formats.objects import read_placements
 from world2minecraft.formats.room import read_room
 from world2minecraft.formats.rooms import read_rooms
 from world2minecraft.furniture.layout_checks import collisions
+from world2minecraft.paper.layouts.importers.reading import MOST_OBJECTS
+from world2minecraft.paper.layouts.values import ComparedScene
 
 if TYPE_CHECKING:
-    from world2minecraft.compare.importers import How
+    from world2minecraft.paper.layouts.importers import How
 
 METHOD = "World2Minecraft"
 

@@ -8,20 +8,20 @@ import pytest
 from PIL import Image
 from tests.external_models.scripted_server import scripted
 
-from world2minecraft.compare import ComparedScene
-from world2minecraft.compare.describing import (
+from world2minecraft.core.classes import SemanticClass
+from world2minecraft.core.errors import ServerError, UnknownNameError
+from world2minecraft.core.types import Layout, Opening, Placement
+from world2minecraft.external_models.chat_client import open_chat
+from world2minecraft.external_models.chat_messages import Picture
+from world2minecraft.paper.layouts import ComparedScene
+from world2minecraft.paper.layouts.describing import (
     describe_photos,
     describe_scene,
     for_method,
     layoutgpt_px_m,
     room_kind,
 )
-from world2minecraft.compare.importers.reading import Box, object_of
-from world2minecraft.core.classes import SemanticClass
-from world2minecraft.core.errors import ServerError, UnknownNameError
-from world2minecraft.core.types import Layout, Opening, Placement
-from world2minecraft.external_models.chat_client import open_chat
-from world2minecraft.external_models.chat_messages import Picture
+from world2minecraft.paper.layouts.importers.reading import Box, object_of
 
 ROOM = Layout(
     [[0, 0], [4, 0], [4, 3], [0, 3]], 2.6, (Opening("window", [1, 3], [2.5, 3], 0.9, 2.0),)
@@ -107,7 +107,7 @@ def test_a_model_describes_photos():
 
 
 def test_photos_are_spread_over_a_capture_and_made_small(tmp_path, monkeypatch):
-    from world2minecraft.compare import photos
+    from world2minecraft.paper.layouts import photos
 
     paths = []
     for n in range(10):

@@ -18,14 +18,14 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.compare.solid import solid_collisions
-from world2minecraft.compare.values import ComparedScene
 from world2minecraft.core.classes import OBJECT_CLASSES, SemanticClass
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Layout
 from world2minecraft.furniture.footprints import outside_share, shared_height_m, shared_volume_m3
 from world2minecraft.furniture.layout_checks import inside_polygon, overlap_depth_m, plan_corners_m
 from world2minecraft.navigation.scores import rate
+from world2minecraft.paper.layouts.solid import solid_collisions
+from world2minecraft.paper.layouts.values import ComparedScene
 
 ANY_M3 = 1e-9  # Less is rounding: boxes that touch.
 

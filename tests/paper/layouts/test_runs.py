@@ -4,11 +4,6 @@ import numpy as np
 import pytest
 from made_layouts import write
 
-from world2minecraft.compare import ComparedScene, score_scene
-from world2minecraft.compare.building import plan_of
-from world2minecraft.compare.importers import How, read_layouts_of
-from world2minecraft.compare.importers.reading import Box, object_of
-from world2minecraft.compare.truths import is_truth, true_scene
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import rotation_about_z
 from world2minecraft.core.errors import InputError
@@ -17,6 +12,11 @@ from world2minecraft.core.types import Layout, Opening
 from world2minecraft.formats.layout import layout_row, write_layouts
 from world2minecraft.formats.objects import write_placements
 from world2minecraft.formats.room import write_room
+from world2minecraft.paper.layouts import ComparedScene, score_scene
+from world2minecraft.paper.layouts.importers import How, read_layouts_of
+from world2minecraft.paper.layouts.importers.reading import Box, object_of
+from world2minecraft.paper.layouts.reference import is_truth, true_scene
+from world2minecraft.paper.layouts.world import plan_of
 from world2minecraft.reconstruction.floorplans import layouts_of
 from world2minecraft.reconstruction.floorplans.cells import cells_of_plan
 

@@ -10,7 +10,8 @@ come from them. An object without ``position`` is one for which the solver found
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from world2minecraft.compare.importers.reading import (
+from world2minecraft.core.types import LayoutObject
+from world2minecraft.paper.layouts.importers.reading import (
     MOST_OBJECTS,
     READ_ERRORS,
     Box,
@@ -21,11 +22,10 @@ from world2minecraft.compare.importers.reading import (
     rectangle,
     why,
 )
-from world2minecraft.compare.values import ComparedScene
-from world2minecraft.core.types import LayoutObject
+from world2minecraft.paper.layouts.values import ComparedScene
 
 if TYPE_CHECKING:
-    from world2minecraft.compare.importers import How
+    from world2minecraft.paper.layouts.importers import How
 
 METHOD = "I-Design"
 FLOOR, CEILING = "middle of the room", "ceiling"

@@ -12,8 +12,6 @@ from pathlib import Path
 
 import numpy as np
 
-from world2minecraft.compare.designs import design_of
-from world2minecraft.compare.values import SCENE_FILE, ComparedScene, write_scene
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.files import read_json
 from world2minecraft.core.progress import Progress, silent
@@ -21,6 +19,8 @@ from world2minecraft.core.types import Layout, LayoutObject, Opening
 from world2minecraft.evaluation.report import write_brief_report
 from world2minecraft.formats.roomplan import CapturedPlan, PlanObject, PlanRoom, PlanSurface
 from world2minecraft.furniture.layout_checks import inside_polygon
+from world2minecraft.paper.layouts.designs import design_of
+from world2minecraft.paper.layouts.values import SCENE_FILE, ComparedScene, write_scene
 from world2minecraft.reconstruction.floorplans import PlanWorld, build_captured
 from world2minecraft.reconstruction.parameters import Parameters
 

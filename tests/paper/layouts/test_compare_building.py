@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli.compare_build import chosen_scenes, folder_names
-from world2minecraft.compare import ComparedScene
-from world2minecraft.compare.building import plan_of
-from world2minecraft.compare.designs import design_of, designs
-from world2minecraft.compare.importers.reading import Box, object_of
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Layout, Placement
 from world2minecraft.furniture import TEMPLATES, template
+from world2minecraft.paper.layouts import ComparedScene
+from world2minecraft.paper.layouts.designs import design_of, designs
+from world2minecraft.paper.layouts.importers.reading import Box, object_of
+from world2minecraft.paper.layouts.world import plan_of
 from world2minecraft.reconstruction.floorplans.cells import cells_of_plan
 
 ROOM = Layout([[0, 0], [4, 0], [4, 3], [0, 3]], 2.6)
