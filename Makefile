@@ -69,7 +69,7 @@ docs: $(STAMP)  ## Build the site of the docs into site/, strictly.
 	@echo "site/index.html"
 
 forge:  ## Build SceneForge's page from its TypeScript (needs Node 20 and npm).
-	@cd src/world2minecraft/forge/web && npm ci --no-audit --no-fund --silent && npm run --silent build
+	@cd src/world2minecraft/sceneforge/web && npm ci --no-audit --no-fund --silent && npm run --silent build
 
 test: $(STAMP)  ## Run the tests, a file a core (TESTS=tests/reconstruction/fusion for a part).
 	@$(BIN)/python -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile $(TESTS)

@@ -35,7 +35,7 @@ from rich.table import Table
 
 from world2minecraft.core.classes import CLASS_COLOURS, CLASS_NAMES
 
-WEB = Path(__file__).parents[1] / "src/world2minecraft/forge/web"
+WEB = Path(__file__).parents[1] / "src/world2minecraft/sceneforge/web"
 CHROMIUM = shutil.which("chromium") or "/usr/bin/chromium"
 FLAGS = (
     "--no-sandbox",
@@ -253,9 +253,9 @@ def demo_rows(browser: Any, pictures: Path | None) -> Iterator[dict[str, Any]]:
     Software GL compiles what it draws shadows, icons and letters with for the first page that has
     any: half a second, which no later page of that browser waits for.
     """
-    from world2minecraft.forge.demo import demo_room
-    from world2minecraft.forge.editor import Editor
-    from world2minecraft.forge.serve import ForgeServer
+    from world2minecraft.sceneforge.demo import demo_room
+    from world2minecraft.sceneforge.editor import Editor
+    from world2minecraft.sceneforge.server.serve import ForgeServer
 
     with tempfile.TemporaryDirectory() as folder:
         editor = Editor(demo_room(Path(folder)))

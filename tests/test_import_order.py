@@ -161,7 +161,7 @@ def test_a_wrong_import_is_seen(importer, name, reason):
 @pytest.mark.parametrize(
     ("importer", "name"),
     [
-        ("cli", "world2minecraft.forge"),
+        ("cli", "world2minecraft.sceneforge"),
         ("build", "world2minecraft.minecraft.block_states"),
         ("rooms", "world2minecraft.rendering"),
         ("types", "world2minecraft.core.classes"),

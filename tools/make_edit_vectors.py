@@ -1,4 +1,4 @@
-"""Make the test vectors that the page and the program share, ``tests/forge/vectors/*.json``.
+"""Make the test vectors that the page and the program share, ``tests/sceneforge/vectors/*.json``.
 
 Run by hand when their meaning changes; a test holds the committed files to this script::
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run
-from world2minecraft.forge.editor import Editor
+from world2minecraft.sceneforge.editor import Editor
 
 
 class Clock:

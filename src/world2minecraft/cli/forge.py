@@ -8,8 +8,8 @@ import typer
 from world2minecraft.cli.browser import open_link
 
 if TYPE_CHECKING:
-    from world2minecraft.forge.editor import Editor
-    from world2minecraft.forge.serve import ForgeServer
+    from world2minecraft.sceneforge.editor import Editor
+    from world2minecraft.sceneforge.server.serve import ForgeServer
 
 EXAMPLES = """\
 w2m forge OUT                   a run: its room, objects, photos, blocks
@@ -86,11 +86,11 @@ def run(
         InputError: there is no room in the source.
     """
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.forge.captures import is_capture, user_home
-    from world2minecraft.forge.editor import Editor
-    from world2minecraft.forge.identity import folder_of
-    from world2minecraft.forge.serve import ForgeServer
-    from world2minecraft.forge.sources import DEMO_OUT
+    from world2minecraft.sceneforge.captures import is_capture, user_home
+    from world2minecraft.sceneforge.document.identity import folder_of
+    from world2minecraft.sceneforge.editor import Editor
+    from world2minecraft.sceneforge.server.serve import ForgeServer
+    from world2minecraft.sceneforge.sources import DEMO_OUT
 
     if walk:
         return _walk(source, no_browser)

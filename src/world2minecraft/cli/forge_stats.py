@@ -43,7 +43,7 @@ def run(
     import json
 
     from world2minecraft.core.errors import UsageError
-    from world2minecraft.forge.stats import (
+    from world2minecraft.sceneforge.effort_table import (
         effort_at,
         stats_csv,
         stats_json,

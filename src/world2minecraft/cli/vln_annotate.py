@@ -31,8 +31,8 @@ def run(folder: Folder, out: Out = None, port: Port = None, no_browser: NoBrowse
     Raises:
         InputError: the set has no walk, or cannot be read. UsageError: the port is taken.
     """
-    from world2minecraft.forge.annotation.app import annotation_server
-    from world2minecraft.forge.annotation.desk import AnnotationDesk
+    from world2minecraft.sceneforge.annotation.app import annotation_server
+    from world2minecraft.sceneforge.annotation.desk import AnnotationDesk
 
     desk = AnnotationDesk(folder, out)
     server = annotation_server(desk, port)

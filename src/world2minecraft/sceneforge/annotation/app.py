@@ -1,0 +1,84 @@
+"""What the annotation page asks of its server, behind the guard of SceneForge."""
+
+from pathlib import Path
+
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.sceneforge.annotation.desk import AnnotationDesk
+from world2minecraft.sceneforge.server.failures import ANSWERS
+from world2minecraft.sceneforge.server.guard import Guard
+from world2minecraft.sceneforge.server.limits import BodyLimit
+from world2minecraft.sceneforge.server.requests import object_of
+from world2minecraft.sceneforge.server.serve import PageServer
+
+PAGE = Path(__file__).parent / "page"
+MAX_BODY = 64 << 10
+
+
+def annotation_server(desk: AnnotationDesk, port: int | None = None) -> PageServer:
+    """Return the server of a desk; only this machine can reach it, and only with its link."""
+    return PageServer(lambda token, port: build_app(desk, token, port), port=port)
+
+
+def build_app(desk: AnnotationDesk, token: str, port: int) -> Starlette:
+    """Return the application that serves a desk."""
+    app = Starlette(
+        routes=[
+            Route("/api/walks", _walks),
+            Route("/api/walk/{number:int}", _walk),
+            Route("/api/image/{number:int}/{frame:int}", _image),
+            Route("/api/check", _check, methods=["POST"]),
+            Route("/api/add", _add, methods=["POST"]),
+            Mount("/", StaticFiles(directory=PAGE, html=True)),
+        ],
+        middleware=[
+            Middleware(Guard, token=token, port=port),
+            Middleware(BodyLimit, json_bytes=MAX_BODY, upload_bytes=0),
+        ],
+        exception_handlers=ANSWERS,
+    )
+    app.state.desk = desk
+    return app
+
+
+def _desk(request: Request) -> AnnotationDesk:
+    return request.app.state.desk
+
+
+def _walks(request: Request) -> Response:
+    return JSONResponse({"walks": _desk(request).listed(), "file": str(_desk(request).out)})
+
+
+def _walk(request: Request) -> Response:
+    return JSONResponse(_desk(request).walk(request.path_params["number"]))
+
+
+def _image(request: Request) -> Response:
+    params = request.path_params
+    data, kind = _desk(request).image(params["number"], params["frame"])
+    return Response(data, media_type=kind)
+
+
+async def _check(request: Request) -> Response:
+    number, level, text = await _fields(request, "level", "text")
+    return JSONResponse({"findings": _desk(request).check(number, level, text)})
+
+
+async def _add(request: Request) -> Response:
+    number, *texts = await _fields(request, "level", "text", "annotator", "language")
+    level, text, annotator, language = texts
+    return JSONResponse(_desk(request).add(number, level, text, annotator, language))
+
+
+async def _fields(request: Request, *names: str) -> tuple:
+    told = await object_of(request)
+    number, texts = told.get("number"), [told.get(name) for name in names]
+    if not isinstance(number, int) or not all(isinstance(text, str) for text in texts):
+        raise UsageError(f"the body has number, and {', '.join(names)} as texts")
+    return (number, *texts)

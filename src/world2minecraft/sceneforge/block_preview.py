@@ -1,0 +1,173 @@
+"""The blocks of the scene as it is edited now, as the game will show them.
+
+A build is made as ``w2m build`` makes it, mended too, and becomes a mesh for the Build view and
+collision boxes for walking in it. Nothing is written.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from world2minecraft.construction import BuildParameters, build_volume, find_spawn
+from world2minecraft.construction.parameters import STYLES
+from world2minecraft.core.errors import UnknownNameError, UsageError
+from world2minecraft.core.types import BlockVolume, OccupancyGrid, SceneObject
+from world2minecraft.editing.cleanup.passes import mended
+from world2minecraft.editing.scene import instances_of, placements_of
+from world2minecraft.minecraft.physics import BlockWorld, standing_place
+from world2minecraft.reconstruction.stages import corner_m
+from world2minecraft.rendering.mesh import BlockMesh, mesh_of
+from world2minecraft.sceneforge.arrays import packed_arrays
+from world2minecraft.sceneforge.editor import Editor
+
+MAGIC = b"W2MB"
+MOST_CELLS = 12_000_000  # Of the box around a build; a page draws no more.
+SIZES = (0.25, 100.0)  # Blocks a metre, as ``Parameters`` allows.
+
+
+@dataclass(frozen=True)
+class BuildOptions:
+    """How the page wants the blocks; checked."""
+
+    blocks_per_metre: float = 4.0
+    style: str = "blocks"
+
+    def __post_init__(self):
+        low, high = SIZES
+        if not low <= self.blocks_per_metre <= high:
+            asked = f"blocks_per_metre must be {low} to {high:.0f}, not {self.blocks_per_metre}"
+            raise UsageError(f"{asked}; try 1, 2, 4 or 12.5")
+        if self.style not in STYLES:
+            raise UnknownNameError("style", self.style, STYLES)
+
+
+@dataclass(frozen=True, eq=False)
+class HeldScene:
+    """A scene at one moment, so that it can be built while it is edited further.
+
+    ``shown`` tells it from other rooms of the server at the same revision, as ``Session.shown``.
+    """
+
+    rev: int
+    name: str
+    folder: Path
+    grid: OccupancyGrid
+    objects: tuple[SceneObject, ...]
+    shown: int = 0
+
+    @classmethod
+    def of(cls, editor: Editor) -> "HeldScene":
+        """Copy the scene of an editor; to be called in the editor's turn."""
+        objects = tuple(editor.draft.objects.values())
+        grid = editor.draft.grid()
+        return cls(editor.rev, editor.name, editor.opened.source, grid, objects)
+
+
+@dataclass(frozen=True, eq=False)
+class Build:
+    """The blocks of a scene, and what the page is sent of them."""
+
+    rev: int
+    options: BuildOptions
+    volume: BlockVolume
+
+    @classmethod
+    def of(cls, scene: HeldScene, options: BuildOptions) -> "Build":
+        """Build a scene; takes a second for a room.
+
+        Raises:
+            UsageError: it would be too many blocks.
+        """
+        size = options.blocks_per_metre * scene.grid.voxel_m
+        cells = float(np.prod(np.array(scene.grid.shape) * size + 4))
+        if cells > MOST_CELLS:
+            raise UsageError(
+                f"{options.blocks_per_metre:g} blocks a metre make {cells:.3g} blocks here, more "
+                f"than {MOST_CELLS:,}; choose fewer"
+            )
+        volume = build_volume(
+            scene.grid,
+            placements_of(scene.objects),
+            instances_of(scene.objects, scene.grid.instance),
+            corner_m=corner_m(scene.folder, scene.grid),
+            blocks_per_metre=options.blocks_per_metre,
+            parameters=replace(BuildParameters(), style=options.style),
+            name=scene.name,
+        )
+        return cls(scene.rev, options, mended(volume)[0])
+
+    @cached_property
+    def grid_to_room(self) -> np.ndarray:
+        """Carry cells of the volume to room metres, float64 [4, 4]."""
+        moved = np.eye(4)
+        moved[:3, 3] = self.volume.corner
+        return self.volume.block_to_room @ moved
+
+    @cached_property
+    def start(self) -> tuple[tuple[float, float, float], float]:
+        """Where a person begins to walk: feet in cells of the volume, and the game's yaw."""
+        spawn = find_spawn(self.volume)
+        world = BlockWorld.of_volume(self.volume)
+        place = standing_place(world, spawn.position, self.options.blocks_per_metre)
+        x, y, z = (float(v) for v in np.array(place) - self.volume.corner)
+        return (x, y, z), spawn.yaw_deg
+
+    def mesh_bytes(self) -> bytes:
+        """Return the mesh as the page reads it, see ``web/src/build/mesh.ts``."""
+        mesh = mesh_of(self.volume)
+        told = {
+            **self.facts(),
+            "style": self.options.style,
+            "palette": list(self.volume.palette),
+            "clear_from": mesh.clear_from,
+            "texture_px": mesh.atlas.side_px,
+            "blocks": int((self.volume.states > 0).sum()),
+        }
+        return packed_arrays(MAGIC, told, _arrays(mesh))
+
+    def facts(self) -> dict[str, Any]:
+        """Return what the page is told of any build: its revision, its place and where to begin."""
+        feet, yaw_deg = self.start
+        return {
+            "rev": self.rev,
+            "blocks_per_metre": self.options.blocks_per_metre,
+            "grid_to_room": self.grid_to_room.ravel().tolist(),
+            "feet": list(feet),
+            "yaw_deg": yaw_deg,
+        }
+
+
+def _arrays(mesh: BlockMesh) -> dict[str, np.ndarray]:
+    """Return what is drawn, a row for each corner, and what a click tells, a row for each quad."""
+    emission = np.repeat(mesh.emission[:, None], 4, axis=1)[..., None]
+    colour = np.concatenate([mesh.tint, mesh.shade[:, None]], axis=1)
+    facts = mesh.semantic + mesh.cuts * np.uint16(256)
+    kind = np.stack([mesh.layer, facts, mesh.cover, np.zeros_like(facts)], axis=1)
+    return {
+        "position": mesh.position.reshape(-1, 3),
+        "uv": mesh.uv.reshape(-1, 2),
+        "light": np.concatenate([mesh.light, emission], axis=2).reshape(-1, 4),
+        "colour": np.repeat(colour, 4, axis=0),
+        "kind": np.repeat(kind, 4, axis=0),
+        "state": mesh.state,
+        "instance": mesh.instance,
+        "texels": filled_texels(mesh),
+    }
+
+
+def filled_texels(mesh: BlockMesh) -> np.ndarray:
+    """Return the finest level of each texture, uint8 [L, N, N, 4], with colours in its holes.
+
+    A graphics card averages what it draws small: holes have the mean colour of their texture, so
+    that leaves and panes get no dark or pink rims.
+    """
+    side = mesh.atlas.side_px
+    texels = mesh.atlas.texels[:, : side * side].copy()
+    for texture in texels:
+        solid = texture[:, 3] >= 128
+        if solid.any() and not solid.all():
+            texture[~solid & (texture[:, 3] == 0), :3] = texture[solid, :3].mean(axis=0)
+    return texels.reshape(-1, side, side, 4)

@@ -1,0 +1,287 @@
+"""The captures of the start page: each a folder of its own below one home.
+
+::
+
+    HOME/captures/ID/capture.json   what it is called, and the files that come or its path
+    HOME/captures/ID/upload/NAME    the capture, a folder or a file
+    HOME/captures/ID/survey.json    what was found in it, with survey.png
+    HOME/captures/ID/run            what came of it: a run's folder
+
+HOME is ``SceneForge`` in the user's data folder.
+"""
+
+import os
+import re
+import secrets
+import shutil
+import sys
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.capture.readers.floorplan_only import plan_in
+from world2minecraft.capture.sources import find_capture
+from world2minecraft.core.errors import (
+    ConflictError,
+    DamagedFileError,
+    InputError,
+    LimitError,
+    OutputError,
+    UnknownNameError,
+    UsageError,
+)
+from world2minecraft.core.files import read_json, write_json
+from world2minecraft.minecraft.worlds.installation import check_name
+from world2minecraft.sceneforge.upload_names import UploadFile, checked_files, common_folder
+
+MOST_UPLOAD_BYTES = 512 << 20
+SPARE_BYTES = 256 << 20  # What a run of the capture writes, with room to breathe.
+CAPTURE, SURVEY, PICTURE = "capture.json", "survey.json", "survey.png"
+RUN, UPLOAD = "run", "upload"
+_ID = re.compile(r"[a-z0-9-]{1,64}")
+_RECEIVING: set[Path] = set()  # The files that bytes come to now, in this process.
+
+
+def user_home() -> Path:
+    """Return the folder where SceneForge keeps captures and rooms, made or not."""
+    home = Path.home()
+    if "W2M_FORGE_HOME" in os.environ:
+        return Path(os.environ["W2M_FORGE_HOME"])
+    if sys.platform == "win32":
+        return Path(os.environ.get("APPDATA") or home / "AppData" / "Roaming") / "SceneForge"
+    if sys.platform == "darwin":
+        return home / "Library" / "Application Support" / "SceneForge"
+    return Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share") / "SceneForge"
+
+
+@dataclass(frozen=True)
+class CaptureFolder:
+    """One capture: ``files`` are those that come by upload, none where it lies elsewhere."""
+
+    folder: Path
+    title: str
+    source: Path
+    files: tuple[UploadFile, ...]
+
+    @property
+    def id(self) -> str:
+        """Its name for the page."""
+        return self.folder.name
+
+    @property
+    def run(self) -> Path:
+        """Where its room is made."""
+        return self.folder / RUN
+
+    @property
+    def has_room(self) -> bool:
+        """Whether a room came of it that can be opened."""
+        return (self.run / "placements.json").is_file()
+
+    def place_of(self, number: int) -> Path:
+        """Return where one of its files lies, or comes to lie.
+
+        Raises:
+            UsageError: it has no file of this number.
+        """
+        if not 0 <= number < len(self.files):
+            raise UsageError(f"this capture has {len(self.files)} files; there is no {number}")
+        if self.source.name == self.files[number].path and len(self.files) == 1:
+            return self.source
+        return self.source / self.files[number].path
+
+    def held(self) -> list[int]:
+        """Return how many bytes of each file have come."""
+        return [_size(self.place_of(number)) for number in range(len(self.files))]
+
+    @property
+    def complete(self) -> bool:
+        """Whether all files are there whole."""
+        return all(
+            _size(self.place_of(n)) == one.size and self.place_of(n).is_file()
+            for n, one in enumerate(self.files)
+        )
+
+    def survey(self) -> dict[str, Any] | None:
+        """Return what was found in it, None where nobody looked."""
+        try:
+            return read_json(self.folder / SURVEY)
+        except InputError:
+            return None
+
+    async def receive(self, number: int, start: int, chunks: AsyncIterator[bytes]) -> int:
+        """Append to a file what comes, and return how many bytes of it are there.
+
+        What came before a connection was cut off stays: the page asks and goes on from there.
+
+        Args:
+            number: of the file.
+            start: how many bytes of it were there; the sender's and this side's must agree.
+            chunks: its next bytes.
+
+        Raises:
+            ConflictError: another number of bytes is there, or another connection still brings
+            some. LimitError: more comes than was said. OutputError: the disk is full.
+        """
+        place, path = self.place_of(number), self.files[number].path
+        held = _size(place)
+        if start != held:
+            raise ConflictError(path, f"{held} bytes of it are here; go on there")
+        if place in _RECEIVING:
+            raise ConflictError(path, "is coming by another connection; wait for its end")
+        _RECEIVING.add(place)
+        try:
+            return await self._append(number, chunks)
+        except OSError as error:
+            raise OutputError(place, f"cannot be written: {error.strerror or error}") from error
+        finally:
+            _RECEIVING.discard(place)
+
+    async def _append(self, number: int, chunks: AsyncIterator[bytes]) -> int:
+        """Append chunks to a file, and return how many bytes of it are there."""
+        place, file = self.place_of(number), self.files[number]
+        place.parent.mkdir(parents=True, exist_ok=True)
+        held = _size(place)
+        with place.open("ab") as stream:
+            async for chunk in chunks:
+                if held + len(chunk) > file.size:
+                    raise LimitError(file.path, f"has more than its {file.size} bytes")
+                stream.write(chunk)
+                held += len(chunk)
+        return held
+
+
+class Captures:
+    """All captures below a home.
+
+    Args:
+        home: the folder of SceneForge's own; made when first needed.
+        most_bytes: the most that one upload may hold.
+    """
+
+    def __init__(self, home: Path, most_bytes: int = MOST_UPLOAD_BYTES):
+        self.home, self.most_bytes = home, most_bytes
+        self.folder = home / "captures"
+
+    def all(self) -> list[CaptureFolder]:
+        """Return all captures, the newest first; folders that are none are left out."""
+        if not self.folder.is_dir():
+            return []
+        names = [entry.name for entry in self.folder.iterdir() if (entry / CAPTURE).is_file()]
+        found = []
+        for name in names:
+            try:
+                found.append(self.named(name))
+            except InputError:
+                continue
+        return sorted(found, key=lambda one: (one.folder / CAPTURE).stat().st_mtime, reverse=True)
+
+    def named(self, number: str) -> CaptureFolder:
+        """Return one capture by its id.
+
+        Raises:
+            UnknownNameError: there is none. DamagedFileError: its file is not whole.
+        """
+        folder = self.folder / number
+        if not _ID.fullmatch(number) or not (folder / CAPTURE).is_file():
+            raise UnknownNameError("capture", number[:64], (one.name for one in self._folders()))
+        try:
+            told = read_json(folder / CAPTURE)
+            files = tuple(UploadFile(str(p), int(size)) for p, size in told["files"])
+            elsewhere = told["elsewhere"]
+            source = Path(elsewhere) if elsewhere else folder / UPLOAD / str(told["name"])
+            return CaptureFolder(folder, str(told["title"]), source, files)
+        except (KeyError, TypeError, ValueError) as error:
+            raise DamagedFileError(folder / CAPTURE, f"is no capture ({error})") from error
+
+    def announce(self, title: str, files: Any) -> CaptureFolder:
+        """Make room for a capture that a page is about to send.
+
+        Args:
+            title: what it is called, for people.
+            files: JSON, a list of ``{"path", "size"}``.
+
+        Raises:
+            UsageError: a name cannot be used. LimitError: it is too large.
+            OutputError: the disk is full.
+        """
+        checked = checked_files(files, self.most_bytes)
+        self._check_space(sum(one.size for one in checked))
+        top = common_folder(checked)
+        inner = tuple(UploadFile(one.path[len(top) + 1 :], one.size) for one in checked)
+        inner = inner if top else checked
+        alone = len(inner) == 1 and not top
+        name = inner[0].path if alone else _folder_name(top or title)
+        return self._made(title or top or name, name, inner, "")
+
+    def adopt(self, path: Path) -> CaptureFolder:
+        """Return the capture that lies at a path of this machine; it is read where it is.
+
+        Raises:
+            InputError: nothing is there.
+        """
+        place = path.resolve()
+        if not place.exists():
+            raise InputError(path, "is not there")
+        for one in self.all():
+            if not one.files and one.source == place:
+                return one
+        return self._made(place.stem if place.is_file() else place.name, "", (), str(place))
+
+    def forget(self, number: str) -> None:
+        """Delete a capture with all that came of it; one that lies elsewhere stays there."""
+        shutil.rmtree(self.named(number).folder, ignore_errors=True)
+
+    def _made(
+        self, title: str, name: str, files: tuple[UploadFile, ...], elsewhere: str
+    ) -> CaptureFolder:
+        letters = re.sub(r"[^a-z0-9]+", "-", title.casefold()).strip("-")[:40]
+        folder = self.folder / "-".join(filter(None, [letters, secrets.token_hex(4)]))
+        plain = "".join(letter for letter in title if letter.isprintable())[:80]
+        told = {
+            "title": plain,
+            "name": name,
+            "files": [[one.path, one.size] for one in files],
+            "elsewhere": elsewhere,
+        }
+        write_json(folder / CAPTURE, told)
+        return self.named(folder.name)
+
+    def _folders(self) -> list[Path]:
+        return list(self.folder.iterdir()) if self.folder.is_dir() else []
+
+    def _check_space(self, size: int) -> None:
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            free = shutil.disk_usage(self.folder).free
+        except OSError as error:
+            raise OutputError(self.folder, f"cannot be made: {error.strerror or error}") from error
+        if free < size + SPARE_BYTES:
+            needed = (size + SPARE_BYTES) >> 20
+            raise OutputError(self.home, f"its disk has {free >> 20} MB free; {needed} are needed")
+
+
+def is_capture(place: Path) -> bool:
+    """Whether a capture or a plan lies at a path, and no room that could be opened."""
+    if (place / "room.npz").is_file() or place.suffix in (".npz", ".npy", ".forge"):
+        return False
+    try:
+        find_capture(place)
+        return True
+    except InputError:
+        return plan_in(place) is not None
+
+
+def _folder_name(title: str) -> str:
+    try:
+        return check_name(title)
+    except UsageError:  # Nothing of it can be a name.
+        return "capture"
+
+
+def _size(place: Path) -> int:
+    try:
+        return place.stat().st_size if place.is_file() else 0
+    except OSError:
+        return 0

@@ -1,0 +1,301 @@
+"""A scene on the disk while it is edited: the folder ``NAME.forge`` beside its source.
+
+=====================  =========================================================================
+``document.json``      what the scene was opened from, and where it is saved
+``base.npz``           the scene as it was opened first; never written again
+``journal.bin``        every step since, on the disk before it is seen
+``snapshot-*.npz``     whole scenes, so that opening takes no long time
+``effort.jsonl``       how much work it was
+``saved.json``         what was saved last; ``saving``: the files of a save under way
+``lock``               who edits it
+=====================  =========================================================================
+
+No file outside of the folder is written before ``save``.
+"""
+
+import hashlib
+import threading
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from world2minecraft.core.errors import ConflictError, OutputError
+from world2minecraft.core.locks import Lock
+from world2minecraft.core.types import Operation
+from world2minecraft.editing.scene import SceneHistory
+from world2minecraft.editing.scene.journal import DO, UNDO
+from world2minecraft.sceneforge.document import saving
+from world2minecraft.sceneforge.document.effort_log import EffortLog
+from world2minecraft.sceneforge.document.identity import (
+    folder_of,
+    is_document,
+    read_identity,
+    retire_changed,
+    write_identity,
+)
+from world2minecraft.sceneforge.document.memory_document import Unkept
+from world2minecraft.sceneforge.document.recovery import (
+    JOURNAL_FILE,
+    Recovered,
+    begin_anew,
+    recover,
+    set_aside,
+)
+from world2minecraft.sceneforge.document.snapshots import (
+    State,
+    snapshot_path,
+    snapshot_paths,
+    write_state,
+)
+from world2minecraft.sceneforge.sources import Opened, read_source
+
+SNAPSHOT_STEPS, SNAPSHOT_S = 200, 60.0
+HISTORY_BYTES = 256 << 20  # What undo reaches takes at most so much of the disk, packed.
+KEPT_SNAPSHOTS = 2
+
+
+class Document(Unkept):
+    """One scene with its folder. One thread at a time may use it; the editor sees to that.
+
+    ``notes`` tell what was found at opening, and what went wrong since. ``recovered`` counts the
+    steps that were found and not saved.
+    """
+
+    def __init__(self, folder: Path, clock: Callable[[], float], lock: Lock | None, reason: str):
+        """Read a document; ``lock`` is held, or None where it is to be looked at. Use ``open``."""
+        self.folder, self.clock, self.read_only = folder, clock, reason
+        self.notes: list[str] = []
+        self.history_bytes = HISTORY_BYTES
+        self._lock, self._writer = lock, None
+        self.identity = read_identity(folder)
+        self.saved_rev = saving.saved_rev(folder)
+        found = recover(folder)
+        self.recovered = max(found.rev - self.saved_rev, 0)
+        if self.recovered:
+            edits = (
+                "1 edit that was" if self.recovered == 1 else f"{self.recovered} edits that were"
+            )
+            self.notes.append(f"Recovered {edits} not saved.")
+        if found.fault:
+            lost = f"; {found.lost} edits of it are lost" if found.lost else ""
+            self.notes.append(f"{found.fault}{lost}.")
+        self._take(found)
+        self.opened = self.identity.opened(found.base)
+        self._effort: EffortLog | None = None
+        if lock is not None:
+            self._own(found)
+
+    @classmethod
+    def open(
+        cls, source: Path | None, *, out: Path | None = None, clock: Callable[[], float]
+    ) -> "Document":
+        """Open the document of a source, or begin it.
+
+        Where another process edits it, or its folder may not be written, it is opened to be read
+        only, and ``read_only`` says why.
+
+        Args:
+            source: what ``sources.py`` reads, or a document's folder; None for the demo room.
+            out: where it is saved, and what its folder lies beside, where not the source.
+            clock: gives the time in seconds since 1970.
+
+        Raises:
+            InputError: the source cannot be read. OutputError: the folder cannot be made.
+            ConflictError: the source changed since, and there are edits that were not saved.
+        """
+        folder = folder_of(source, out)
+        opened = None if is_document(folder) else read_source(source, out)
+        lock, reason = _locked(folder)
+        if lock is None:
+            return cls(folder, clock, None, reason)
+        try:
+            notes = _settle(folder, source, out, opened)
+            document = cls(folder, clock, lock, "")
+        except OutputError as error:
+            lock.let_go()
+            if not is_document(folder):
+                raise
+            return cls(folder, clock, None, str(error))
+        except BaseException:
+            lock.let_go()
+            raise
+        document.notes[:0] = notes
+        return document
+
+    def active(self, actor: str = "") -> None:
+        """Note that someone is at work, for the effort log."""
+        if self._effort is not None:
+            self._effort.active(self.clock(), actor)
+
+    def save(self) -> Path:
+        """Write the five files of the scene to their places; return their folder.
+
+        Raises:
+            ConflictError: a file there was changed by another program. OutputError: they cannot
+            be written.
+        """
+        self.check_writable()
+        state = self.state()
+        known = self.identity.inputs.values()
+        saving.save(self.folder, self.opened.source, self.opened.folder, state, known)
+        self.saved_rev = state.rev
+        self._snapshot()
+        return self.identity.target
+
+    @property
+    def generation(self) -> str:
+        """The name of the journal that goes on from here."""
+        return self._journal.generation
+
+    def wait(self) -> None:
+        """Wait until the snapshot that is being written lies on the disk."""
+        if self._writer is not None:
+            self._writer.join()
+            self._writer = None
+
+    def close(self) -> None:
+        """Let go of the document; what was not saved stays in its journal."""
+        if self._lock is None:
+            return
+        if self.rev > self._snapshot_rev:
+            self._snapshot()
+        self.wait()
+        self._lock.let_go()
+        self._lock, self.read_only = None, "it is closed"
+
+    def _take(self, found: Recovered) -> None:
+        self.draft = found.draft
+        self.rev, self._base, self._journal = found.rev, found.base, found.journal
+        self.history = SceneHistory(self.draft, found.journal, found.line)
+        self._snapshot_rev, self._snapshot_s = self.rev, self.clock()
+
+    def _own(self, found: Recovered) -> None:
+        """Make the folder ready to be written to."""
+        _tidy(self.folder)
+        path = self.folder / JOURNAL_FILE
+        if found.fault:
+            if path.exists():
+                aside = set_aside(path)
+                self.notes.append(f"The damaged journal is kept as {aside.name}.")
+            furthest = max(found.rev, found.journal.rev, self.saved_rev) + 1
+            self._begin_anew(replace(found, rev=furthest))
+        elif not found.journal.generation:
+            found.journal.begin(found.base.generation)
+        elif path.stat().st_size > found.journal.file.end:
+            self.notes.append("An edit that was being written when the program ended is left out.")
+        self._effort = EffortLog(self.folder)
+        self._log_again(self._effort)
+        self._effort.opened(self.clock())
+
+    def _log_again(self, effort: EffortLog) -> None:
+        """Note the steps that a kill kept from the effort log."""
+        for rev, step in enumerate(self._journal.steps, self._journal.start + 1):
+            if rev <= effort.last_rev:
+                continue
+            operation = self._journal.operation(step.number)
+            if step.verb == DO:
+                effort.step(rev, "do", operation, operation.actor, operation.time_s)
+            else:
+                word = "undo" if step.verb == UNDO else "redo"
+                effort.step(rev, word, operation, *self._journal.turned_by(step))
+
+    def _stepped(self, step: str, operation: Operation, actor: str, time_s: float) -> Operation:
+        self.rev += 1
+        if self._effort is not None:
+            self._effort.step(self.rev, step, operation, actor, time_s)
+        if self._journal.file.end > 2 * self.history_bytes:
+            self._shorten()
+        steps, seconds = self.rev - self._snapshot_rev, self.clock() - self._snapshot_s
+        if steps >= SNAPSHOT_STEPS or seconds >= SNAPSHOT_S:
+            self._snapshot()
+        return operation
+
+    def _shorten(self) -> None:
+        """Forget the oldest operations, so that undo reaches ``history_bytes`` of them."""
+        self.wait()
+        reached = len(self.history.line.numbers)
+        line, journal = self.history.line, self._journal
+        found = Recovered(self.draft, journal, line, self.rev, self._base)
+        try:
+            self._begin_anew(found)
+        except OutputError as error:
+            self.notes.append(f"The history could not be shortened: {error}.")
+            return
+        forgotten = reached - len(self.history.line.numbers)
+        if forgotten:
+            most = f"{self.history_bytes >> 20:,} MB"
+            self.notes.append(f"The {forgotten} oldest edits cannot be undone: {most} are kept.")
+
+    def _begin_anew(self, found: Recovered) -> None:
+        journal, line, rev = begin_anew(self.folder, found, self.history_bytes)
+        self._take(replace(found, journal=journal, line=line, rev=rev))
+
+    def _snapshot(self) -> None:
+        """Write a snapshot beside the work; one that fails is told and tried again later."""
+        self.wait()
+        self._snapshot_rev, self._snapshot_s = self.rev, self.clock()
+        self._writer = threading.Thread(target=self._write, args=(self.state(),))
+        self._writer.start()
+
+    def _write(self, state: State) -> None:
+        try:
+            write_state(snapshot_path(self.folder, state.rev, state.generation), state)
+            _prune(self.folder, state.generation)
+        except OutputError as error:
+            self.notes.append(f"No snapshot was written: {error}. The journal holds every edit.")
+
+
+def _locked(folder: Path) -> tuple[Lock | None, str]:
+    """Return the lock of a document, or None and why it cannot be had."""
+    lock = Lock(folder / "lock")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        lock.take()
+    except ConflictError:
+        who = lock.holder()
+        if not is_document(folder):
+            raise
+        return None, f"{who} edits it; close it there, then open it here again"
+    except (OutputError, OSError) as error:
+        if not is_document(folder):
+            raise OutputError(folder, f"cannot be made ({error})") from error
+        return None, str(error)
+    return lock, ""
+
+
+def _settle(
+    folder: Path, source: Path | None, out: Path | None, opened: Opened | None
+) -> list[str]:
+    """Bring the files of a document in order before it is read; return what to tell the user."""
+    notes = []
+    if is_document(folder) and saving.finish_cut_off(folder, read_identity(folder).target):
+        notes.append("A save that was cut off is finished.")
+    if is_document(folder) and source is not None and source != folder:
+        retired = retire_changed(folder)
+        notes += [retired] if retired else []
+    if not is_document(folder):
+        opened = opened or read_source(source, out)
+        write_identity(folder, opened, generation_of(opened))
+    return notes
+
+
+def generation_of(opened: Opened) -> str:
+    """Return the name of the first generation of a scene's journal: a hash of its cells."""
+    held = (opened.grid.labels, opened.grid.instance, opened.grid.colour)
+    return hashlib.sha256(b"".join(np_bytes.tobytes() for np_bytes in held)).hexdigest()[:8]
+
+
+def _prune(folder: Path, generation: str) -> None:
+    """Remove old snapshots of a generation, but for the newest and the first."""
+    held = [path for path in snapshot_paths(folder) if path.stem.endswith(generation)]
+    for path in held[KEPT_SNAPSHOTS:-1]:
+        path.unlink(missing_ok=True)
+
+
+def _tidy(folder: Path) -> None:
+    """Remove what a kill left half-written."""
+    for path in [*folder.glob(".*.npz.*"), *folder.glob(".*.json.*"), folder / "journal.new"]:
+        try:
+            path.unlink(missing_ok=True)
+        except OSError as error:
+            raise OutputError(path, f"cannot be removed: {error.strerror or error}") from error

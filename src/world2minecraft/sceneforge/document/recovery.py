@@ -1,0 +1,233 @@
+"""How a document's files become the scene again: the newest whole snapshot, then the journal.
+
+A record that was being written when the program ended is cut off. Where bytes were damaged later,
+as much is recovered as the snapshots and the journal allow, the damaged journal is set aside and
+a new one is begun.
+"""
+
+import hashlib
+import os
+import shutil
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+
+from world2minecraft.core.errors import ConflictError, DamagedFileError, InputError, OutputError
+from world2minecraft.core.types import Operation
+from world2minecraft.editing.scene import Line, SceneDraft
+from world2minecraft.editing.scene.journal import UNDO, SceneJournal, Step
+from world2minecraft.sceneforge.document.snapshots import (
+    State,
+    read_state,
+    snapshot_path,
+    snapshot_paths,
+    write_state,
+)
+
+JOURNAL_FILE, BASE_FILE = "journal.bin", "base.npz"
+
+
+@dataclass(frozen=True, eq=False)
+class Recovered:
+    """A scene as its document's files give it.
+
+    ``fault`` says what is wrong with the journal, empty where nothing is; ``lost`` counts the
+    steps that could not be done again.
+    """
+
+    draft: SceneDraft
+    journal: SceneJournal
+    line: Line
+    rev: int
+    base: State
+    fault: str = ""
+    lost: int = 0
+
+
+def recover(folder: Path) -> Recovered:
+    """Return the scene of a document; nothing is written.
+
+    Raises:
+        InputError: the document has no base. DamagedFileError: no state of it can be read.
+    """
+    base = _base(folder)
+    journal, fault = _journal(folder, base)
+    state = _newest(folder, journal, base)
+    if state.generation != journal.generation:
+        is_new = not journal.generation and state is base
+        fault = fault or ("" if is_new else f"{journal.file.path} is of another scene or missing")
+        return Recovered(state.draft(), journal, Line(), state.rev, base, fault)
+    steps = journal.steps[state.rev - journal.start :]
+    if state.rev > journal.rev:
+        fault = fault or f"{journal.file.path} ends before the edits that were in it"
+    draft, line, done, reason = _replayed(state, journal, steps)
+    fault = fault or reason
+    line = _reachable(line, journal)
+    return Recovered(draft, journal, line, state.rev + done, base, fault, len(steps) - done)
+
+
+def begin_anew(folder: Path, found: Recovered, keep_bytes: int) -> tuple[SceneJournal, Line, int]:
+    """Begin a new journal with the newest operations of an old one.
+
+    The new one's snapshots are written first, then it takes the place of the old one, so that a
+    kill leaves either.
+
+    Args:
+        folder: of the document.
+        found: the scene with its old journal; ``rev`` is where it stands.
+        keep_bytes: the operations that undo still reaches take at most so many bytes.
+
+    Returns:
+        The new journal, what undo and redo reach in it, and the revision, which is higher only
+        where the old journal was damaged.
+
+    Raises:
+        OutputError: it cannot be written; the old journal goes on.
+    """
+    line = _kept(found.line, found.journal, keep_bytes)
+    undone = len(line.numbers) - line.done
+    rev = max(found.rev, len(line.numbers) + undone)
+    generation = _next_generation(found.journal.generation, rev)
+    operations = [found.journal.operation(number) for number in line.numbers]
+    new = folder / "journal.new"
+    new.unlink(missing_ok=True)
+    journal = SceneJournal(new, found.draft.shape)
+    start = rev - len(line.numbers) - undone
+    first = SceneDraft(found.draft.grid(), found.draft.objects.values())
+    for operation in reversed(operations[: line.done]):
+        first.apply(operation.inverse())
+    for draft, at, reach in ((first, start, Line()), (found.draft, rev, _renumbered(line))):
+        objects = tuple(draft.objects.values())
+        fields = (found.base.scan_to_room, at, generation, reach)
+        write_state(snapshot_path(folder, at, generation), State(draft.grid(), objects, *fields))
+    journal.begin(generation, start)
+    for operation in operations:
+        journal.do(operation)
+    for number in reversed(range(line.done, len(operations))):
+        journal.undo(number)
+    _put(new, folder / JOURNAL_FILE)
+    journal.file.path = folder / JOURNAL_FILE
+    for path in snapshot_paths(folder):
+        if not path.stem.endswith(generation):
+            path.unlink(missing_ok=True)
+    return journal, _renumbered(line), rev
+
+
+def set_aside(path: Path) -> Path:
+    """Keep a damaged file under another name too; return that. Raises OutputError."""
+    names = (path.with_name(f"{path.stem}-damaged-{n}{path.suffix}") for n in count(1))
+    aside = next(path for path in names if not path.exists())
+    try:
+        try:
+            os.link(path, aside)  # It takes no room, which a full disk has not.
+        except OSError:
+            shutil.copyfile(path, aside)
+    except OSError as error:
+        raise OutputError(aside, f"cannot be written: {error.strerror or error}") from error
+    return aside
+
+
+def _base(folder: Path) -> State:
+    """Return the scene as it was opened first; where that is damaged, the newest snapshot."""
+    try:
+        return read_state(folder / BASE_FILE)
+    except InputError:
+        for state in _states(folder, ""):
+            return state
+        raise
+
+
+def _journal(folder: Path, base: State) -> tuple[SceneJournal, str]:
+    """Return the journal and what is wrong with it; an empty one where it cannot be read."""
+    path = folder / JOURNAL_FILE
+    try:
+        journal = SceneJournal(path, base.grid.shape)
+    except (DamagedFileError, InputError) as error:
+        return SceneJournal(folder / "no-journal", base.grid.shape), str(error)
+    if journal.generation or not journal.steps:
+        return journal, ""
+    # Its first record is damaged: the snapshots tell what stood there.
+    first = journal.steps.pop(0)
+    states = [path.stem.split("-")[1:] for path in snapshot_paths(folder)]
+    journal.generation = states[0][1] if states else base.generation
+    if journal.generation != base.generation:
+        journal.start = min(int(rev) for rev, name in states if name == journal.generation)
+    return journal, f"{path} is damaged at byte {first.record.at}"
+
+
+def _newest(folder: Path, journal: SceneJournal, base: State) -> State:
+    """Return the newest state that can be read: of the journal's generation, else of any."""
+    of_journal = [*_states(folder, journal.generation)] if journal.generation else []
+    if not of_journal and journal.generation == base.generation:
+        return base
+    states = of_journal or [*_states(folder, "")]
+    return states[0] if states else base
+
+
+def _states(folder: Path, generation: str) -> Iterator[State]:
+    """Go through at most one state, the newest whole one of a generation."""
+    for path in snapshot_paths(folder):
+        if generation and not path.stem.endswith(generation):
+            continue
+        try:
+            yield read_state(path)
+        except InputError:
+            continue
+        return
+
+
+def _replayed(
+    state: State, journal: SceneJournal, steps: Sequence[Step]
+) -> tuple[SceneDraft, Line, int, str]:
+    """Do steps again; return the scene, the line, how many were done and why no more."""
+    draft, line = state.draft(), state.line
+    for done, step in enumerate(steps):
+        if not step.verb:
+            where = f"{journal.file.path} is damaged at byte {step.record.at}"
+            return draft, line, done, where
+        try:
+            line = journal.line_after(line, [step])
+            draft.apply(_effect(journal, step))
+        except (DamagedFileError, ConflictError) as error:
+            return draft, line, done, str(error)
+    holes = [step.record.at for step in journal.steps if not step.verb]
+    fault = f"{journal.file.path} is damaged at byte {holes[0]}" if holes else ""
+    return draft, line, len(steps), fault
+
+
+def _effect(journal: SceneJournal, step: Step) -> Operation:
+    operation = journal.operation(step.number)
+    return operation.inverse() if step.verb == UNDO else operation
+
+
+def _reachable(line: Line, journal: SceneJournal) -> Line:
+    """Return the part of a line around now whose operations are there."""
+    missing = [at for at, number in enumerate(line.numbers) if not journal.bytes_of(number)]
+    first = max((at + 1 for at in missing if at < line.done), default=0)
+    last = min((at for at in missing if at >= line.done), default=len(line.numbers))
+    return line.within(first, last)
+
+
+def _kept(line: Line, journal: SceneJournal, keep_bytes: int) -> Line:
+    """Return a line without its oldest operations, so that it takes at most so many bytes."""
+    first, held = len(line.numbers), 0
+    while first > 0 and held + journal.bytes_of(line.numbers[first - 1]) <= keep_bytes:
+        first -= 1
+        held += journal.bytes_of(line.numbers[first])
+    return line.within(min(first, line.done), len(line.numbers))
+
+
+def _renumbered(line: Line) -> Line:
+    return line._replace(numbers=tuple(range(len(line.numbers))))
+
+
+def _next_generation(generation: str, rev: int) -> str:
+    return hashlib.sha256(f"{generation} {rev}".encode()).hexdigest()[:8]
+
+
+def _put(path: Path, place: Path) -> None:
+    try:
+        path.replace(place)
+    except OSError as error:
+        raise OutputError(place, f"cannot be written: {error.strerror or error}") from error

@@ -1,0 +1,148 @@
+"""Saving a scene to the files of a run, all of them or none, and never over what others wrote.
+
+The files are first written within the document, then told of in ``saved.json``, then copied to
+their places; what a kill cuts off after that is finished when the document is opened next.
+``saved.json`` is ``{"rev", "known": [SHA-256, ...], "pending": {"rev", "files"}}``: what was saved
+last, which files are ours, and the save under way, if one is.
+"""
+
+import hashlib
+import shutil
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.errors import ConflictError, InputError
+from world2minecraft.core.files import read_json, write_bytes, write_json
+from world2minecraft.editing.scene import instances_of, placements_of
+from world2minecraft.formats.objects import write_objects, write_placements
+from world2minecraft.formats.paper_json import write_centers_json, write_occ_json
+from world2minecraft.formats.room import write_room
+from world2minecraft.sceneforge.document.snapshots import State
+
+SAVED_FILE, STAGED = "saved.json", "saving"
+BESIDE = ("scan.json", "layout.json")
+SAVED_FILES = ("room.npz", "objects.json", "placements.json", "occ.json", "centers.json")
+
+
+def write_scene_files(folder: Path, state: State) -> None:
+    """Write the five files of a scene into a folder. Raises OutputError."""
+    instances = instances_of(state.objects, state.grid.instance)
+    write_room(folder / "room.npz", state.grid, state.scan_to_room)
+    write_objects(folder / "objects.json", instances)
+    write_placements(folder / "placements.json", placements_of(state.objects))
+    write_occ_json(folder / "occ.json", state.grid)
+    write_centers_json(folder / "centers.json", instances)
+
+
+def sha256(path: Path) -> str:
+    """Return the SHA-256 of a file, empty where it is not there.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    try:
+        with path.open("rb") as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+    except FileNotFoundError:
+        return ""
+    except OSError as error:
+        raise InputError(path, f"cannot be read: {error.strerror or error}") from error
+
+
+def save(
+    document: Path, source: Path, target: Path, state: State, known: Iterable[str]
+) -> dict[str, str]:
+    """Save a scene to ``target``; return the SHA-256 of each file.
+
+    Where it is saved elsewhere than its source, what other verbs read beside the five files goes
+    with them.
+
+    Args:
+        document: its ``.forge`` folder.
+        source: the run that it was opened from.
+        target: where the files go.
+        state: the scene.
+        known: the SHA-256 of files that may be overwritten, beside those that a save wrote.
+
+    Raises:
+        ConflictError: a file there is from somewhere else; nothing is written.
+        OutputError: the disk is full or may not be written; what is missing is written when the
+        scene is saved again or opened next.
+    """
+    staged = document / STAGED
+    _forget(staged)
+    write_scene_files(staged, state)
+    for name in BESIDE:
+        if (source / name).is_file() and not (target / name).exists():
+            write_bytes(staged / name, (source / name).read_bytes())
+    names = (*SAVED_FILES, *(name for name in BESIDE if (staged / name).is_file()))
+    files = {name: sha256(staged / name) for name in names}
+    allowed = {*known, *files.values(), *saved_hashes(document)}
+    for name in files:
+        if (found := sha256(target / name)) and found not in allowed:
+            _forget(staged)
+            reason = "was changed by another program since; move it away, then save again"
+            raise ConflictError(target / name, reason)
+    told = _told(document)
+    hashes = sorted({*saved_hashes(document), *files.values()})
+    pending = {"rev": state.rev, "files": files}
+    write_json(document / SAVED_FILE, told | {"pending": pending, "known": hashes})
+    _finish(document, target, pending)
+    return files
+
+
+def finish_cut_off(document: Path, target: Path) -> bool:
+    """Finish a save to ``target`` that was cut off; return whether there was one.
+
+    A target that is not beside the document is left alone: the document may come from elsewhere.
+
+    Raises:
+        OutputError: the disk is full or may not be written.
+    """
+    pending = _told(document).get("pending", {})
+    files = pending.get("files", {})
+    whole = bool(files) and all(
+        name in (*SAVED_FILES, *BESIDE) and sha256(document / STAGED / name) == value
+        for name, value in files.items()
+    )
+    if not whole or target.resolve().parent != document.resolve().parent:
+        return False
+    _finish(document, target, pending)
+    return True
+
+
+def saved_rev(document: Path) -> int:
+    """Return the revision that was last saved, 0 for none."""
+    return _told(document)["rev"]
+
+
+def saved_hashes(document: Path) -> set[str]:
+    """Return the SHA-256 of all files that saves wrote, or were about to write."""
+    return {str(value) for value in _told(document)["known"]}
+
+
+def _finish(document: Path, target: Path, pending: Mapping[str, Any]) -> None:
+    for name, value in pending["files"].items():
+        if sha256(target / name) != value:
+            write_bytes(target / name, (document / STAGED / name).read_bytes())
+    known = sorted(pending["files"].values())
+    write_json(document / SAVED_FILE, {"rev": pending["rev"], "known": known})
+    _forget(document / STAGED)
+
+
+def _forget(staged: Path) -> None:
+    shutil.rmtree(staged, ignore_errors=True)
+
+
+def _told(document: Path) -> dict[str, Any]:
+    """Return what ``saved.json`` tells; as if nothing was saved where it is missing or damaged."""
+    try:
+        told = read_json(document / SAVED_FILE, 1 << 20)
+        pending = told.get("pending", {"rev": 0, "files": {}})
+        rev, later = int(told["rev"]), int(pending["rev"])
+        files = {str(name): str(value) for name, value in pending["files"].items()}
+        found = {"rev": rev, "known": list(told["known"])}
+        return found | ({"pending": {"rev": later, "files": files}} if files else {})
+    except (InputError, KeyError, TypeError, ValueError, AttributeError):
+        return {"rev": 0, "known": []}

@@ -1,0 +1,140 @@
+"""The paper's efficiency table over any set of scenes, from their effort logs."""
+
+import csv
+import io
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.errors import InputError
+from world2minecraft.core.files import read_json
+from world2minecraft.evaluation.metrics.effort import (
+    PAPER_REFINED,
+    PAPER_SCRATCH,
+    Effort,
+    effort_of,
+    improvement,
+    mean_row,
+)
+from world2minecraft.sceneforge.document.effort_log import read_effort
+from world2minecraft.sceneforge.document.identity import folder_of, read_identity
+
+Row = Mapping[str, float | None]
+# The paper's rows: name, title, how far it is indented.
+ROWS = (
+    ("total_s", "Total time (seconds)", 0),
+    ("automatic_s", "Automated process", 1),
+    ("manual_s", "Manual refinement", 1),
+    ("operations", "Total operations", 0),
+    ("add", "Addition actions", 1),
+    ("delete", "Deletion actions", 1),
+    ("orient", "Orientation adjustments", 1),
+)
+# What our editor counts beside the paper's three; rows of nothing but zeros are left out.
+MORE_ROWS = (
+    ("move", "Moves", 1),
+    ("relabel", "Changes of class", 1),
+    ("other", "Others", 1),
+    ("undone", "Taken back (not in the total)", 0),
+)
+
+
+def effort_at(place: Path) -> Effort:
+    """Return the effort of a scene, given by its ``.forge`` folder or by what was opened.
+
+    Raises:
+        InputError: it was never opened, or its log cannot be read.
+    """
+    folder = folder_of(place)
+    if not folder.is_dir():
+        raise InputError(place, "was never edited: no folder of edits lies beside it")
+    identity = read_identity(folder)
+    return effort_of(identity.name, read_effort(folder), automatic_s(identity.source))
+
+
+def automatic_s(source: Path) -> float | None:
+    """Return how long the reconstruction of a run took, in seconds; None where nothing tells."""
+    try:
+        seconds = read_json(source / "run.json", 1 << 20)["stage_s"].values()
+        return float(sum(map(float, seconds)))
+    except (InputError, KeyError, TypeError, ValueError, AttributeError):
+        return None
+
+
+def stats_json(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> dict[str, Any]:
+    """Return every scene, the means, those from nothing and the paper's, as JSON values."""
+    return {
+        "scenes": [{**asdict(one), "total_s": one.total_s} for one in efforts],
+        "mean": mean_row(efforts),
+        "scratch": mean_row(scratch) if scratch else None,
+        "paper": {"scratch": PAPER_SCRATCH, "refined": PAPER_REFINED},
+    }
+
+
+def stats_csv(efforts: Iterable[Effort]) -> str:
+    """Return one line for each scene, with a head."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    kinds = ("add", "delete", "orient", "move", "relabel", "other")
+    writer.writerow(
+        ("scene", "operations", *kinds, "undone", "redone", "cells", "manual_s", "automatic_s")
+    )
+    for one in efforts:
+        automatic = "" if one.automatic_s is None else round(one.automatic_s, 2)
+        counts = [one.counted[kind] for kind in kinds]
+        times = (round(one.active_s, 2), automatic)
+        writer.writerow(
+            (one.name, one.operations, *counts, one.undone, one.redone, one.cells, *times)
+        )
+    return text.getvalue()
+
+
+def stats_text(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> str:
+    """Return the table of means as plain text, the paper's beside ours."""
+    ours, nothing = mean_row(efforts), mean_row(scratch)
+    scenes = "1 scene" if len(efforts) == 1 else f"{len(efforts)} scenes"
+    lines = [
+        f"mean of {scenes}" + (f", {len(scratch)} from nothing" if scratch else ""),
+        f"{'':<31}{'from':>10}{'':>10}{'':>10}   {'paper: from':>12}{'paper:':>10}",
+        f"{'':<31}{'nothing':>10}{'ours':>10}{'less':>10}   {'nothing':>12}{'refined':>10}",
+    ]
+    for name, title, depth in _rows(ours, nothing):
+        cells = (nothing[name], ours[name])
+        paper = (PAPER_SCRATCH.get(name), PAPER_REFINED.get(name))
+        less = improvement(*cells)
+        shown = "--" if less is None else f"{less:.1f}x"
+        lines.append(
+            f"{'  ' * depth + title:<31}{_figure(cells[0]):>10}{_figure(cells[1]):>10}{shown:>10}"
+            f"   {_figure(paper[0]):>12}{_figure(paper[1]):>10}"
+        )
+    return "\n".join(lines)
+
+
+def stats_latex(efforts: Sequence[Effort], scratch: Sequence[Effort] = ()) -> str:
+    """Return the table of means as the paper prints it."""
+    ours, nothing = mean_row(efforts), mean_row(scratch)
+    lines = [
+        r"\begin{tabular}{l c c c}",
+        r"\toprule",
+        r"\textbf{Metric Details} & Build from Scratch & \textbf{Ours} & Improvement \\",
+        r"\midrule",
+    ]
+    for name, title, depth in _rows(ours, nothing):
+        if name == "operations":
+            lines.append(r"\midrule")
+        less = improvement(nothing[name], ours[name])
+        shown = "--" if less is None else rf"{less:.1f}$\times$"
+        words = rf"\quad {title}" if depth else rf"\textbf{{{title}$\downarrow$}}"
+        lines.append(rf"{words} & {_figure(nothing[name])} & {_figure(ours[name])} & {shown} \\")
+    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}"])
+
+
+def _rows(*means: Row) -> list[tuple[str, str, int]]:
+    """Return the paper's rows, and those of ours that are not nothing throughout."""
+    more = [row for row in MORE_ROWS if any(mean[row[0]] for mean in means)]
+    return [*ROWS, *more]
+
+
+def _figure(value: float | None) -> str:
+    return "--" if value is None else f"{value:.2f}"

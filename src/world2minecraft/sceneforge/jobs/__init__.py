@@ -1,0 +1,1 @@
+"""Long work of the editor, in threads and processes beside it."""

@@ -1,0 +1,72 @@
+"""Long questions and long plans about a large scene: done on a copy of it, as a job beside.
+
+Nobody's edits wait meanwhile; every tab sees how far it is and may cancel it. What was planned on
+the copy is done only where the cells that it changes are still what they were.
+"""
+
+import asyncio
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any, TypeVar
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.jobs.jobs import CancelledError, Jobs, Report
+
+# What takes seconds of millions of cells, and what it is called meanwhile.
+TITLES = {
+    "floaters": "Looking for floaters",
+    "holes": "Looking for holes",
+    "doubtful": "Looking for doubtful places",
+    "smooth": "Smoothing furniture",
+    "remove_floaters": "Deleting floaters",
+    "fill_holes": "Filling holes",
+}
+# The words of these jobs in the page; ``scene`` alone where a plan does not say how far it is.
+STAGES = ("scene", "planes", "pieces", "doubts")
+
+Value = TypeVar("Value")
+
+
+def copy_of(editor: Editor) -> Editor:
+    """Return a scene as it is now, to be looked at and planned on by another thread."""
+    held, draft = editor.opened, editor.draft
+    return Editor(replace(held, grid=draft.grid(), objects=tuple(draft.objects.values())))
+
+
+async def beside(jobs: Jobs, name: str, copy: Editor, work: Callable[[Editor], Value]) -> Value:
+    """Run work on a copy of the scene as a job, and return what it gives.
+
+    Args:
+        jobs: those of the server.
+        name: of ``TITLES``.
+        copy: which nobody else uses; the job reports what its ``progress`` is told.
+        work: what is done.
+
+    Raises:
+        UsageError: somebody cancelled it. What ``work`` raises.
+    """
+    loop = asyncio.get_running_loop()
+    answer: asyncio.Future[Value] = loop.create_future()
+
+    def settle(act: Callable[[Any], None], value: Any) -> None:
+        if not answer.done():  # Whoever asked may be gone.
+            act(value)
+
+    def run(report: Report) -> None:
+        try:
+            report("scene", 0, 0)
+            copy.progress = report
+            value = work(copy)
+            report("scene", 1, 1)  # The last moment to be cancelled.
+        except BaseException as error:
+            told = UsageError(f"{TITLES[name]}: cancelled")
+            told = told if isinstance(error, CancelledError) else error
+            with suppress(RuntimeError):  # The server may have stopped.
+                loop.call_soon_threadsafe(settle, answer.set_exception, told)
+            raise
+        loop.call_soon_threadsafe(settle, answer.set_result, value)
+
+    jobs.start(TITLES[name], run)
+    return await answer

@@ -1,0 +1,172 @@
+"""What a worker makes of a scene as it is edited: files of every form, worlds in the game, builds.
+
+Each takes a folder with ``room.npz``, ``objects.json`` and ``placements.json`` (``snapshot``), and
+JSON values, and gives JSON values.
+"""
+
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from PIL import Image
+
+from world2minecraft.construction import WORLD_NAME, write_build
+from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK
+from world2minecraft.core.progress import Progress
+from world2minecraft.core.types import BlockVolume
+from world2minecraft.editing.relocation import placed
+from world2minecraft.editing.world_build import build_into, built_mask
+from world2minecraft.formats.forms import form_named, templates_of_run, write_form
+from world2minecraft.minecraft.commands.player_scale import size_pack
+from world2minecraft.minecraft.file_format import WriteOptions
+from world2minecraft.minecraft.losses import Losses
+from world2minecraft.minecraft.server.address import note_of, parse_address
+from world2minecraft.minecraft.server.building import LiveBuilder
+from world2minecraft.minecraft.server.plan import plan_build
+from world2minecraft.minecraft.server.rcon import RconClient
+from world2minecraft.minecraft.versions import game_version
+from world2minecraft.minecraft.worlds.installation import age_note, install_world
+from world2minecraft.minecraft.worlds.launchers import Game
+from world2minecraft.reconstruction.parameters import Parameters
+from world2minecraft.reconstruction.stages import built_volume, scene_name
+from world2minecraft.rendering.preview import preview
+from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of
+
+WORLD, PICTURE = "world", "png"
+
+
+def export(
+    folder: str, form: str, target: str, choice: dict[str, Any], progress: Progress
+) -> dict[str, Any]:
+    """Write a scene in one form into the folder ``target``.
+
+    Args:
+        folder: the scene.
+        form: a name of ``formats.forms``, ``world`` or ``png``.
+        target: where the file goes.
+        choice: as ``tasks.parameters_of``.
+        progress: told of building and writing.
+
+    Returns:
+        ``file``, its name; ``bytes``; ``lost`` [[what, count]], what the form could not carry.
+    """
+    chosen, losses = parameters_of(choice), Losses()
+    volume = _blocks(Path(folder), chosen, progress)
+    progress("write", 0, 1)
+    path = _written(volume, Path(folder), form, Path(target), chosen, losses)
+    progress("write", 1, 1)
+    lost = [[what, count] for what, count in losses]
+    return {"file": path.name, "bytes": path.stat().st_size, "lost": lost}
+
+
+def _written(
+    volume: BlockVolume,
+    folder: Path,
+    form: str,
+    target: Path,
+    chosen: Parameters,
+    losses: Losses,
+) -> Path:
+    target.mkdir(parents=True, exist_ok=True)
+    if form == PICTURE:
+        Image.fromarray(preview(volume)).save(target / "room.png")
+        return target / "room.png"
+    if form == WORLD:
+        name = scene_name(folder) or WORLD_NAME
+        write_build(target / "build", volume, mc_version=chosen.mc_version, name=name)
+        return _zipped(target / "build" / "world", target / "room_world.zip")
+    path = target / f"room{form_named(form).suffix}"
+    options = WriteOptions(
+        mc_version=chosen.mc_version, other={"templates": templates_of_run(folder)}
+    )
+    write_form(volume, path, options, losses)
+    return _zipped(path, target / f"room_{form}.zip") if path.is_dir() else path
+
+
+def _zipped(folder: Path, path: Path) -> Path:
+    shutil.make_archive(str(path.with_suffix("")), "zip", folder.parent, folder.name)
+    shutil.rmtree(folder)
+    return path
+
+
+def install(
+    folder: str, choice: dict[str, Any], game: list[str | None], name: str, progress: Progress
+) -> dict[str, Any]:
+    """Build the world and copy it into a game, overwriting nothing.
+
+    Args:
+        folder: the scene.
+        choice: as ``tasks.parameters_of``.
+        game: its name, its saves folder and its version or None.
+        name: what the world is called; the scene's name where it is empty.
+        progress: told of each step.
+    """
+    chosen = parameters_of(choice)
+    into = Game(str(game[0]), Path(str(game[1])), game[2])
+    volume = _blocks(Path(folder), chosen, progress)
+    progress("install", 0, 1)
+    title = name or scene_name(Path(folder)) or WORLD_NAME
+    with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
+        write_build(scratch, volume, mc_version=chosen.mc_version, name=title)
+        target = install_world(Path(scratch) / "world", into.saves, title)
+        note = age_note(target, into)
+    progress("install", 1, 1)
+    return {"name": target.name, "game": into.name, "note": note}
+
+
+def into_world(
+    folder: str,
+    choice: dict[str, Any],
+    world: str,
+    at: list[int],
+    turns: int,
+    air: str,
+    progress: Progress,
+) -> dict[str, Any]:
+    """Build the scene into a world of the user, as ``w2m build --into`` does, with its backups."""
+    chosen = parameters_of(choice)
+    volume = _blocks(Path(folder), chosen, progress)
+    progress("write", 0, 1)
+    put = placed(volume, (at[0], at[1], at[2]), turns, ROOM_CORNER_BLOCK[1])
+    pack = {"datapacks/player_size.zip": size_pack(volume.blocks_per_metre)}
+    done = build_into(
+        Path(world),
+        put,
+        air=air,
+        extra=pack if volume.blocks_per_metre != 1 else None,
+        what=f"built at {at[0]} {at[1]} {at[2]}",
+    )
+    progress("write", 1, 1)
+    return {"blocks": done.blocks, "entities": done.entities, "changed": done.step is not None}
+
+
+def on_server(
+    folder: str,
+    choice: dict[str, Any],
+    address: str,
+    password: str,
+    at: list[int],
+    turns: int,
+    air: str,
+    progress: Progress,
+) -> dict[str, Any]:
+    """Build the scene on a running server, as ``w2m build --rcon`` does; it cannot be undone."""
+    chosen = parameters_of(choice)
+    host, port = parse_address(address)
+    volume = _blocks(Path(folder), chosen, progress)
+    put = placed(volume, (at[0], at[1], at[2]), turns, ROOM_CORNER_BLOCK[1])
+    losses = Losses()
+    version = game_version(chosen.mc_version)
+    plan = plan_build(put, version, built=built_mask(put, air), losses=losses)
+    client = RconClient(host, port, password)
+    result = LiveBuilder(client, plan, note_of(f"{host}:{port}", plan.digest), progress).run()
+    lost = [[what, count] for what, count in losses]
+    return {"commands": result.commands, "checked": result.checked, "lost": lost}
+
+
+def _blocks(folder: Path, chosen: Parameters, progress: Progress) -> BlockVolume:
+    progress("build", 0, 1)
+    volume = built_volume(folder, chosen)
+    progress("build", 1, 1)
+    return volume

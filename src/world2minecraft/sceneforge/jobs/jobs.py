@@ -1,0 +1,227 @@
+"""Long work beside the editor: each job has a stage, a share, the time left and an end.
+
+A job runs in a thread of its own. What may be cut off at any moment runs in a process that the
+thread listens to (``apart.run_apart``); other work is cancelled at its next report. Every state
+is a ``JobState`` of ``wire.ts`` and goes to all tabs, at most ten a second for each job.
+"""
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Protocol
+
+from world2minecraft.core.errors import (
+    ConflictError,
+    UnknownNameError,
+    World2MinecraftError,
+    one_line,
+)
+from world2minecraft.sceneforge.jobs.time_left import TimeLeft
+
+SOONEST_S = 0.1  # More states a second are seen by nobody.
+KEPT = 50  # Ended jobs that are remembered, for tabs that come later.
+MOST_AT_ONCE = 4
+
+
+class CancelledError(Exception):
+    """Raised within a job's work when it was cancelled: the work ends there."""
+
+
+@dataclass(frozen=True)
+class JobState:
+    """What a tab shows of a job; ``share`` is of all of it, ``done`` and ``total`` of its stage."""
+
+    id: str
+    title: str
+    stage: str = ""
+    done: int = 0
+    total: int = 0
+    share: float | None = None
+    left_s: float | None = None
+    note: str = ""
+    state: str = "running"  # done, failed, cancelled
+    result: Any = None
+
+    def message(self) -> dict[str, Any]:
+        """Return the message of ``wire.ts``."""
+        return {"type": "job"} | asdict(self)
+
+
+class Report(Protocol):
+    """What work is given: it calls it as ``Progress``, and may say how it is cut off."""
+
+    def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
+        """Report one step. Raises CancelledError where the job was cancelled."""
+        ...
+
+    def on_cancel(self, stop: Callable[[], None]) -> None:
+        """Call ``stop`` when the job is cancelled; at once where it was already."""
+        ...
+
+
+Work = Callable[[Report], Any]
+
+
+class Jobs:
+    """All jobs of one server.
+
+    Args:
+        tell: takes each state's message; called from the jobs' threads.
+        clock: seconds that only grow.
+    """
+
+    def __init__(
+        self,
+        tell: Callable[[dict[str, Any]], None],
+        clock: Callable[[], float] = time.monotonic,
+    ):
+        self._tell, self._clock = tell, clock
+        self._jobs: dict[str, _Job] = {}
+        self._lock = threading.Lock()
+        self._count = 0
+
+    def start(
+        self,
+        title: str,
+        work: Work,
+        usual_s: Mapping[str, float] | None = None,
+        ended: Callable[[JobState], None] = lambda state: None,
+    ) -> str:
+        """Begin a job and return its id.
+
+        Args:
+            title: for people.
+            work: is given a ``Report``; what it returns, JSON values, is the job's result.
+            usual_s: its stages in order with their usual seconds, for the time left.
+            ended: called with the last state, in the job's thread, before it is told.
+
+        Raises:
+            ConflictError: too many run already.
+        """
+        with self._lock:
+            running = [one for one in self._jobs.values() if one.state.state == "running"]
+            if len(running) >= MOST_AT_ONCE:
+                titles = ", ".join(one.state.title for one in running)
+                raise ConflictError(title, f"{len(running)} jobs run already ({titles}); wait")
+            self._count += 1
+            state = JobState(f"job{self._count}", title)
+            job = _Job(state, TimeLeft(usual_s or {}), self._tell, self._clock)
+            self._jobs[state.id] = job
+            self._forget()
+        job.begin(work, ended)
+        return state.id
+
+    def cancel(self, number: str) -> None:
+        """End a job; one that has ended stays as it is.
+
+        Raises:
+            UnknownNameError: there is no such job.
+        """
+        self._named(number).cancel()
+
+    def state(self, number: str) -> JobState:
+        """Return the state of a job. Raises UnknownNameError."""
+        return self._named(number).state
+
+    def states(self) -> list[dict[str, Any]]:
+        """Return the messages of all jobs, in the order that they began."""
+        return [job.state.message() for job in list(self._jobs.values())]
+
+    def wait(self, number: str, timeout_s: float | None = None) -> JobState:
+        """Return the last state of a job once it has ended, or its state when the time is over."""
+        job = self._named(number)
+        job.thread.join(timeout_s)
+        return job.state
+
+    def close(self, patience_s: float = 5.0) -> None:
+        """Cancel all jobs, and wait for their ends."""
+        for job in list(self._jobs.values()):
+            job.cancel()
+        deadline = time.monotonic() + patience_s
+        for job in list(self._jobs.values()):
+            job.thread.join(max(deadline - time.monotonic(), 0.0))
+
+    def _named(self, number: str) -> "_Job":
+        if number not in self._jobs:
+            raise UnknownNameError("job", number, self._jobs)
+        return self._jobs[number]
+
+    def _forget(self) -> None:
+        ended = [name for name, job in self._jobs.items() if job.state.state != "running"]
+        for name in ended[: max(len(ended) - KEPT, 0)]:
+            del self._jobs[name]
+
+
+class _Job:
+    """One job: its state, its thread, and the ``Report`` that its work calls."""
+
+    def __init__(
+        self,
+        state: JobState,
+        left: TimeLeft,
+        tell: Callable[[dict[str, Any]], None],
+        clock: Callable[[], float],
+    ):
+        self.state, self._left, self._tell, self._clock = state, left, tell, clock
+        self._began, self._told = clock(), float("-inf")
+        self._cancelled = threading.Event()
+        self._stop: Callable[[], None] = lambda: None
+
+    def begin(self, work: Work, ended: Callable[[JobState], None]) -> None:
+        """Run the work in a thread."""
+        self._tell(self.state.message())
+        self.thread = threading.Thread(
+            target=self._run, args=(work, ended), name=self.state.id, daemon=True
+        )
+        self.thread.start()
+
+    def cancel(self) -> None:
+        """Cut the work off, or let it end at its next report."""
+        self._cancelled.set()
+        if self.state.state == "running":
+            self._stop()
+
+    def on_cancel(self, stop: Callable[[], None]) -> None:
+        """See ``Report``."""
+        self._stop = stop
+        if self._cancelled.is_set():
+            stop()
+
+    def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
+        """See ``Report``."""
+        if self._cancelled.is_set():
+            raise CancelledError
+        now = self._clock()
+        share, left_s = self._left.report(stage, done, total, now - self._began)
+        fresh = stage != self.state.stage or (total and done >= total)
+        self.state = replace(
+            self.state, stage=stage, done=done, total=total, note=note, share=share, left_s=left_s
+        )
+        if fresh or now - self._told >= SOONEST_S:
+            self._told = now
+            self._tell(self.state.message())
+
+    def _run(self, work: Work, ended: Callable[[JobState], None]) -> None:
+        try:
+            result = work(self)
+            last = replace(self.state, state="done", note="", share=1.0, left_s=0.0, result=result)
+            ended(last)
+        except CancelledError:
+            last = replace(self.state, state="cancelled", note="", left_s=None)
+        except Exception as error:  # Whatever it is, the job says so and ends.
+            last = replace(self.state, state="failed", note=said(error), left_s=None)
+        if self._cancelled.is_set() and last.state == "failed":
+            last = replace(last, state="cancelled", note="")
+        self.state = last
+        self._tell(last.message())
+
+
+def said(error: BaseException) -> str:
+    """Return what went wrong as one line."""
+    if isinstance(error, World2MinecraftError):
+        return one_line(error)
+    if isinstance(error, MemoryError):
+        return "out of memory; close other programs, or choose a smaller scale"
+    what = one_line(f"{type(error).__name__}: {error}", 300)
+    return f"unexpected {what} (please report it)"

@@ -1,0 +1,110 @@
+"""Work in a process of its own, which can be cut off at any moment.
+
+The process is ``python -m world2minecraft.sceneforge.jobs.worker``. It is given one JSON line, a task and
+what it needs, and answers with JSON lines: steps, then a result or an error. It ends by itself
+when the program that began it is gone.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from world2minecraft.core.errors import WorkerError, World2MinecraftError
+from world2minecraft.sceneforge.jobs.jobs import Report, Work
+
+WORKER = (sys.executable, "-m", "world2minecraft.sceneforge.jobs.worker")
+PATIENCE_S = 3.0  # A process that was asked to end has so long.
+ON_WINDOWS = sys.platform == "win32"
+
+
+class ToldError(World2MinecraftError):
+    """What a process said went wrong, as it said it."""
+
+
+def run_apart(task: str, within: Path | None = None, **needs: Any) -> Work:
+    """Return the work of a job that does a task of ``worker.TASKS`` in a process.
+
+    Args:
+        task: its name.
+        within: a folder whose path is left out of what is said went wrong: it tells nobody more.
+        needs: JSON values that the task is given.
+    """
+
+    def work(report: Report) -> Any:
+        try:
+            return _follow(begin(task, needs), report)
+        except ToldError as error:
+            raise ToldError(
+                str(error).replace(f"{within}{os.sep}", "") if within else error
+            ) from None
+
+    return work
+
+
+def begin(task: str, needs: Mapping[str, Any]) -> "subprocess.Popen[bytes]":
+    """Start a process that does a task."""
+    process = subprocess.Popen(
+        WORKER,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        start_new_session=not ON_WINDOWS,
+    )
+    with suppress(OSError):  # One that died at once is told by its end.
+        _pipe(process.stdin).write(json.dumps([task, needs]).encode() + b"\n")
+        _pipe(process.stdin).flush()
+    return process
+
+
+def _pipe(stream: Any) -> Any:
+    """Return a stream of a process that was opened with pipes."""
+    if stream is None:
+        raise WorkerError("a process was begun without pipes")
+    return stream
+
+
+def _follow(process: "subprocess.Popen[bytes]", report: Report) -> Any:
+    """Relay what a process says to a job, and return its result."""
+    report.on_cancel(lambda: end(process))
+    try:
+        for line in _pipe(process.stdout):
+            said = json.loads(line)
+            if "error" in said:
+                raise ToldError(said["error"])
+            if "result" in said:
+                return said["result"]
+            report(said["stage"], said["done"], said["total"], said["note"])
+    finally:
+        end(process)
+    code = process.returncode
+    if code == -signal.SIGTERM:
+        raise WorkerError("the work was ended from outside")
+    reason = "it was killed, as systems do when memory runs out" if code == -9 else f"exit {code}"
+    raise WorkerError(f"the work ended without a result: {reason}; try a smaller scale")
+
+
+def end(process: "subprocess.Popen[bytes]") -> None:
+    """End a process and what it began."""
+    with suppress(OSError):
+        _pipe(process.stdin).close()
+    if process.poll() is None:
+        _signal(process, signal.SIGTERM)
+        try:
+            process.wait(PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def _signal(process: "subprocess.Popen[bytes]", number: int) -> None:
+    with suppress(OSError):
+        if ON_WINDOWS:
+            process.terminate()
+        else:
+            os.killpg(process.pid, number)

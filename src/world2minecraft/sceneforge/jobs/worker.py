@@ -1,0 +1,83 @@
+"""The process that does a task for a job; see ``apart``.
+
+In: one JSON line on stdin, ``[task, {what it needs}]``. Out: JSON lines, each a step
+``{"stage", "done", "total", "note"}``, then ``{"result"}`` or ``{"error"}``. When stdin is closed
+the process ends: whoever wanted the work is gone.
+"""
+
+import json
+import os
+import sys
+import threading
+from typing import IO, Any
+
+from world2minecraft.core.progress import Progress
+from world2minecraft.core.registry import Registry
+from world2minecraft.sceneforge.jobs.jobs import said
+
+TASKS = Registry(
+    "forge_task",
+    {
+        "survey": "world2minecraft.sceneforge.jobs.reconstruct_tasks:survey",
+        "reconstruct": "world2minecraft.sceneforge.jobs.reconstruct_tasks:reconstruct",
+        "demo": "world2minecraft.sceneforge.jobs.reconstruct_tasks:demo",
+        "export": "world2minecraft.sceneforge.jobs.export_tasks:export",
+        "install": "world2minecraft.sceneforge.jobs.export_tasks:install",
+        "into_world": "world2minecraft.sceneforge.jobs.export_tasks:into_world",
+        "on_server": "world2minecraft.sceneforge.jobs.export_tasks:on_server",
+    },
+)
+
+
+def main() -> None:
+    """Do the task that stdin names."""
+    answers = own_stdout()
+    task, needs = json.loads(sys.stdin.buffer.readline())
+    threading.Thread(target=_end_with_stdin, daemon=True).start()
+    say(answers, outcome(task, needs, Steps(answers)))
+
+
+def outcome(task: str, needs: dict[str, Any], progress: Progress) -> dict[str, Any]:
+    """Do a task and return its last line."""
+    try:
+        return {"result": TASKS.load(task)(progress=progress, **needs)}
+    except Exception as error:  # Whatever it is, it is said as one line.
+        return {"error": said(error)}
+
+
+class Steps:
+    """The ``Progress`` of a task: each step is a line."""
+
+    def __init__(self, answers: IO[str]):
+        self._answers = answers
+
+    def __call__(self, stage: str, done: int, total: int, note: str = "") -> None:
+        """Say one step."""
+        step = {"stage": stage, "done": int(done), "total": int(total), "note": note}
+        say(self._answers, step)
+
+
+def say(answers: IO[str], line: dict[str, Any]) -> None:
+    """Write one line; when nobody reads it, the process ends."""
+    try:
+        answers.write(json.dumps(line) + "\n")
+        answers.flush()
+    except OSError:
+        os._exit(1)
+
+
+def own_stdout() -> IO[str]:
+    """Return the stream of answers; what libraries print goes to stderr instead."""
+    kept = os.dup(1)
+    os.dup2(2, 1)
+    return os.fdopen(kept, "w", encoding="utf-8")
+
+
+def _end_with_stdin() -> None:
+    while sys.stdin.buffer.read(1 << 12):
+        pass
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    main()

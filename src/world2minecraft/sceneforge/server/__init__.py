@@ -1,0 +1,1 @@
+"""The HTTP server of SceneForge: routes, websocket, guard and limits."""

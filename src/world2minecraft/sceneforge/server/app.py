@@ -1,0 +1,129 @@
+"""The web application: a page, a small HTTP API and a websocket, all behind the guard."""
+
+import asyncio
+from collections.abc import Iterable
+from pathlib import Path
+
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+
+from world2minecraft.editing.scene import COMMANDS
+from world2minecraft.sceneforge.queries import QUERIES
+from world2minecraft.sceneforge.server import compare_routes, export_routes, photo_routes
+from world2minecraft.sceneforge.server import start_routes as start
+from world2minecraft.sceneforge.server.build_routes import build_routes
+from world2minecraft.sceneforge.server.failures import ANSWERS
+from world2minecraft.sceneforge.server.guard import Guard
+from world2minecraft.sceneforge.server.limits import BodyLimit
+from world2minecraft.sceneforge.server.requests import object_of
+from world2minecraft.sceneforge.server.socket import live
+from world2minecraft.sceneforge.session import NO_ROOM, Session
+from world2minecraft.sceneforge.workshop import Workshop
+
+STATIC = Path(__file__).parents[1] / "static"
+
+
+def build_app(
+    session: Session,
+    *,
+    workshop: Workshop | None = None,
+    token: str,
+    port: int,
+    hosts: Iterable[str] = (),
+    any_address: bool = False,
+) -> Starlette:
+    """Return the application that serves a session; see ``Guard`` for the arguments."""
+    guard = Middleware(Guard, token=token, port=port, hosts=hosts, any_address=any_address)
+    app = Starlette(
+        routes=[
+            *routes(),
+            *start.routes(),
+            *photo_routes.routes(),
+            *compare_routes.routes(),
+            *export_routes.routes(),
+            Mount("/", StaticFiles(directory=STATIC, html=True)),
+        ],
+        middleware=[guard, Middleware(BodyLimit)],
+        exception_handlers=ANSWERS,
+    )
+    app.state.session, app.state.workshop = session, workshop
+    return app
+
+
+def routes() -> list[BaseRoute]:
+    """All that is served under /api/."""
+    return [
+        Route("/api/scene", _scene),
+        Route("/api/volume", _volume),
+        Route("/api/do", _do, methods=["POST"]),
+        Route("/api/undo", _undo, methods=["POST"]),
+        Route("/api/redo", _redo, methods=["POST"]),
+        Route("/api/save", _save, methods=["POST"]),
+        Route("/api/preview", _preview, methods=["POST"]),
+        Route("/api/ask/{name}", _ask, methods=["POST"]),
+        Route("/api/commands", _commands),
+        *build_routes(),
+        WebSocketRoute("/api/live", live),
+    ]
+
+
+def session_of(request: Request) -> Session:
+    """Return the session that a request is for."""
+    return request.app.state.session
+
+
+async def _scene(request: Request) -> Response:
+    session, shop = session_of(request), request.app.state.workshop
+    if session.editor is None:
+        return JSONResponse({"error": NO_ROOM}, 404)
+    if shop is not None:
+        session.editor.has = await asyncio.to_thread(shop.beside)
+    return JSONResponse(await session.scene())
+
+
+async def _volume(request: Request) -> Response:
+    zipped = "gzip" in request.headers.get("accept-encoding", "")
+    what = request.query_params.get("what", "labels")
+    rev, data = await session_of(request).volume(what, zipped)
+    headers = {"X-Rev": str(rev), "Vary": "Accept-Encoding"}
+    if zipped:
+        headers["Content-Encoding"] = "gzip"
+    return Response(data, headers=headers, media_type="application/octet-stream")
+
+
+async def _do(request: Request) -> Response:
+    return JSONResponse(await session_of(request).do(await object_of(request), "script"))
+
+
+async def _undo(request: Request) -> Response:
+    return JSONResponse(await session_of(request).undo())
+
+
+async def _redo(request: Request) -> Response:
+    return JSONResponse(await session_of(request).redo())
+
+
+async def _save(request: Request) -> Response:
+    return JSONResponse({"rev": await session_of(request).save()})
+
+
+async def _preview(request: Request) -> Response:
+    return JSONResponse(await session_of(request).preview(await object_of(request)))
+
+
+async def _ask(request: Request) -> Response:
+    fields = await object_of(request)
+    return JSONResponse(await session_of(request).ask(request.path_params["name"], fields))
+
+
+async def _commands(request: Request) -> Response:
+    kinds = {"commands": COMMANDS, "queries": QUERIES}
+    told = {
+        what: {name: kind.model_json_schema() for name, kind in known.items()}
+        for what, known in kinds.items()
+    }
+    return JSONResponse(told)

@@ -1,0 +1,143 @@
+"""``GET /api/build`` and ``GET /api/collision``: the blocks of the scene as it is now.
+
+A build is made by a thread, one at a time, while the scene is edited further; the last few are
+kept. One that takes longer is told to all tabs as a job.
+"""
+
+import asyncio
+import zlib
+from collections import OrderedDict
+from collections.abc import Callable, Coroutine
+from dataclasses import replace
+from typing import Any
+
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import BaseRoute, Route
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.sceneforge.block_preview import Build, BuildOptions, HeldScene
+from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.jobs.jobs import JobState, said
+from world2minecraft.sceneforge.server.collision import build_collision, voxel_collision
+from world2minecraft.sceneforge.session import Session
+
+KEPT = 6  # Packed answers; a room has about a megabyte each.
+SOON_S = 1.0  # What is ready by then needs no word.
+Key = tuple[Any, ...]
+
+
+class Builds:
+    """The builds of one server: made one after another, the last ones kept."""
+
+    def __init__(self, session: Session):
+        self.session = session
+        self._turn = asyncio.Lock()
+        self._volumes: OrderedDict[Key, Build] = OrderedDict()
+        self._packed: OrderedDict[Key, bytes] = OrderedDict()
+
+    async def build(self, options: BuildOptions) -> tuple[int, bytes]:
+        """Return the revision that was built and its packed mesh."""
+        return await self._made(
+            ("mesh", options), lambda scene: self._of(scene, options).mesh_bytes()
+        )
+
+    async def collision(self, options: BuildOptions | None) -> tuple[int, bytes]:
+        """Return the revision and the packed boxes of a build, or of the voxels for None."""
+        if options is None:
+            return await self._made(("voxels",), voxel_collision)
+        return await self._made(
+            ("boxes", options), lambda scene: build_collision(self._of(scene, options))
+        )
+
+    def _held(self, editor: Editor) -> HeldScene:
+        """Copy the scene in its turn: while it is built another room may be opened."""
+        return replace(HeldScene.of(editor), shown=self.session.shown)
+
+    def _of(self, scene: HeldScene, options: BuildOptions) -> Build:
+        """Return the build of a scene; called by one thread at a time."""
+        key = (scene.shown, scene.rev, options)
+        if key not in self._volumes:
+            self._volumes[key] = Build.of(scene, options)
+            while len(self._volumes) > 2:
+                self._volumes.popitem(last=False)
+        return self._volumes[key]
+
+    async def _made(self, what: Key, make: Callable[[HeldScene], bytes]) -> tuple[int, bytes]:
+        async with self._turn:
+            document = self.session.document
+            key = (*what, self.session.shown, document.rev)
+            if key in self._packed:
+                return document.rev, self._packed[key]
+            scene = await self.session.asked(self._held)
+            packed = await self._told(asyncio.to_thread(lambda: _gzip(make(scene))))
+            self._packed[(*what, scene.shown, scene.rev)] = packed
+            while len(self._packed) > KEPT:
+                self._packed.popitem(last=False)
+            return scene.rev, packed
+
+    async def _told(self, work: Coroutine[Any, Any, bytes]) -> bytes:
+        """Wait for a build; after a second tell the tabs of it."""
+        task = asyncio.ensure_future(work)
+        done, _ = await asyncio.wait([task], timeout=SOON_S)
+        if done:
+            return task.result()
+        state = JobState("build", "Building the blocks", "build")
+        self.session.hub.tell(state.message())
+        try:
+            packed = await task
+        except Exception as error:
+            self.session.hub.tell(replace(state, state="failed", note=said(error)).message())
+            raise
+        self.session.hub.tell(replace(state, state="done").message())
+        return packed
+
+
+def build_routes() -> list[BaseRoute]:
+    """Return the two routes; the application's ``state.session`` is what they build."""
+    return [Route("/api/build", _build), Route("/api/collision", _collision)]
+
+
+async def _build(request: Request) -> Response:
+    options = _options(request)
+    return _answer(request, *await _builds(request).build(options))
+
+
+async def _collision(request: Request) -> Response:
+    what = request.query_params.get("what", "build")
+    if what not in ("build", "voxels"):
+        raise UsageError(f"what must be build or voxels, not {what!r}")
+    options = _options(request) if what == "build" else None
+    return _answer(request, *await _builds(request).collision(options))
+
+
+def _builds(request: Request) -> Builds:
+    state = request.app.state
+    if not hasattr(state, "builds"):
+        state.builds = Builds(state.session)
+    return state.builds
+
+
+def _options(request: Request) -> BuildOptions:
+    """Return what the query asks for. Raises UsageError where it is wrong."""
+    asked = request.query_params
+    text = asked.get("blocks_per_metre", "4")
+    try:
+        size = float(text)
+    except ValueError as error:
+        raise UsageError(f"blocks_per_metre must be a number such as 4, not {text!r}") from error
+    return BuildOptions(size, asked.get("style", "blocks"))
+
+
+def _answer(request: Request, rev: int, packed: bytes) -> Response:
+    headers = {"X-Rev": str(rev), "Vary": "Accept-Encoding"}
+    if "gzip" in request.headers.get("accept-encoding", ""):
+        headers["Content-Encoding"] = "gzip"
+    else:
+        packed = zlib.decompress(packed, 31)
+    return Response(packed, headers=headers, media_type="application/octet-stream")
+
+
+def _gzip(raw: bytes) -> bytes:
+    packer = zlib.compressobj(1, zlib.DEFLATED, 31)
+    return packer.compress(raw) + packer.flush()

@@ -1,0 +1,110 @@
+"""``/api/compare``: another occupancy of the room, in the cells of the document.
+
+====================================  ========================================================
+GET    /api/compare                   ``{name, has_truth}``: what is compared with, if anything
+POST   /api/compare/truth             with the truth of a generated room
+POST   /api/compare/opened            with the scene as it was when it was opened
+POST   /api/upload/compare?name=NAME  with a file: room.npz, occ.json, .npz or .npy of labels
+GET    /api/compare/labels            its labels in the document's cells, as ``W2MV``
+DELETE /api/compare                   with nothing any more
+====================================  ========================================================
+"""
+
+import asyncio
+import tempfile
+from pathlib import Path
+
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import BaseRoute, Route
+
+from world2minecraft.core.errors import UsageError, World2MinecraftError
+from world2minecraft.sceneforge.comparison import (
+    beside_reached,
+    checked_name,
+    labels_of_file,
+    labels_of_truth,
+)
+from world2minecraft.sceneforge.server.requests import workshop_of
+from world2minecraft.sceneforge.volumes import labels_bytes
+from world2minecraft.sceneforge.workshop import Compared, Workshop
+
+
+def routes() -> list[BaseRoute]:
+    """All that comparing asks for."""
+    return [
+        Route("/api/compare", _told),
+        Route("/api/compare", _end, methods=["DELETE"]),
+        Route("/api/compare/truth", _truth, methods=["POST"]),
+        Route("/api/compare/opened", _opened, methods=["POST"]),
+        Route("/api/compare/labels", _labels),
+        Route("/api/upload/compare", _file, methods=["POST"]),
+    ]
+
+
+async def _told(request: Request) -> Response:
+    return _answer(workshop_of(request))
+
+
+async def _end(request: Request) -> Response:
+    shop = workshop_of(request)
+    shop.compared = None
+    return _answer(shop)
+
+
+async def _truth(request: Request) -> Response:
+    shop = workshop_of(request)
+    folder = shop.truth_folder()
+    if folder is None:
+        raise UsageError("this room has no truth; only rooms that were generated have one")
+    editor = shop.editor
+    labels = await asyncio.to_thread(
+        labels_of_truth, folder, editor.draft, editor.opened.scan_to_room
+    )
+    labels = beside_reached(labels, editor.opened.grid.source)
+    shop.compared = Compared("truth", labels, editor)
+    return _answer(shop)
+
+
+async def _opened(request: Request) -> Response:
+    shop = workshop_of(request)
+    shop.compared = Compared("opened", shop.editor.opened.grid.labels, shop.editor)
+    return _answer(shop)
+
+
+async def _file(request: Request) -> Response:
+    shop = workshop_of(request)
+    editor, name = shop.editor, request.query_params.get("name", "")
+    suffix = checked_name(name)
+    with tempfile.TemporaryDirectory(prefix="w2m-") as scratch:
+        # The file's own name tells ours from others: room.npz, occ.json.
+        place = Path(scratch) / f"{'occ' if suffix == '.json' else 'compared'}{suffix}"
+        with place.open("wb") as stream:
+            async for chunk in request.stream():
+                stream.write(chunk)
+        try:
+            labels = await asyncio.to_thread(labels_of_file, place, editor.draft)
+        except World2MinecraftError as error:
+            told = str(error).replace(str(place), Path(name).name[:80])
+            raise UsageError(told) from error
+    shop.compared = Compared(Path(name).name[:80], labels, editor)
+    return _answer(shop)
+
+
+async def _labels(request: Request) -> Response:
+    shop = workshop_of(request)
+    if shop.compared is None or shop.compared.editor is not shop.session.editor:
+        raise UsageError("nothing is compared with; choose a file or the truth first")
+    data = labels_bytes(shop.editor.draft, shop.compared.labels)
+    return Response(data, media_type="application/octet-stream", headers={"X-Rev": "0"})
+
+
+def _answer(shop: Workshop) -> Response:
+    compared = shop.compared
+    is_here = compared is not None and compared.editor is shop.session.editor
+    return JSONResponse(
+        {
+            "name": compared.name if compared is not None and is_here else "",
+            "has_truth": shop.truth_folder() is not None,
+        }
+    )

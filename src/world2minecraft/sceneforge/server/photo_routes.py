@@ -1,0 +1,55 @@
+"""``/api/photos``: the camera strip.
+
+==================================  ===========================================================
+GET /api/photos                     ``{frames: [...], why}``: each photo's pose and field of view
+GET /api/photos/N/small.jpg         for the strip
+GET /api/photos/N/picture.jpg       as an ideal camera of that place has it
+==================================  ===========================================================
+"""
+
+import asyncio
+
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import BaseRoute, Route
+
+from world2minecraft.core.errors import World2MinecraftError
+from world2minecraft.sceneforge.photos import RunPhotos
+from world2minecraft.sceneforge.server.failures import explained
+from world2minecraft.sceneforge.server.requests import workshop_of
+
+
+def routes() -> list[BaseRoute]:
+    """All that the camera strip asks for."""
+    return [
+        Route("/api/photos", _all),
+        Route("/api/photos/{number:int}/small.jpg", _small),
+        Route("/api/photos/{number:int}/picture.jpg", _picture),
+    ]
+
+
+async def _all(request: Request) -> Response:
+    """Tell the photos, or why there are none: that is no error of the one who asks."""
+    try:
+        found = await asyncio.to_thread(_photos, request)
+    except World2MinecraftError as error:
+        return JSONResponse({"frames": [], "why": explained(error)})
+    return JSONResponse({"frames": found.told(), "why": ""})
+
+
+async def _small(request: Request) -> Response:
+    return await _jpeg(request, True)
+
+
+async def _picture(request: Request) -> Response:
+    return await _jpeg(request, False)
+
+
+async def _jpeg(request: Request, small: bool) -> Response:
+    number = request.path_params["number"]
+    data = await asyncio.to_thread(lambda: _photos(request).jpeg(number, small))
+    return Response(data, media_type="image/jpeg")
+
+
+def _photos(request: Request) -> RunPhotos:
+    return workshop_of(request).photos()

@@ -1,0 +1,34 @@
+"""What a request is about: the workshop that it is for, and the JSON object that it brings."""
+
+from typing import Any
+
+from starlette.requests import Request
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.sceneforge.server.limits import json_of
+from world2minecraft.sceneforge.workshop import Workshop
+
+
+def workshop_of(request: Request) -> Workshop:
+    """Return the workshop of the server.
+
+    Raises:
+        UsageError: the server has none.
+    """
+    shop = getattr(request.app.state, "workshop", None)
+    if shop is None:
+        raise UsageError("this server has no start page; run w2m forge")
+    return shop
+
+
+async def object_of(request: Request) -> dict[str, Any]:
+    """Return the JSON object of a request's body; an empty body is an empty object.
+
+    Raises:
+        UsageError: it is none.
+    """
+    body = await request.body()
+    value = json_of(body) if body else {}
+    if not isinstance(value, dict):
+        raise UsageError("the body must be a JSON object")
+    return value

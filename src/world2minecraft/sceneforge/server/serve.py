@@ -1,0 +1,204 @@
+"""The server itself: a socket, a token, a link, and uvicorn until it is told to stop."""
+
+import asyncio
+import os
+import socket
+import threading
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Self
+
+import uvicorn
+from starlette.types import ASGIApp
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.sceneforge.captures import MOST_UPLOAD_BYTES, user_home
+from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.server.app import build_app
+from world2minecraft.sceneforge.server.guard import new_token
+from world2minecraft.sceneforge.server.limits import MAX_JSON_BYTES
+from world2minecraft.sceneforge.session import Session
+from world2minecraft.sceneforge.workshop import Workshop
+
+LOOPBACK = "127.0.0.1"
+PORT = 8484  # The same each time, so that the page's own settings are found again.
+STOPPING_S = 3
+
+
+class PageServer:
+    """A page and what it asks, for one user: ``run`` serves here, ``start`` in a thread.
+
+    Args:
+        build: makes the application of a token and a port.
+        host: where to listen; other than loopback for others to come in.
+        port: where to listen; None for 8484, or any that is free where it is taken.
+        token: what the link holds; a new one where None.
+
+    Raises:
+        UsageError: the port is taken, or there is no such address here.
+    """
+
+    def __init__(
+        self,
+        build: Callable[[str, int], ASGIApp],
+        *,
+        host: str = LOOPBACK,
+        port: int | None = None,
+        token: str | None = None,
+    ):
+        self.socket = _listening(host, port)
+        self.host, self.port = host, int(self.socket.getsockname()[1])
+        self.token = token or new_token()
+        self.is_open = not _is_loopback(host)
+        config = uvicorn.Config(
+            build(self.token, self.port),
+            access_log=False,  # It would print the token.
+            log_level="error",
+            lifespan="off",
+            server_header=False,
+            ws_max_size=MAX_JSON_BYTES,
+            ws_per_message_deflate=False,  # So nothing that comes in can unfold.
+            timeout_graceful_shutdown=STOPPING_S,
+        )
+        self._server = uvicorn.Server(config)
+        self._thread: threading.Thread | None = None
+
+    @property
+    def url(self) -> str:
+        """Where the page is, without the token."""
+        name = f"[{self.host}]" if ":" in self.host else self.host
+        return f"http://{name if name not in ('0.0.0.0', '[::]') else LOOPBACK}:{self.port}/"
+
+    @property
+    def link(self) -> str:
+        """What the user opens."""
+        return f"{self.url}?token={self.token}"
+
+    def run(self, ready: Callable[[], None] = lambda: None) -> None:
+        """Serve until interrupted; ``ready`` is called once pages can be opened."""
+        with suppress(KeyboardInterrupt):  # uvicorn raises it again after it has stopped.
+            asyncio.run(self._serve(ready))
+
+    def start(self) -> Self:
+        """Serve in a thread; returns once pages can be opened."""
+        begun = threading.Event()
+        self._thread = threading.Thread(target=self.run, args=(begun.set,), daemon=True)
+        self._thread.start()
+        while not begun.wait(0.05):
+            if not self._thread.is_alive():
+                raise UsageError("the server did not start; see the terminal")
+        return self
+
+    def stop(self) -> None:
+        """Stop, and close what was served; returns when that is done."""
+        self._server.should_exit = True
+        if self._thread is not None:
+            self._thread.join()
+
+    def __enter__(self) -> Self:
+        """Start."""
+        return self.start()
+
+    def __exit__(self, *_: object) -> None:
+        """Stop."""
+        self.stop()
+
+    async def _serve(self, ready: Callable[[], None]) -> None:
+        serving = asyncio.create_task(self._server.serve(sockets=[self.socket]))
+        try:
+            while not self._server.started and not serving.done():
+                await asyncio.sleep(0.005)
+            ready()
+            await serving
+        finally:
+            self.socket.close()
+            await self.close()
+
+    async def close(self) -> None:
+        """Close what was served; called once nothing is served any more."""
+
+
+class ForgeServer(PageServer):
+    """A server of one document.
+
+    Args:
+        editor: the document; None for the start page.
+        host, port, token: as ``PageServer`` takes them.
+        hosts: further names under which the server may be called.
+        home: the folder for captures and rooms made here; the user's own where None.
+        most_upload_bytes: the most that one dropped capture may hold.
+        capture: where the photos of the room lie, where its folder does not say so.
+
+    Raises:
+        UsageError: the port is taken, or there is no such address here.
+    """
+
+    def __init__(
+        self,
+        editor: Editor | None = None,
+        *,
+        host: str = LOOPBACK,
+        port: int | None = None,
+        token: str | None = None,
+        hosts: Iterable[str] = (),
+        home: Path | None = None,
+        most_upload_bytes: int = MOST_UPLOAD_BYTES,
+        capture: Path | None = None,
+    ):
+        self.session = Session(editor)
+        self.workshop = Workshop(
+            self.session, home or user_home(), most_bytes=most_upload_bytes, capture=capture
+        )
+        is_open = not _is_loopback(host)
+        named = [*hosts, *([host, socket.gethostname()] if is_open else [])]
+
+        def build(token: str, port: int) -> ASGIApp:
+            return build_app(
+                self.session,
+                workshop=self.workshop,
+                token=token,
+                port=port,
+                hosts=named,
+                any_address=is_open,
+            )
+
+        super().__init__(build, host=host, port=port, token=token)
+
+    async def close(self) -> None:
+        """Close the document."""
+        await self.session.close()
+
+
+def _listening(host: str, port: int | None) -> socket.socket:
+    if port is not None:
+        return _bound(host, port)
+    with suppress(UsageError):
+        return _bound(host, PORT)
+    return _bound(host, 0)
+
+
+def _bound(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    held = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        if os.name == "posix":  # Elsewhere it would let a second server take the port.
+            held.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        held.bind((host, port))
+        held.listen(128)  # From here on a second server is refused.
+    except (OSError, OverflowError) as error:
+        held.close()
+        reason = getattr(error, "strerror", None) or str(error)
+        raise UsageError(
+            f"cannot listen on {host}:{port} ({reason}); leave out --port for a free one"
+        ) from error
+    return held
+
+
+def _is_loopback(host: str) -> bool:
+    if host == "localhost":
+        return True
+    with suppress(ValueError):
+        return ip_address(host).is_loopback
+    return False

@@ -1,0 +1,264 @@
+"""``/api/start``: from a capture, or nothing, to a room that is open in the editor.
+
+=========================================  ====================================================
+GET    /api/start                          what there is: captures, recent rooms, choices
+POST   /api/start/captures                 ``{title, files: [{path, size}]}``: one is announced
+PUT    /api/start/captures/ID/files/N      ``?at=OFFSET``: the next bytes of a file
+POST   /api/start/captures/ID/look         a job: what was found in it
+GET    /api/start/captures/ID              the same, with what was found
+GET    /api/start/captures/ID/picture.png  the picture of ``w2m scan``
+GET    /api/start/captures/ID/room.png     the picture of the room that came of it
+POST   /api/start/captures/ID/reconstruct  ``{blocks_per_metre, style, known}``: a job
+DELETE /api/start/captures/ID              it and what came of it
+POST   /api/start/demo                     ``{kind, seed}``: a job that makes a room of nothing;
+                                           the same one while it runs
+POST   /api/start/open                     ``{id}``: the room opens in the editor
+POST   /api/start/close                    back to the start page
+GET    /api/jobs                           all jobs; POST /api/jobs/ID/cancel ends one
+=========================================  ====================================================
+"""
+
+import asyncio
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any
+
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import FileResponse, JSONResponse, Response
+from starlette.routing import BaseRoute, Route
+
+from world2minecraft.capture.scale.known_lengths import LENGTHS_M
+from world2minecraft.construction.parameters import STYLES
+from world2minecraft.core.errors import ConflictError, InputError, UsageError
+from world2minecraft.procgen import BASE_KINDS
+from world2minecraft.sceneforge.captures import PICTURE, CaptureFolder
+from world2minecraft.sceneforge.document.identity import SUFFIX
+from world2minecraft.sceneforge.jobs.jobs import JobState
+from world2minecraft.sceneforge.jobs.reconstruct_tasks import parameters_of
+from world2minecraft.sceneforge.jobs.subprocess_job import run_apart
+from world2minecraft.sceneforge.jobs.usual import demo_s, reconstruct_s
+from world2minecraft.sceneforge.server.requests import object_of, workshop_of
+from world2minecraft.sceneforge.workshop import Workshop
+
+SCALES = (1, 2, 4, 12.5)
+USUAL_SCALE = 4
+CHUNK_BYTES = 4 << 20  # What a page sends at once; a lost connection costs at most so much.
+
+
+def routes() -> list[BaseRoute]:
+    """All that the start page asks for."""
+    one = "/api/start/captures/{id}"
+    return [
+        Route("/api/start", _all),
+        Route("/api/start/captures", _announce, methods=["POST"]),
+        Route(one + "/files/{number:int}", _receive, methods=["PUT"]),
+        Route(one + "/look", _look, methods=["POST"]),
+        Route(one, _capture),
+        Route(one, _forget, methods=["DELETE"]),
+        Route(one + "/picture.png", _picture),
+        Route(one + "/room.png", _room_picture),
+        Route(one + "/reconstruct", _reconstruct, methods=["POST"]),
+        Route("/api/start/demo", _demo, methods=["POST"]),
+        Route("/api/start/open", _open, methods=["POST"]),
+        Route("/api/start/close", _close, methods=["POST"]),
+        Route("/api/jobs", _jobs),
+        Route("/api/jobs/{id}/cancel", _cancel, methods=["POST"]),
+    ]
+
+
+async def _all(request: Request) -> Response:
+    shop = workshop_of(request)
+    known = {name: list(limits) for name, limits in LENGTHS_M.items() if name != "distance"}
+    return JSONResponse(
+        {
+            "home": str(shop.home),
+            "captures": [_told(shop, one) for one in shop.captures.all()],
+            "recent": [
+                {
+                    "id": f"recent-{n}",
+                    "name": place.name.removesuffix(SUFFIX),
+                    "folder": str(place.parent),
+                }
+                for n, place in enumerate(shop.recent())
+            ],
+            "demos": list(BASE_KINDS),
+            "most_bytes": shop.captures.most_bytes,
+            "chunk_bytes": CHUNK_BYTES,
+            "scales": list(SCALES),
+            "scale": USUAL_SCALE,
+            "styles": list(STYLES),
+            "known": known,
+            "wanted": shop.wanted,
+        }
+    )
+
+
+def _told(shop: Workshop, one: CaptureFolder) -> dict[str, Any]:
+    complete = one.complete
+    return {
+        "id": one.id,
+        "title": one.title,
+        "files": len(one.files),
+        "bytes": sum(file.size for file in one.files),
+        "elsewhere": "" if one.files else str(one.source),
+        "complete": complete,
+        "has_room": one.has_room,
+        "job": shop.job_of(one),
+        "survey": one.survey() if complete else None,
+    }
+
+
+async def _announce(request: Request) -> Response:
+    told = await object_of(request)
+    title = told.get("title") if isinstance(told.get("title"), str) else ""
+    made = workshop_of(request).captures.announce(str(title), told.get("files"))
+    files = [{"path": one.path, "size": one.size} for one in made.files]
+    return JSONResponse({"id": made.id, "title": made.title, "files": files})
+
+
+async def _receive(request: Request) -> Response:
+    one = _named(request)
+    offset = request.query_params.get("at", "0")
+    if not offset.isdecimal() or len(offset) > 15:
+        raise UsageError(f"at must be the bytes that are here already, not {offset[:20]!r}")
+    number = request.path_params["number"]
+    try:
+        held = await one.receive(number, int(offset), _body(request))
+    except ClientDisconnect:  # What came stays; the page asks how much that is and goes on.
+        return Response(status_code=400)
+    return JSONResponse({"held": held, "size": one.files[number].size})
+
+
+async def _body(request: Request) -> AsyncIterator[bytes]:
+    async for chunk in request.stream():
+        yield chunk
+
+
+async def _capture(request: Request) -> Response:
+    shop, one = workshop_of(request), _named(request)
+    return JSONResponse(_told(shop, one) | {"held": one.held()})
+
+
+async def _forget(request: Request) -> Response:
+    shop, one = workshop_of(request), _named(request)
+    opened = getattr(getattr(shop.session.editor, "opened", None), "folder", None)
+    if opened is not None and Path(opened).resolve() == one.run.resolve():
+        raise ConflictError(one.title, "its room is open; close it first")
+    number = shop.job_of(one)
+    await asyncio.to_thread(_forgotten, shop, one.id, number)
+    return JSONResponse({})
+
+
+def _forgotten(shop: Workshop, capture: str, job: str | None) -> None:
+    """End what is at work on a capture and delete it; in a thread, for both may take seconds."""
+    if job is not None:
+        shop.jobs.cancel(job)
+        shop.jobs.wait(job, 10)
+    shop.captures.forget(capture)
+
+
+async def _look(request: Request) -> Response:
+    shop, one = workshop_of(request), _named(request)
+    _check_ready(shop, one)
+    work = run_apart("survey", one.source.parent, capture=str(one.source), folder=str(one.folder))
+    shop.working[one.id] = number = shop.jobs.start(one.title, work, {"look": 4.0})
+    return JSONResponse({"job": number})
+
+
+async def _reconstruct(request: Request) -> Response:
+    shop, one = workshop_of(request), _named(request)
+    choice = checked_choice(await object_of(request))
+    _check_ready(shop, one)
+    work = run_apart(
+        "reconstruct", one.source.parent, capture=str(one.source), out=str(one.run), choice=choice
+    )
+    number = shop.jobs.start(one.title, work, reconstruct_s(one.survey()))
+    shop.working[one.id] = number
+    return JSONResponse({"job": number})
+
+
+def checked_choice(told: dict[str, Any]) -> dict[str, Any]:
+    """Return what a person chose for a reconstruction.
+
+    Raises:
+        UsageError: a value cannot be used; the message says what can.
+    """
+    known = ("blocks_per_metre", "style", "known", "mc_version", "voxel_m")
+    if strange := sorted(told.keys() - set(known)):
+        raise UsageError(f"{strange[0][:40]!r} is no choice; these are: {', '.join(known)}")
+    try:
+        parameters_of(told)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"a choice is of the wrong kind: {error}") from error
+    return told
+
+
+def _check_ready(shop: Workshop, one: CaptureFolder) -> None:
+    if not one.complete:
+        raise UsageError(f"{one.title!r} has not come whole; send its files first")
+    if shop.job_of(one) is not None:
+        raise ConflictError(one.title, "is being worked on; wait, or cancel that")
+
+
+async def _demo(request: Request) -> Response:
+    shop, told = workshop_of(request), await object_of(request)
+    kind, seed = told.get("kind", BASE_KINDS[0]), told.get("seed", 5)
+    if kind not in BASE_KINDS:
+        raise UsageError(f"kind must be one of {', '.join(BASE_KINDS)}, not {str(kind)[:40]!r}")
+    if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed < 1 << 31:
+        raise UsageError(f"seed must be a whole number of 0 or more, not {str(seed)[:40]!r}")
+    frames = told.get("frames", 40)
+    if not isinstance(frames, int) or not 3 <= frames <= 200:
+        raise UsageError(f"frames must be 3 to 200, not {str(frames)[:40]!r}")
+    name, title = f"demo/{kind}-{seed}", f"A {kind} room"
+    if (running := shop.job_at(name)) is not None:
+        return JSONResponse({"job": running})  # Whoever asks again sees how far it is.
+    work = run_apart("demo", out=str(shop.home / name), kind=kind, seed=seed, frames=frames)
+    shop.working[name] = number = shop.jobs.start(title, work, demo_s(), _remember(shop))
+    return JSONResponse({"job": number})
+
+
+def _remember(shop: Workshop) -> Any:
+    def ended(state: JobState) -> None:
+        shop.remember(Path(state.result["out"]))
+
+    return ended
+
+
+async def _open(request: Request) -> Response:
+    shop = workshop_of(request)
+    await shop.open(shop.room_named(str((await object_of(request)).get("id"))))
+    return JSONResponse({"name": shop.editor.name})
+
+
+async def _close(request: Request) -> Response:
+    await workshop_of(request).session.show(None)
+    return JSONResponse({})
+
+
+async def _picture(request: Request) -> Response:
+    return _file(_named(request).folder / PICTURE)
+
+
+async def _room_picture(request: Request) -> Response:
+    return _file(_named(request).run / "preview.png")
+
+
+def _file(path: Path) -> Response:
+    if not path.is_file():
+        raise InputError(path.name, "is not made yet")
+    return FileResponse(path)
+
+
+async def _jobs(request: Request) -> Response:
+    return JSONResponse(workshop_of(request).jobs.states())
+
+
+async def _cancel(request: Request) -> Response:
+    number = request.path_params["id"]
+    await asyncio.to_thread(workshop_of(request).jobs.cancel, number)  # A process has its time.
+    return JSONResponse({})
+
+
+def _named(request: Request) -> CaptureFolder:
+    return workshop_of(request).captures.named(request.path_params["id"])

@@ -1,0 +1,247 @@
+"""What one server process holds: the document, its tabs, and the order of what is done to it.
+
+Whatever asks something of the document takes its turn, first come, first served. A small edit is
+done at once; what takes long (objects found or matched anew, questions about the whole grid) is
+worked out by a thread, so that pages, pings and volumes are answered meanwhile, and then done as
+one operation, still in its turn. What takes seconds of a large scene runs as a job on a copy, so
+that nobody's turn waits for it.
+"""
+
+import asyncio
+import logging
+import zlib
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from world2minecraft.core.errors import UsageError
+from world2minecraft.core.types import Operation
+from world2minecraft.editing.scene import Command, parse_command
+from world2minecraft.sceneforge.broadcast import Hub
+from world2minecraft.sceneforge.changes import change_of, preview_of
+from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.jobs.background_job import TITLES, beside, copy_of
+from world2minecraft.sceneforge.jobs.jobs import Jobs
+from world2minecraft.sceneforge.volumes import volume_of
+from world2minecraft.sceneforge.wire import PROTOCOL
+
+QUICK = frozenset({"set_cells", "move_object", "turn_objects", "delete_objects", "set_template"})
+QUICK_CELLS = 1 << 20  # In a larger grid the thread does these too.
+NO_ROOM = "no room is open; choose one on the start page"
+LOG = logging.getLogger(__name__)
+Value = TypeVar("Value")
+
+
+class Session:
+    """The one document of a server, and the tabs that show it.
+
+    ``editor`` is None before one is opened. ``shown`` counts the documents that were shown, so
+    that a tab knows a new one from a new revision; 0 is none. ``jobs`` is the long work beside.
+    """
+
+    def __init__(self, editor: Editor | None = None):
+        self.editor: Editor | None = None
+        self.hub = Hub()
+        self.jobs = Jobs(self.hub.tell_soon)
+        self.shown = 0
+        self._count = 0
+        self._turn = asyncio.Lock()
+        self._volumes: dict[str, tuple[int, bytes]] = {}
+        self._unlisten: Callable[[], None] = lambda: None
+        self._take(editor)
+
+    @property
+    def document(self) -> Editor:
+        """The open document.
+
+        Raises:
+            UsageError: none is open.
+        """
+        if self.editor is None:
+            raise UsageError(NO_ROOM)
+        return self.editor
+
+    @property
+    def rev(self) -> int:
+        """The revision of the document, 0 where none is open."""
+        return self.editor.rev if self.editor else 0
+
+    async def show(self, editor: Editor | None) -> None:
+        """Put another document in the place of this one, closing it; every tab starts anew."""
+        async with self._turn:
+            old = self.editor
+            self._unlisten()
+            self._take(editor)
+            if old is not None:
+                await asyncio.to_thread(old.close)
+        self.hub.restart()
+
+    async def do(self, command: Any, actor: str = "") -> dict[str, Any]:
+        """Do a command; every tab is told.
+
+        Args:
+            command: as JSON, with ``op``.
+            actor: who does it; only recorded.
+
+        Returns:
+            ``rev``, ``kind``, ``counts_as`` and how many ``cells`` changed.
+
+        Raises:
+            World2MinecraftError: it cannot be done; nothing is changed.
+        """
+        checked = parse_command(command)
+        if command["op"] in TITLES and not self._is_small:
+            return await self._do_long(command["op"], checked, actor)
+        async with self._turn:
+            document = self.document
+            if command["op"] in QUICK and self._is_small:
+                return await self._done(document.do(checked, actor=actor))
+            planned = await asyncio.to_thread(_planned, document, checked)
+            return await self._step(lambda: document.do(planned, actor=actor))
+
+    async def undo(self, actor: str = "") -> dict[str, Any]:
+        """Take the last operation back. Returns and raises as ``do``."""
+        async with self._turn:
+            document = self.document
+            return await self._step(lambda: document.undo(actor=actor))
+
+    async def redo(self, actor: str = "") -> dict[str, Any]:
+        """Do again what was taken back last. Returns and raises as ``do``."""
+        async with self._turn:
+            document = self.document
+            return await self._step(lambda: document.redo(actor=actor))
+
+    async def preview(self, command: Any) -> dict[str, Any]:
+        """Return what a command would do, without doing it. Raises as ``do``."""
+        checked = parse_command(command)
+
+        def work(document: Editor) -> dict[str, Any]:
+            return preview_of(document.draft, _planned(document, checked))
+
+        if command["op"] in TITLES and not self._is_small:
+            return await self._beside(command["op"], work)
+        return await self._asked(work)
+
+    async def ask(self, name: str, fields: Mapping[str, Any]) -> Any:
+        """Return the answer to a question about the scene. Raises as ``do``."""
+
+        def question(document: Editor) -> Any:
+            return document.ask(name, **fields)
+
+        if name in TITLES and not self._is_small:
+            return await self._beside(name, question)
+        return await self._asked(question)
+
+    async def asked(self, question: Callable[[Editor], Value]) -> Value:
+        """Return what a function of the document gives; it runs in a thread, in its turn."""
+        return await self._asked(question)
+
+    async def save(self) -> int:
+        """Write the files of the scene; return the revision that they hold. Raises as ``do``."""
+        async with self._turn:
+            document = self.document
+            await asyncio.to_thread(document.save)
+        self.hub.tell({"type": "saved", "rev": document.saved_rev})
+        return document.saved_rev
+
+    async def scene(self) -> dict[str, Any]:
+        """Return the scene as wire.ts has it. Raises UsageError where none is open."""
+        told = {"document": self.shown}
+        return told | await asyncio.to_thread(self.document.scene_json)
+
+    async def volume(self, what: str, zipped: bool) -> tuple[int, bytes]:
+        """Return the revision and one array as ``W2MV``, in gzip where ``zipped``.
+
+        Raises:
+            UsageError: there is no array of that name, or no document.
+        """
+        document = self.document
+        kept = self._volumes.get(what)
+        if zipped and kept and kept[0] == document.rev:
+            return kept
+        rev, data = await asyncio.to_thread(_volume, document, what, zipped)
+        if zipped and document is self.editor:
+            self._volumes[what] = (rev, data)
+        return rev, data
+
+    async def active(self, actor: str = "") -> None:
+        """Note that a person is at work: effort is measured without idling."""
+        if self.editor is not None:
+            await asyncio.to_thread(self.editor.active, actor)  # It waits where a question is on.
+
+    def hello(self) -> dict[str, Any]:
+        """Return what a tab is told first, and again where it is to begin anew."""
+        return {"type": "hello", "protocol": PROTOCOL, "rev": self.rev, "document": self.shown}
+
+    def report(self, error: BaseException) -> None:
+        """Write what went wrong by a mistake of ours to the terminal."""
+        LOG.error("unexpected %s", type(error).__name__, exc_info=error)
+
+    async def close(self) -> None:
+        """End the jobs and close the document."""
+        await asyncio.to_thread(self.jobs.close)
+        await self.show(None)
+
+    def _take(self, editor: Editor | None) -> None:
+        """Show a document, and tell the tabs of each step whoever does it."""
+        self.editor = editor
+        self._volumes.clear()
+        self.shown = 0
+        self._unlisten = lambda: None
+        if editor is not None:
+            self._count += 1
+            self.shown = self._count
+
+            def told(rev: int, step: str, operation: Operation) -> None:
+                self.hub.tell_soon(change_of(editor, rev, step, operation))
+
+            self._unlisten = editor.on_change(told)
+
+    @property
+    def _is_small(self) -> bool:
+        return self.document.draft.labels.size <= QUICK_CELLS
+
+    async def _step(self, act: Callable[[], Operation]) -> dict[str, Any]:
+        """Do a planned step: at once, or by the thread where it may be of millions of cells."""
+        operation = act() if self._is_small else await asyncio.to_thread(act)
+        return await self._done(operation)
+
+    async def _done(self, operation: Operation) -> dict[str, Any]:
+        await asyncio.sleep(0)  # The change that waits is told before the answer.
+        return {
+            "rev": self.rev,
+            "kind": operation.kind,
+            "counts_as": operation.counts_as,
+            "cells": len(operation.cells),
+        }
+
+    async def _beside(self, name: str, work: Callable[[Editor], Value]) -> Value:
+        """Return what long work on a copy of the scene gives; only copying takes a turn."""
+        copy = await self._asked(copy_of)
+        return await beside(self.jobs, name, copy, work)
+
+    async def _do_long(self, name: str, command: Command, actor: str) -> dict[str, Any]:
+        """Plan a command beside and do it, where its cells are still what they were."""
+        document = self.document
+        planned = await self._beside(name, lambda copy: _planned(copy, command))
+        async with self._turn:
+            if document is not self.editor:
+                raise UsageError("another room was opened meanwhile; nothing was done")
+            return await self._step(lambda: document.do(planned, actor=actor))
+
+    async def _asked(self, question: Callable[[Editor], Value]) -> Value:
+        async with self._turn:
+            return await asyncio.to_thread(question, self.document)
+
+
+def _planned(document: Editor, command: Command) -> Operation:
+    """Plan without the document's lock: its turn keeps other edits of the server away."""
+    return command.plan(document.draft, document.tools)
+
+
+def _volume(document: Editor, what: str, zipped: bool) -> tuple[int, bytes]:
+    rev, volume = document.read(lambda: (document.rev, volume_of(document.draft, what)))
+    raw = volume.as_bytes()  # Only copying it holds up an edit.
+    if not zipped:
+        return rev, raw
+    packer = zlib.compressobj(1, zlib.DEFLATED, 31)
+    return rev, packer.compress(raw) + packer.flush()

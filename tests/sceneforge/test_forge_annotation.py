@@ -1,0 +1,152 @@
+"""The annotation page's server: what it shows, checks and keeps, and whom it lets in."""
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+from starlette.testclient import TestClient
+
+from world2minecraft.core.errors import DamagedFileError, InputError
+from world2minecraft.navigation.language.human_instructions import (
+    read_annotations,
+    with_annotations,
+)
+from world2minecraft.navigation.records import read_trajectories, write_trajectories
+from world2minecraft.navigation.values import Instruction, Keyframe, Stance, Trajectory
+from world2minecraft.sceneforge.annotation.app import PAGE, annotation_server, build_app
+from world2minecraft.sceneforge.annotation.desk import AnnotationDesk
+
+TOKEN, PORT = "t" * 43, 8484
+GOOD = {"number": 1, "level": "goal", "text": "Walk over to the piano, please.",
+        "annotator": "Ada", "language": "en"}  # fmt: skip
+
+
+def a_set(folder):
+    """Two walks of three pictures."""
+    walks = []
+    for name in ("t0", "t1"):
+        frames = []
+        for number, move in enumerate(("move forward", "turn left", "stop")):
+            image = f"images/flat/{name}/{number:03d}.jpg"
+            (folder / image).parent.mkdir(parents=True, exist_ok=True)
+            Image.fromarray(np.full((24, 32, 3), 60 * number, np.uint8)).save(folder / image)
+            frames.append(Keyframe(image, Stance(number, 64, 0), move, ()))
+        told = (
+            Instruction("Go to the piano.", level="goal", landmarks=("upright piano",)),
+            Instruction("Walk on, turn left and stop.", level="route"),
+        )
+        walks.append(Trajectory(name, "flat", tuple(frames), told, 2.0))
+    write_trajectories(folder / "trajectories.jsonl", walks)
+    return folder
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return a_set(tmp_path)
+
+
+@pytest.fixture
+def client(folder):
+    app = build_app(AnnotationDesk(folder), TOKEN, PORT)
+    headers = {"authorization": f"Bearer {TOKEN}"}
+    return TestClient(app, base_url=f"http://127.0.0.1:{PORT}", headers=headers)
+
+
+def test_walks_are_shown_with_their_pictures(client, folder):
+    listed = client.get("/api/walks").json()
+    assert [one["id"] for one in listed["walks"]] == ["t0", "t1"]
+    assert listed["file"] == str(folder / "annotations.jsonl")
+    walk = client.get("/api/walk/1").json()
+    assert walk["frames"] == ["move forward", "turn left", "stop"]
+    assert walk["goal"] == "upright piano" and walk["things"] == ["upright piano"]
+    image = client.get("/api/image/1/2")
+    assert image.headers["content-type"] == "image/jpeg"
+    assert image.content == (folder / "images/flat/t1/002.jpg").read_bytes()
+
+
+def test_what_is_written_is_kept_and_imported(client, folder):
+    assert client.post("/api/check", json=GOOD).json() == {"findings": []}
+    assert client.post("/api/add", json=GOOD).status_code == 200
+    other = {**GOOD, "level": "route", "text": "Walk a bit, turn left, stop."}
+    client.post("/api/add", json=other)
+    client.post("/api/add", json=other)  # Twice the same is kept once.
+    found = read_annotations(folder / "annotations.jsonl")
+    assert found == [
+        ("t1", Instruction(GOOD["text"], "human", "goal", annotator="Ada")),
+        ("t1", Instruction(other["text"], "human", "route", annotator="Ada")),
+    ]
+    walks = with_annotations(read_trajectories(folder), found, "annotations")
+    assert [one.text for one in walks[1].instructions[2:]] == [GOOD["text"], other["text"]]
+    assert client.get("/api/walks").json()["walks"][1]["written"] == 2
+    again = AnnotationDesk(folder)  # Another day.
+    assert again.walk(1)["told"][-1] == {"level": "route", "text": other["text"], "by": "Ada"}
+
+
+@pytest.mark.parametrize(
+    ("changed", "error"),
+    [
+        ({"text": "Go to the sofa over there."},
+         "it does not name where the walk ends: the upright piano"),
+        ({"annotator": " "}, "say who writes: a name of up to 60 characters"),
+        ({"language": "x"}, "a language is like en or de-AT, not 'x'"),
+        ({"level": "dance"},
+         "level of an instruction must be one of goal, route, landmark, not 'dance'"),
+        ({"number": 7}, "there are walks 0 to 1, not 7"),
+        ({"text": 5},
+         "the body has number, and level, text, annotator, language as texts"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_refused(client, folder, changed, error):
+    answer = client.post("/api/add", json={**GOOD, **changed})
+    assert (answer.status_code, answer.json()) == (400, {"error": error})
+    assert not (folder / "annotations.jsonl").exists()
+
+
+def test_only_the_link_lets_in(folder):
+    app = build_app(AnnotationDesk(folder), TOKEN, PORT)
+    stranger = TestClient(app, base_url=f"http://127.0.0.1:{PORT}")
+    assert stranger.get("/api/walks").status_code == 403
+    assert stranger.get("/").status_code == 403
+    page = stranger.get(f"/?token={TOKEN}")  # The cookie is set, and the page follows.
+    assert page.status_code == 200 and "Tell the way" in page.text
+    assert stranger.get("/annotate.js").status_code == 200
+    rebound = TestClient(app, base_url="http://evil.example", headers={"authorization": TOKEN})
+    assert rebound.get("/api/walks").status_code == 403
+
+
+def test_a_large_body_is_not_read(client):
+    answer = client.post("/api/add", json={**GOOD, "text": "x" * 100_000})
+    assert answer.status_code == 413
+
+
+def test_a_picture_outside_of_the_walk_is_not_there(client):
+    assert client.get("/api/image/1/3").json() == {"error": "the walk has pictures 0 to 2, not 3"}
+    assert client.get("/api/image/1/-1").status_code == 404
+
+
+def test_a_set_must_be_one(tmp_path, folder):
+    with pytest.raises(InputError):
+        AnnotationDesk(tmp_path / "nothing")
+    line = {"trajectory_id": "t9", "instruction": "Go."}
+    (folder / "annotations.jsonl").write_text(json.dumps(line))
+    with pytest.raises(InputError, match="speaks of trajectory 't9', which is not there"):
+        AnnotationDesk(folder)
+    (folder / "annotations.jsonl").write_text(json.dumps({**line, "level": "dance"}))
+    with pytest.raises(DamagedFileError, match="line 1: level must be one of goal, route"):
+        AnnotationDesk(folder)
+
+
+def test_the_server_serves(folder):
+    from urllib.request import Request, urlopen
+
+    with annotation_server(AnnotationDesk(folder), port=0) as server:
+        asked = Request(f"{server.url}api/walks")
+        asked.add_header("Authorization", f"Bearer {server.token}")
+        with urlopen(asked, timeout=10) as answer:
+            assert len(json.loads(answer.read())["walks"]) == 2
+
+
+def test_the_page_asks_nothing_of_elsewhere():
+    for name in ("index.html", "annotate.js", "annotate.css"):
+        assert "http" not in (PAGE / name).read_text().replace("the http", "")

@@ -1,0 +1,64 @@
+"""Another occupancy is laid on the document's cells, and nothing else is compared with."""
+
+import io
+
+import numpy as np
+import pytest
+from forge_serving import client, served, small_editor
+
+from world2minecraft.editing.scene import SceneDraft
+from world2minecraft.evaluation.metrics.occupancy import count_occupancy
+from world2minecraft.formats.room import read_room
+from world2minecraft.sceneforge.comparison import labels_of_truth
+from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.volumes import HEADER
+
+
+def test_the_truth_of_a_generated_room_meets_its_run(small_run):
+    grid, scan_to_room = read_room(small_run / "room.npz")
+    truth = labels_of_truth(small_run / "capture", SceneDraft(grid), scan_to_room)
+    assert count_occupancy(grid.labels, truth, grid.source > 0).iou > 0.5
+
+
+def npy(labels) -> bytes:
+    stream = io.BytesIO()
+    np.save(stream, labels)
+    return stream.getvalue()
+
+
+def test_a_file_is_compared_over_http(tmp_path):
+    editor = small_editor(folder=tmp_path / "OUT")
+    labels = editor.draft.labels.copy()
+    labels[3, 3, 3] = 8
+    with served(editor, home=tmp_path / "home") as server, client(server) as script:
+        assert script.get("/api/compare").json() == {"name": "", "has_truth": False}
+        assert "nothing is compared with" in script.get("/api/compare/labels").json()["error"]
+        sent = script.post("/api/upload/compare?name=a/pred.npy", content=npy(labels))
+        assert sent.json() == {"name": "pred.npy", "has_truth": False}
+        body = script.get("/api/compare/labels").content
+        assert np.array_equal(np.frombuffer(body[HEADER.size :], np.uint8), labels.ravel())
+        assert script.delete("/api/compare").json()["name"] == ""
+        assert "only rooms that were generated" in script.post("/api/compare/truth").json()["error"]
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "words"),
+    [
+        ("a.exe", b"x", "a.exe: is no occupancy file"),
+        ("a.npz", b"x", "a.npz: is not a readable .npz"),
+        ("a.json", b"[" * 100_000, "a.json: is not JSON"),
+        ("a.npy", npy(np.full((2, 2, 2), 77)), "a.npy: holds no grid of class ids"),
+        ("a.npy", npy(np.full((2, 2, 2), 0.5)), "a.npy: holds no grid of class ids"),
+    ],
+)
+def test_files_that_are_none_say_so(tmp_path, name, data, words):
+    with served(small_editor(), home=tmp_path) as server, client(server) as script:
+        answer = script.post("/api/upload/compare", params={"name": name}, content=data)
+    assert answer.status_code == 400 and answer.json()["error"].startswith(words)
+
+
+def test_the_truth_is_offered_where_there_is_one(small_run, tmp_path):
+    with served(Editor.open(small_run), home=tmp_path) as server, client(server) as script:
+        assert script.get("/api/compare").json()["has_truth"]
+        assert script.post("/api/compare/truth").json()["name"] == "truth"
+        assert script.get("/api/compare/labels").status_code == 200

@@ -1,0 +1,47 @@
+"""What docs/forge.md shows is what a server does."""
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from forge_serving import served
+
+from world2minecraft.sceneforge.demo import demo_room
+from world2minecraft.sceneforge.editor import Editor
+from world2minecraft.sceneforge.server.app import routes
+
+TEXT = (Path(__file__).resolve().parents[2] / "docs" / "forge.md").read_text()
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    with served(Editor(demo_room(tmp_path_factory.mktemp("demo")))) as server:
+        yield server
+
+
+def test_the_python_of_the_page_mends_a_room_and_saves_it(server, capsys):
+    before = server.session.rev
+    (code,) = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
+    exec(code, {"TOKEN": server.token, "SERVER": server.url.rstrip("/")})
+    assert "fill" in capsys.readouterr().out
+    assert server.session.rev > before
+    assert server.session.document.saved_rev == server.session.rev
+
+
+def test_the_lines_of_curl_are_answered(server):
+    if shutil.which("curl") is None:
+        pytest.skip("there is no curl on this machine")
+    commands = re.findall(r"^curl .*?(?<!\\)$", TEXT, re.DOTALL | re.MULTILINE)
+    assert len(commands) == 3
+    for command in commands:
+        words = command.replace("8484", str(server.port)).replace("$TOKEN", server.token)
+        done = subprocess.run(["sh", "-c", words], capture_output=True, text=True, check=True)
+        assert '"error"' not in done.stdout and done.stdout
+
+
+def test_every_path_of_the_table_is_there(server):
+    told = re.findall(r"`(?:GET|POST|WS) (/api/[a-z]+)|`(/api/[a-z]+)", TEXT)
+    there = {route.path.partition("/{")[0] for route in routes()}
+    assert {one or other for one, other in told} <= there
