@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run
-from world2minecraft.cli.on_server import parse_address
+from world2minecraft.cli.build.on_server import parse_address
 from world2minecraft.core.errors import UsageError
 
 

@@ -13,7 +13,7 @@ from tests.external_models.scripted_server import NO_SCHEMA, scripted
 from vln_sets import next_action, next_view, write_pictures
 
 from world2minecraft import cli
-from world2minecraft.cli.vln_live import LinesLive, half_blocks, safe
+from world2minecraft.cli.vln.live_view import LinesLive, half_blocks, safe
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.records import read_episodes, write_items
 from world2minecraft.navigation.running.picking import picked_items

@@ -74,7 +74,7 @@ def run(
         InputError: ``source`` cannot be read, or ``target`` cannot be written.
     """
     check_target(source, target, force)
-    from world2minecraft.cli.render_options import box_of
+    from world2minecraft.cli.render.options import box_of
     from world2minecraft.formats.forms import templates_of_run
     from world2minecraft.minecraft.file_format import WriteOptions
 

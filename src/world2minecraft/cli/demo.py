@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from world2minecraft.cli.build_options import (
+from world2minecraft.cli.build.options import (
     Formats,
     PaletteName,
     Scale,

@@ -30,7 +30,7 @@ def run(
     Weights stored as half or int8 are made whole again as the file is loaded: the file shrinks,
     nothing gets faster, and what it says moves a little. Score it before you trust it.
     """
-    from world2minecraft.cli.train_options import check_extra
+    from world2minecraft.cli.train.options import check_extra
     from world2minecraft.reconstruction.occupancy.onnx_network import NetworkFacts, OccupancyNetwork
 
     check_extra()

@@ -1,7 +1,7 @@
 """The verbs of ``w2m``: one line here, one file beside, imported when its verb is called.
 
-A verb is a module ``world2minecraft.cli.NAME`` (dashes and the space of a verb of two words, such
-as ``rooms scan``, become underscores) with a function
+A verb is a module ``world2minecraft.cli.NAME`` (``rooms scan`` is ``cli.rooms.scan``; the command of
+a folder is ``cli.render.command``) with a function
 ``run`` whose typed parameters are its arguments, as typer reads them, and a text ``EXAMPLES``
 that its ``--help`` ends with. ``run`` returns an exit code, or None for 0.
 """
@@ -9,6 +9,7 @@ that its ``--help`` ends with. ``run`` returns an exit code, or None for 0.
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from inspect import cleandoc, signature
+from keyword import iskeyword
 from typing import Annotated, Any
 
 import typer
@@ -71,6 +72,9 @@ VERBS: dict[str, str] = {
     "paper figure": "Draw a room as the paper does: photo, world, cells, construction.",
     "doctor": "Check that this machine can run the program.",
 }
+
+# Verbs of one word whose folder holds more than the command.
+FOLDERS = ("build", "forge", "paper", "render", "train")
 
 # What stands in the help for a value that has no word of its own, by what its type says.
 VALUE_WORDS = {"Path": "PATH", "str": "TEXT", "float": "X", "int": "N"}
@@ -187,13 +191,20 @@ class VerbGroup(TyperGroup):
 def load(verb: str) -> Any:
     """Import a verb's module and return its command."""
     words = verb.split()
-    module = import_module(f"world2minecraft.cli.{'_'.join(words).replace('-', '_')}")
+    module = import_module(_module_of(words))
     app = typer.Typer(rich_markup_mode=None, add_completion=False)
     app.command(name=words[-1], help=_help(verb, module.run), cls=VerbCommand)(module.run)
     command = typer.main.get_command(app)
     command.examples = module.EXAMPLES  # type: ignore[attr-defined]
     _name_values(command, module.run)
     return command
+
+
+def _module_of(words: list[str]) -> str:
+    parts = [f"{word}_" if iskeyword(word) else word.replace("-", "_") for word in words]
+    if len(words) == 1 and words[0] in FOLDERS:
+        parts.append("command")
+    return ".".join(("world2minecraft.cli", *parts))
 
 
 def _name_values(command: Any, function: Callable[..., Any]) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from world2minecraft.cli import run as w2m
-from world2minecraft.cli.evaluate_reconstruction import next_steps, score_rows, stage_table
+from world2minecraft.cli.evaluate.reconstruction import next_steps, score_rows, stage_table
 from world2minecraft.evaluation.scoring import evaluate_reconstruction
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from world2minecraft.cli.compare_build import chosen_scenes, folder_names
+from world2minecraft.cli.compare.build import chosen_scenes, folder_names
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.core.types import Layout, Placement

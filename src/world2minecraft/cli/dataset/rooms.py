@@ -29,7 +29,7 @@ def run(
     Truth is the rooms' own, in cells of 8 cm by NYUv2's rule. Beside the block worlds of w2m
     dataset build it stands for real photos, of which there are few: see docs/training.md.
     """
-    from world2minecraft.cli.dataset_options import camera_named
+    from world2minecraft.cli.dataset.options import camera_named
     from world2minecraft.cli.outcome import compiling_note
     from world2minecraft.cli.progress import shown
     from world2minecraft.minecraftocc.photo_rooms import PhotoRooms, photo_samples

@@ -210,7 +210,7 @@ def _walk(
     video: bool, chats: list[Any],
 ) -> dict[str, Any]:  # fmt: skip
     from world2minecraft.cli.outcome import compiling_note
-    from world2minecraft.cli.vln_live import live
+    from world2minecraft.cli.vln.live_view import live
     from world2minecraft.navigation.records import write_episodes
     from world2minecraft.navigation.running.course import run_course, write_course
     from world2minecraft.navigation.running.film import FILM_FILE, Film

@@ -1,6 +1,6 @@
 """``w2m dataset verify``: every byte of a data set against its index."""
 
-from world2minecraft.cli import dataset_options as option
+from world2minecraft.cli.dataset import options as option
 
 EXAMPLES = """\
 w2m dataset verify DATA      reads all shards and compares all sums

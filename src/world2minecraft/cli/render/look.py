@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:
-    from world2minecraft.cli.render_shots import Kind, Medium
+    from world2minecraft.cli.render.shots import Kind, Medium
     from world2minecraft.rendering import BlockScene, LookLight, Picture
     from world2minecraft.rendering.block_elements import LookSource
     from world2minecraft.rendering.presentation.shot_frames import DrawOptions

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.cli import compare_options as option
+from world2minecraft.cli.compare import options as option
 
 if TYPE_CHECKING:
     from world2minecraft.paper.layouts import ComparedScene

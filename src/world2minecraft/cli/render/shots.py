@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from world2minecraft.cli.render_options import CameraChoice
-from world2minecraft.cli.render_source import Source
+from world2minecraft.cli.render.options import CameraChoice
+from world2minecraft.cli.render.source import Source
 from world2minecraft.core.errors import UsageError
 
 if TYPE_CHECKING:

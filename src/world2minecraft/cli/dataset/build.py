@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from world2minecraft.cli import dataset_options as option
+from world2minecraft.cli.dataset import options as option
 
 if TYPE_CHECKING:
     from world2minecraft.minecraftocc.building import BuildReport

@@ -6,8 +6,9 @@ from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from world2minecraft.cli import render_options as option
-from world2minecraft.cli.render_files import (
+from world2minecraft.cli.render import options as option
+from world2minecraft.cli.render.look import Look, Looks, take
+from world2minecraft.cli.render.output_files import (
     LINES_FILE,
     Target,
     Writer,
@@ -16,9 +17,8 @@ from world2minecraft.cli.render_files import (
     one_size,
     target_of,
 )
-from world2minecraft.cli.render_look import Look, Looks, take
-from world2minecraft.cli.render_shots import Plan, View, plan_of, settled, turntable_count, view_of
-from world2minecraft.cli.render_source import Source, read_source
+from world2minecraft.cli.render.shots import Plan, View, plan_of, settled, turntable_count, view_of
+from world2minecraft.cli.render.source import Source, read_source
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.progress import Progress
 

@@ -89,7 +89,7 @@ def graded(
     places: list[Path], chat: "ChatModel", out: Path, wish: str, repeats: int
 ) -> "list[Grades]":
     """Return the grades of built rooms; their pictures are written to ``out/pictures``."""
-    from world2minecraft.cli.compare_build import folder_names
+    from world2minecraft.cli.compare.build import folder_names
     from world2minecraft.cli.progress import shown
     from world2minecraft.core.files import write_bytes
     from world2minecraft.formats.build_source import read_source

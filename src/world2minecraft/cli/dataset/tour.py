@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.cli.dataset_options import (
+from world2minecraft.cli.dataset.options import (
     At,
     BlockMap,
     CameraName,

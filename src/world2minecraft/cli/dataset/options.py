@@ -92,7 +92,7 @@ Jobs = Annotated[int | None, _option("--jobs", text="How many processes; one a c
 
 def camera_named(name: str, size: str, fov_deg: float | None) -> "Camera":
     """Return the camera that the options mean. Raises UsageError or UnknownNameError."""
-    from world2minecraft.cli.render_options import camera_choice
+    from world2minecraft.cli.render.options import camera_choice
     from world2minecraft.core.errors import UnknownNameError
     from world2minecraft.minecraftocc.tours import nyu_camera, paper_camera
     from world2minecraft.rendering.views import vertical_fov_deg_of

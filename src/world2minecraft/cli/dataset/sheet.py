@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.cli.dataset_options import check_hour
+from world2minecraft.cli.dataset.options import check_hour
 
 if TYPE_CHECKING:
     import numpy as np

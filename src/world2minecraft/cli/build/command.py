@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from world2minecraft.cli.build_options import (
+from world2minecraft.cli.build.options import (
     Formats,
     PaletteName,
     Scale,
@@ -130,7 +130,7 @@ def build_into(
     new_chunks: bool,
 ) -> None:
     """Build into a world; what can be known of it is checked before any work."""
-    from world2minecraft.cli.into_world import check_world, into_world
+    from world2minecraft.cli.build.into_world import check_world, into_world
 
     check_world(world, air)
     how = {"air": air, "new_chunks": new_chunks, "is_room": holds_room(source)}
@@ -146,7 +146,7 @@ def build_on(
     air: str,
 ) -> None:
     """Build on a server; what can be known of it is checked before any work."""
-    from world2minecraft.cli.on_server import check_server, on_server
+    from world2minecraft.cli.build.on_server import check_server, on_server
 
     check_server(server, air)
     how = {"air": air, "is_room": holds_room(source), "mc_version": chosen.mc_version}

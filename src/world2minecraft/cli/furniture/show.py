@@ -34,7 +34,7 @@ def run(
     one = template(name)
     print("\n".join(facts_of(one)))
     if picture is not None:
-        from world2minecraft.cli.furniture_sheet import draw
+        from world2minecraft.cli.furniture.sheet import draw
 
         draw([one], picture, columns=1)
         print(f"\nDrawn to {picture}")

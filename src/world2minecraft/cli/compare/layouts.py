@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from world2minecraft.cli import compare_options as option
+from world2minecraft.cli.compare import options as option
 
 EXAMPLES = """\
 w2m compare layouts gpt4.bedroom.k-similar.k_8.px_regular.json      what LayoutGPT publishes

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from world2minecraft.cli import train_options as options
+from world2minecraft.cli.train import options
 
 if TYPE_CHECKING:
     from world2minecraft.networks.config import RunConfig

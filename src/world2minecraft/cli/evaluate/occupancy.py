@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from world2minecraft.cli.train_options import Cache, Device
+from world2minecraft.cli.train.options import Cache, Device
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -161,7 +161,7 @@ class _Asked:
         return self._scored(said, grid.voxel_m)
 
     def _of_weights(self, progress: "Progress") -> dict[str, Any]:
-        from world2minecraft.cli.train_options import check_extra
+        from world2minecraft.cli.train.options import check_extra
 
         check_extra()
         from world2minecraft.networks.callbacks import WEIGHTS

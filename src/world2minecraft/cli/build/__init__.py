@@ -1,0 +1,1 @@
+"""``w2m build``: occupancy files become blocks."""

@@ -1,0 +1,1 @@
+"""``w2m compare``: layouts of other methods beside ours."""

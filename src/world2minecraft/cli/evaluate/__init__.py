@@ -1,0 +1,1 @@
+"""``w2m evaluate``: scores of reconstructions and of networks."""

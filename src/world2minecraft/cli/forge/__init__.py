@@ -1,0 +1,1 @@
+"""``w2m forge``: the web editor."""

@@ -1,0 +1,1 @@
+"""``w2m furniture``: the furniture library."""

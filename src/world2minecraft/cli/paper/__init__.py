@@ -1,0 +1,1 @@
+"""``w2m paper``: the tables and figures of the paper."""

@@ -1,0 +1,1 @@
+"""``w2m render``: pictures of any build."""

@@ -1,0 +1,1 @@
+"""``w2m rooms``: generated rooms and virtual scans of them."""

@@ -1,0 +1,1 @@
+"""``w2m train``: occupancy networks."""

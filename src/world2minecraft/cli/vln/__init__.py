@@ -1,0 +1,1 @@
+"""``w2m vln``: navigation sets, agents and their scores."""
