@@ -1,188 +1,204 @@
-"""The order of the tree: imports, lazy ones too, go only from later rows to earlier ones."""
+"""The order of the tree: imports go one way, lazy and type-only ones included."""
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
-import pytest
-
 SOURCE = Path(__file__).resolve().parents[1] / "src" / "world2minecraft"
+ROOT = SOURCE.name
 
-# Each row may import the rows above it, and itself where it is a single package. Packages in one
-# row never import each other, but for the foundation.
-FOUNDATION = (
-    "classes",
-    "coordinates",
-    "types",
-    "errors",
-    "files",
-    "archive",
-    "registry",
-    "jit",
-    "progress",
-    "lock",
-    "machine",
+# A package imports only from packages above it.
+ORDER = (
+    "core",
+    "geometry",
+    "minecraft",
+    "external_models",
+    "formats",
+    "furniture",
+    "rendering",
+    "editing",
+    "construction",
+    "capture",
+    "reconstruction",
+    "procgen",
+    "evaluation",
+    "runs",
+    "minecraftocc",
+    "networks",
+    "navigation",
+    "paper",
+    "sceneforge",
+    "cli",
 )
-ROWS: tuple[tuple[str, ...], ...] = (
-    FOUNDATION,
-    ("geometry",),
-    ("minecraft",),
-    ("exchange",),
-    ("fit",),
-    ("furniture",),
-    ("walk",),
-    ("render",),
-    ("edit",),
-    ("metrics",),
-    ("models",),
-    (
-        "scan",
-        "posing",
-        "stereo",
-        "register",
-        "occupy",
-        "fuse",
-        "label",
-        "find",
-        "furnish",
-        "build",
-    ),
-    ("parameters", "run_folder"),
-    ("steps", "kept"),
-    ("prepare", "plans", "joining"),
-    ("pipeline", "rebuild"),
-    ("live",),
-    ("rooms",),
-    ("evaluate",),
-    ("report",),
-    ("making",),
-    ("dataset",),
-    ("learn",),
-    ("vln",),
-    ("compare",),
-    ("paper",),
-    ("forge",),
-    ("cli",),
-)
-RANK = {name: rank for rank, row in enumerate(ROWS) for name in row}
+# Stages of a reconstruction never import each other; pipeline.py joins them. Semantics may read
+# the layout: both are the paper's labels of cells.
+STAGES = ("registration", "occupancy", "fusion", "semantics", "instances", "retrieval")
 TORCH = ("torch", "lightning", "torchvision")
-TORCH_FOLDERS = ("learn",)
-# Networks of others, asked for by name.
-TORCH_FILES = (
-    "external_models/hub.py",
-    "external_models/single_thread.py",
-    "reconstruction/occupancy/hf_segmenter.py",
+TORCH_USERS = (
+    "networks",
+    "external_models.transformers_hub",
+    "reconstruction.occupancy.hf_segmenter",
 )
 HEAVY_FOR_HELP = ("numpy", "numba", "scipy", "sklearn", "PIL", "rich", "jinja2", "pydantic")
+MAX_TOP_ENTRIES = 24
 
-FILES = sorted(SOURCE.rglob("*.py"))
-
-
-def owner(path: Path) -> str:
-    """The package or module of the tree that a file belongs to; '' for the root's own file."""
-    first = path.relative_to(SOURCE).parts[0]
-    return "" if first == "__init__.py" else first.removesuffix(".py")
+Edges = dict[str, set[str]]
 
 
-def imported(tree: ast.AST, package: tuple[str, ...]) -> Iterator[str]:
-    """The full dotted names that a module imports, at its top or within functions."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            base = package[: len(package) - node.level + 1] if node.level else ()
-            module = ".".join((*base, *filter(None, [node.module])))
-            yield from (f"{module}.{alias.name}" for alias in node.names)
+def module_name(path: Path) -> str:
+    """The dotted name of a file without the leading ``world2minecraft.``; '' for the root's own."""
+    parts = path.relative_to(SOURCE).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def imports_of(path: Path) -> list[str]:
-    package = ("world2minecraft", *path.relative_to(SOURCE).parts[:-1])
-    return sorted(imported(ast.parse(path.read_text()), package))
+def imported(nodes: list[ast.stmt]) -> Iterator[str]:
+    """The full dotted names that statements import, at any depth."""
+    for statement in nodes:
+        for node in ast.walk(statement):
+            if isinstance(node, ast.Import):
+                yield from (alias.name for alias in node.names)
+            elif isinstance(node, ast.ImportFrom):
+                base = "." * node.level + (node.module or "")
+                yield from (f"{base}.{alias.name}" for alias in node.names)
 
 
-def complaint(importer: str, name: str) -> str | None:
-    """Why a module of ``importer`` may not import ``name``; None where it may."""
-    parts = name.split(".")
-    if parts[0] in TORCH and importer not in TORCH_FOLDERS:
-        return f"imports {parts[0]}; only {', '.join(TORCH_FOLDERS)}/ may"
-    if parts[0] != "world2minecraft" or len(parts) < 2 or parts[1].startswith("__"):
-        return None
-    target = parts[1]
-    if target not in RANK:
-        return f"imports {target}, which has no place in the order"
-    if importer == target or {importer, target} <= set(FOUNDATION):
-        return None
-    if importer not in RANK:
-        return "is in a package that has no place in the order" if importer else "imports a part"
-    if RANK[importer] <= RANK[target]:
-        return f"imports {target}, which comes beside or after it"
-    return None
+@cache
+def sources() -> dict[str, tuple[str, ...]]:
+    """The names that each module imports, by the module's dotted name."""
+    paths = sorted(SOURCE.rglob("*.py"))
+    return {module_name(path): tuple(imported(ast.parse(path.read_text()).body)) for path in paths}
 
 
-def test_every_package_has_its_place():
-    assert {owner(path) for path in FILES} - {""} <= set(RANK)
+def module_edges(imports: dict[str, tuple[str, ...]]) -> Edges:
+    """Which modules of the package each module imports."""
+    edges: Edges = {}
+    for module, names in imports.items():
+        ours = [name.removeprefix(f"{ROOT}.") for name in names if name.startswith(f"{ROOT}.")]
+        found = {n if n in imports else n.rpartition(".")[0] for n in ours}
+        edges[module] = found - {module, ""}
+    return edges
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
-def test_imports_go_upward(path):
-    names = imports_of(path)
-    if path.relative_to(SOURCE).as_posix() in TORCH_FILES:
-        names = [name for name in names if name.split(".")[0] not in TORCH]
-    complaints = [complaint(owner(path), name) for name in names]
-    assert not [text for text in complaints if text]
+def unit_edges(edges: Edges, package: str) -> Edges:
+    """Imports between the modules and sub-packages of one package."""
+    prefix = f"{package}." if package else ""
+    units: Edges = {}
+    for module, targets in edges.items():
+        if not module.startswith(prefix) or not module:
+            continue
+        unit = module.removeprefix(prefix).split(".")[0]
+        inside = {t.removeprefix(prefix).split(".")[0] for t in targets if t.startswith(prefix)}
+        units.setdefault(unit, set()).update(inside - {unit})
+    return units
+
+
+def circle(edges: Edges) -> list[str]:
+    """What is left when nodes that import nothing, or that nothing imports, go again and again."""
+    left = {name: targets & edges.keys() for name, targets in edges.items()}
+    while True:
+        used = set().union(*left.values())
+        inside = {n: t & left.keys() for n, t in left.items() if n in used and t & left.keys()}
+        if inside == left:
+            return sorted(left)
+        left = inside
+
+
+def against_order(edges: Edges) -> list[str]:
+    """Imports of a package from one that is not above it."""
+    rank = {name: place for place, name in enumerate(ORDER)}
+    faults = []
+    for module, targets in edges.items():
+        for target in targets:
+            ours, theirs = module.split(".")[0], target.split(".")[0]
+            if ours and ours != theirs and rank.get(ours, -1) <= rank.get(theirs, len(rank)):
+                faults.append(f"{module} imports {target}")
+    return sorted(faults)
+
+
+def between_stages(edges: Edges) -> list[str]:
+    """Imports of one stage of the reconstruction from another."""
+    stage_of = {
+        module: parts[1]
+        for module in edges
+        if (parts := module.split("."))[0] == "reconstruction" and parts[1:2]
+    }
+    return sorted(
+        f"{module} imports {target}"
+        for module, targets in edges.items()
+        for target in targets
+        if stage_of.get(module) in STAGES
+        and stage_of.get(target) in STAGES
+        and stage_of[module] != stage_of[target]
+    )
+
+
+def torch_imports(imports: dict[str, tuple[str, ...]]) -> list[str]:
+    """Modules outside the networks and the adapters of hub models that import torch."""
+    return sorted(
+        module
+        for module, names in imports.items()
+        if any(name.split(".")[0] in TORCH for name in names) and not module.startswith(TORCH_USERS)
+    )
+
+
+def test_the_top_of_the_package_has_few_entries():
+    entries = {path.name for path in SOURCE.iterdir() if path.name != "__pycache__"}
+    assert len(entries) <= MAX_TOP_ENTRIES, sorted(entries)
+    assert {name.removesuffix(".py") for name in entries} >= set(ORDER)
+
+
+def test_packages_import_only_from_packages_above_them():
+    assert against_order(module_edges(sources())) == []
 
 
 def test_modules_do_not_import_in_circles():
-    """At their top: a circle would make the order of imports matter."""
-    names = {path: ".".join(("world2minecraft", *_module_parts(path))) for path in FILES}
-    path_of = {name: path for path, name in names.items()}
-    edges = {
-        name: {target for text in _top_imports(path) if (target := _nearest(text, path_of))}
-        for path, name in names.items()
-    }
-    assert not _circle({name: targets - {name} for name, targets in edges.items()})
+    assert circle(module_edges(sources())) == []
 
 
-@pytest.mark.parametrize(
-    ("importer", "name", "reason"),
-    [
-        ("find", "world2minecraft.reconstruction.retrieval.match", "beside"),
-        ("geometry", "world2minecraft.minecraft", "after"),
-        ("types", "world2minecraft.geometry", "after"),
-        ("report", "world2minecraft.cli", "after"),
-        ("fuse", "torch.nn", "only learn/"),
-        ("fuse", "world2minecraft.helpers", "no place"),
-    ],
-)
-def test_a_wrong_import_is_seen(importer, name, reason):
-    assert reason in (complaint(importer, name) or "")
+def test_parts_of_one_package_do_not_import_in_circles():
+    edges = module_edges(sources())
+    packages = {module.rpartition(".")[0] for module in edges}
+    circles = {package: circle(unit_edges(edges, package)) for package in packages}
+    assert {package: found for package, found in circles.items() if found} == {}
 
 
-@pytest.mark.parametrize(
-    ("importer", "name"),
-    [
-        ("cli", "world2minecraft.sceneforge"),
-        ("build", "world2minecraft.minecraft.block_states"),
-        ("rooms", "world2minecraft.rendering"),
-        ("types", "world2minecraft.core.classes"),
-        ("learn", "torch.nn"),
-        ("scan", "world2minecraft.__version__"),
-    ],
-)
-def test_a_right_import_passes(importer, name):
-    assert complaint(importer, name) is None
+def test_stages_do_not_import_each_other():
+    assert between_stages(module_edges(sources())) == []
 
 
-def test_lazy_and_relative_imports_are_seen():
-    code = (
-        "def f():\n    from ..furnish import match\n    from . import grids\n    import torch.nn\n"
-    )
-    found = sorted(imported(ast.parse(code), ("world2minecraft", "find")))
-    assert found == [
-        "torch.nn",
-        "world2minecraft.reconstruction.instances.grids",
-        "world2minecraft.reconstruction.retrieval.match",
+def test_torch_is_imported_by_networks_and_hub_adapters_only():
+    assert torch_imports(sources()) == []
+
+
+def test_imports_are_absolute():
+    relative = {m: [n for n in names if n.startswith(".")] for m, names in sources().items()}
+    assert {module: names for module, names in relative.items() if names} == {}
+
+
+def test_each_rule_sees_a_fault():
+    late = {"core.files": {"cli.demo"}, "cli.demo": set()}
+    assert against_order(late) == ["core.files imports cli.demo"]
+    assert against_order({"helpers": {"core.files"}, "core.files": set()}) != []
+    assert circle({"a": {"b"}, "b": {"a"}, "c": {"a"}}) == ["a", "b"]
+    parts = {"p.x.one": {"p.y.two"}, "p.y.three": {"p.x.four"}, "p.y.two": set(), "p.x.four": set()}
+    assert circle(parts) == []
+    assert circle(unit_edges(parts, "p")) == ["x", "y"]
+    stages = {"reconstruction.fusion.a": {"reconstruction.instances.b"}}
+    stages["reconstruction.instances.b"] = set()
+    assert between_stages(stages) == ["reconstruction.fusion.a imports reconstruction.instances.b"]
+    assert torch_imports({"capture.scan": ("torch.nn",), "networks.batch": ("torch",)}) == [
+        "capture.scan"
     ]
+
+
+def test_lazy_and_type_only_imports_are_seen():
+    code = (
+        "if TYPE_CHECKING:\n    from world2minecraft.cli import demo\n"
+        "def f():\n    from world2minecraft.runs import run\n    import torch.nn\n"
+    )
+    found = sorted(imported(ast.parse(code).body))
+    assert found == ["torch.nn", "world2minecraft.cli.demo", "world2minecraft.runs.run"]
 
 
 def test_help_loads_nothing_heavy():
@@ -190,40 +206,12 @@ def test_help_loads_nothing_heavy():
     seen, queue = set(), [SOURCE / "cli" / "__init__.py", SOURCE / "cli" / "verbs.py"]
     while queue:
         path = queue.pop()
-        for name in _top_imports(path):
+        top = [n for n in ast.parse(path.read_text()).body if isinstance(n, ast.stmt)]
+        names = imported([n for n in top if isinstance(n, (ast.Import, ast.ImportFrom))])
+        for name in names:
             assert name.split(".")[0] not in HEAVY_FOR_HELP, f"{path.name} imports {name}"
             target = SOURCE.parent / Path(*name.split(".")[:-1])
             for file in (target.with_suffix(".py"), target / "__init__.py"):
                 if file.is_file() and file not in seen:
                     seen.add(file)
                     queue.append(file)
-
-
-def _module_parts(path: Path) -> tuple[str, ...]:
-    parts = path.relative_to(SOURCE).with_suffix("").parts
-    return parts[:-1] if parts[-1] == "__init__" else parts
-
-
-def _top_imports(path: Path) -> list[str]:
-    package = ("world2minecraft", *path.relative_to(SOURCE).parts[:-1])
-    tree = ast.parse(path.read_text())
-    top = [node for node in tree.body if isinstance(node, (ast.Import, ast.ImportFrom))]
-    return sorted(name for node in top for name in imported(ast.Module([node], []), package))
-
-
-def _nearest(name: str, known: dict[str, Path]) -> str | None:
-    """The module that ``a.b.c`` means: itself, or the one that holds the name c."""
-    return (
-        name
-        if name in known
-        else (parent if (parent := name.rpartition(".")[0]) in known else None)
-    )
-
-
-def _circle(edges: dict[str, set[str]]) -> list[str]:
-    """The modules that are left when those without imports are taken away again and again."""
-    left = dict(edges)
-    while free := [name for name, targets in left.items() if not targets & left.keys()]:
-        for name in free:
-            del left[name]
-    return sorted(left)
