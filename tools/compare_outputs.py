@@ -26,7 +26,7 @@ from pathlib import Path
 
 from compare_outputs import declared
 from compare_outputs.contents import File, differences
-from compare_outputs.running import Done, Side, missing_for, run_steps, unpacked
+from compare_outputs.running import Done, Side, copied, missing_for, run_steps, unpacked
 from compare_outputs.table import STEPS, Step
 
 REPOSITORY = Path(__file__).resolve().parents[1]

@@ -1,4 +1,4 @@
-"""Make ``forge/demo_room``: the files of ``w2m demo`` that SceneForge shows first.
+"""Make ``sceneforge/demo_room``: the files of ``w2m demo`` that SceneForge shows first.
 
 ``python tools/make_demo_room.py`` runs the demo (about a minute) and copies what is needed.
 """

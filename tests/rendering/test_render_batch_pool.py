@@ -13,7 +13,7 @@ from world2minecraft.core.errors import UsageError, WorkerError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering import prepare_scene
 from world2minecraft.rendering.batch import RenderPool, render_batch
-from world2minecraft.rendering.batch.ring import runs_of
+from world2minecraft.rendering.batch.pool import runs_of
 from world2minecraft.rendering.editable_scene import LiveScene
 from world2minecraft.rendering.picture import OUTPUTS
 

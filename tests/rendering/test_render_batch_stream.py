@@ -11,7 +11,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering import prepare_scene, render_volume
 from world2minecraft.rendering.batch import render_batch, render_stream
-from world2minecraft.rendering.batch.ahead import ahead_of, done_behind
+from world2minecraft.rendering.batch.streaming import ahead_of, done_behind
 from world2minecraft.rendering.output import colour_bytes
 from world2minecraft.rendering.views.poses import Shot
 

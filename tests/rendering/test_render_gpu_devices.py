@@ -20,9 +20,9 @@ from world2minecraft.rendering.gpu import (
     renderer_for,
 )
 from world2minecraft.rendering.gpu import backend_choice as choice
-from world2minecraft.rendering.gpu import engine as engines
+from world2minecraft.rendering.gpu import device as engines
 
-FOUND = "world2minecraft.rendering.gpu.adapters._adapters"
+FOUND = "world2minecraft.rendering.gpu.device._adapters"
 
 
 def adapter(name: str, kind: str = "DiscreteGPU", backend: str = "Vulkan"):
@@ -37,7 +37,7 @@ def machine(monkeypatch):
     def have(*found):
         monkeypatch.delenv("W2M_GPU_ADAPTER", raising=False)
         monkeypatch.setattr(FOUND, lambda: list(found))
-        monkeypatch.setattr("world2minecraft.rendering.gpu.adapters.find_spec", lambda name: True)
+        monkeypatch.setattr("world2minecraft.rendering.gpu.device.find_spec", lambda name: True)
         monkeypatch.setattr(choice, "_shows_card", lambda folder: True)
 
     return have
@@ -89,7 +89,7 @@ def test_gpu_says_which_adapters_there_are(machine, monkeypatch):
 
 def test_without_wgpu_gpu_names_the_extra_and_auto_draws_on_the_cpu(machine, monkeypatch, scene):
     machine(CARD)
-    monkeypatch.setattr("world2minecraft.rendering.gpu.adapters.find_spec", lambda name: None)
+    monkeypatch.setattr("world2minecraft.rendering.gpu.device.find_spec", lambda name: None)
     with pytest.raises(MissingExtraError) as caught:
         choose_device("gpu")
     assert str(caught.value) == ("--device gpu needs an extra: pip install 'world2minecraft[gpu]'")

@@ -14,8 +14,8 @@ from test_render_cubes import random_entity
 from world2minecraft.rendering import prepare_scene
 from world2minecraft.rendering import scene_tables as tables_module
 from world2minecraft.rendering.gpu import scene_buffers as packing
+from world2minecraft.rendering.gpu.device import BINDINGS, shader_text
 from world2minecraft.rendering.gpu.readback_buffers import MOST_JOBS, plan_of
-from world2minecraft.rendering.gpu.shader import BINDINGS, shader_text
 from world2minecraft.rendering.gpu.uniforms import (
     AT_CORNERS,
     AT_ENCODE,

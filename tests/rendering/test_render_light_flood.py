@@ -8,8 +8,7 @@ from tests.rendering.light_worlds import PALETTE, SLOW_SHAPES, random_world
 
 from world2minecraft.minecraft.rules.flood import DIMS, SHUT, SOLID
 from world2minecraft.rendering.light import light_field
-from world2minecraft.rendering.light.flood import units, whole_reach
-from world2minecraft.rendering.light.passage import light_rows, word_of
+from world2minecraft.rendering.light.propagation import light_rows, units, whole_reach, word_of
 
 TOP = 15
 

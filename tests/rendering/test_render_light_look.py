@@ -12,7 +12,7 @@ from world2minecraft.rendering.light import (
     glow_light,
     lit_colour,
 )
-from world2minecraft.rendering.light.hours import sky_at, sun_direction
+from world2minecraft.rendering.light.sky import sky_at, sun_direction
 from world2minecraft.rendering.light.tone_mapping import (
     develop,
     filmic_tone,

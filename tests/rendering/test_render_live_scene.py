@@ -12,8 +12,7 @@ from scenes import CAMERA, PALETTE, random_pose, random_volume, volume_of
 from world2minecraft.core.errors import UsageError
 from world2minecraft.rendering import prepare_scene, render_volume
 from world2minecraft.rendering.editable_scene import LiveScene
-from world2minecraft.rendering.empties import empty_boxes
-from world2minecraft.rendering.empties_edit import edited_boxes
+from world2minecraft.rendering.empty_space_boxes import edited_boxes, empty_boxes
 from world2minecraft.rendering.scene_tables import BOXES, FULL
 
 OUTPUTS = ("colour", "semantic", "instance", "opaque")

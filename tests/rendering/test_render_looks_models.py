@@ -7,8 +7,7 @@ from world2minecraft.minecraft.block_states import known_blocks, states_of
 from world2minecraft.minecraft.visual import visual_boxes_of
 from world2minecraft.rendering.block_elements import BlockModel, Element
 from world2minecraft.rendering.block_models import OwnLooks, stand_in_share, stand_ins
-from world2minecraft.rendering.block_models.models import model_of
-from world2minecraft.rendering.block_models.turning import QUARTERS, quarter, turned
+from world2minecraft.rendering.block_models.models import QUARTERS, model_of, quarter, turned
 
 STATES_EACH = 9  # Spread over all of a block: every facing, half and shape comes up somewhere.
 UNSEEN = ("air", "barrier", "light", "structure_void", "moving_piston")

@@ -15,8 +15,7 @@ from world2minecraft.rendering.light.settings import (
     NEUTRAL_HEADLIGHT,
 )
 from world2minecraft.rendering.mesh import BlockMesh, mesh_of
-from world2minecraft.rendering.mesh.cuts import CORNERS
-from world2minecraft.rendering.mesh.merge import merged
+from world2minecraft.rendering.mesh.baking import CORNERS, merged
 
 PALETTE = (
     "minecraft:air",

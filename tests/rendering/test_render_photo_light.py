@@ -8,12 +8,12 @@ from world2minecraft.core.coordinates import look_at
 from world2minecraft.core.types import BlockVolume, Camera
 from world2minecraft.rendering import LookLight, prepare_scene
 from world2minecraft.rendering.block_elements import BlockModel, Element, FaceLook, face_uv
-from world2minecraft.rendering.light.hours import sun_direction
+from world2minecraft.rendering.light.sky import sun_direction
 from world2minecraft.rendering.path_tracing import lamps_of
 from world2minecraft.rendering.path_tracing.film import Film, new_film
 from world2minecraft.rendering.path_tracing.light_sampling import UNSEEN_SOFT
-from world2minecraft.rendering.path_tracing.path import new_path
 from world2minecraft.rendering.path_tracing.path_kernel import trace_rows
+from world2minecraft.rendering.path_tracing.scattering import new_path
 from world2minecraft.rendering.path_tracing.sky_light import SkyLight, even_sky, sky_light
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.texture import Texture

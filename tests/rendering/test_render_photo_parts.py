@@ -5,9 +5,13 @@ import pytest
 
 from world2minecraft.core.jit import lean
 from world2minecraft.rendering.path_tracing.denoise import SWEEPS, filtered
-from world2minecraft.rendering.path_tracing.path import new_path
 from world2minecraft.rendering.path_tracing.rng import EVEN_USES, mixed, pair
-from world2minecraft.rendering.path_tracing.scatter import follow_gloss, gloss_of, set_lobes
+from world2minecraft.rendering.path_tracing.scattering import (
+    follow_gloss,
+    gloss_of,
+    new_path,
+    set_lobes,
+)
 
 
 @lean

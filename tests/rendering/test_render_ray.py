@@ -12,7 +12,7 @@ from scenes import CAMERA, random_pose, random_volume, volume_of
 from world2minecraft.core.coordinates import apply, look_at
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering import prepare_scene, render_volume
-from world2minecraft.rendering.empties import empty_boxes
+from world2minecraft.rendering.empty_space_boxes import empty_boxes
 from world2minecraft.rendering.ray_caster.packet_tracing import ALONE, NOTHING, PLANE, follow
 from world2minecraft.rendering.scene_tables import BOXES, FULL, NO_FACE
 

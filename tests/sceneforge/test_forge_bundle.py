@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-FORGE = ROOT / "src" / "world2minecraft" / "forge"
+FORGE = ROOT / "src" / "world2minecraft" / "sceneforge"
 WEB, STATIC = FORGE / "web", FORGE / "static"
 LEAST_NODE = 20
 # What npm says where there is no way to the registry; anything else is a fault of ours.

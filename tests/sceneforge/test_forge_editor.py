@@ -107,7 +107,7 @@ def fields_of_wire(name):
     import re
     from importlib.resources import files
 
-    text = files("world2minecraft").joinpath("forge/web/src/wire.ts").read_text()
+    text = files("world2minecraft").joinpath("sceneforge/web/src/wire.ts").read_text()
     body = re.search(rf"export interface {name} {{\n(.*?)\n}}", text, re.DOTALL)
     return re.findall(r"^  (\w+):", body.group(1), re.MULTILINE)
 

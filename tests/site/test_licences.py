@@ -12,7 +12,7 @@ CODE = {".py", ".pyc", ".typed"}
 def shipped():
     for path in SOURCE.rglob("*"):
         inner = path.relative_to(SOURCE).as_posix()
-        if path.is_file() and path.suffix not in CODE and not inner.startswith("forge/web/"):
+        if path.is_file() and path.suffix not in CODE and not inner.startswith("sceneforge/web/"):
             yield inner
 
 
@@ -44,9 +44,9 @@ def test_each_row_has_a_file():
 
 def test_the_notices_of_others_are_shipped_and_named():
     notice = (ROOT / "NOTICE").read_text()
-    for path in ("forge/NOTICE-three.txt", "minecraft/data/NOTICE-minecraft-data.txt"):
+    for path in ("sceneforge/NOTICE-three.txt", "minecraft/data/NOTICE-minecraft-data.txt"):
         assert "MIT" in (SOURCE / path).read_text()
         assert path.rpartition("/")[2] in notice
-    package = (SOURCE / "forge/web/package.json").read_text()
+    package = (SOURCE / "sceneforge/web/package.json").read_text()
     version = re.search(r'"three": "([\d.]+)"', package)[1]
-    assert f"three.js {version} " in (SOURCE / "forge/NOTICE-three.txt").read_text()
+    assert f"three.js {version} " in (SOURCE / "sceneforge/NOTICE-three.txt").read_text()

@@ -3,6 +3,8 @@
 Each act is said by values alone, so that its text tells whether a kept result of it still holds.
 """
 
+import gzip
+import hashlib
 import json
 import re
 import shutil
@@ -28,6 +30,7 @@ class Place:
 
     folder: Path
     start: Callable[[list[str], IO[bytes], IO[bytes]], subprocess.Popen[bytes]]
+    start_script: Callable[[str, IO[bytes], IO[bytes]], subprocess.Popen[bytes]]
     stdout: IO[bytes]
     stderr: IO[bytes]
 
@@ -59,7 +62,8 @@ class Act(Protocol):
 class Edit:
     """Open a run in the editor, ask and do over HTTP, and end it as Ctrl+C does.
 
-    requests: method, path and fields of each; the replies are what is printed.
+    requests: method, path and fields of each; the replies are what is printed. The method EXPORT
+    has a form in place of a path, and writes a file ``exported-FORM``.
     """
 
     run: str
@@ -73,8 +77,12 @@ class Edit:
             process = place.start(words, stream, place.stderr)
             try:
                 address, token = _link_of(log, process)
+                editor = _Editor(address, token)
                 for method, path, fields in self.requests:
-                    reply = _asked(address, token, method, path, fields)
+                    if method == "EXPORT":
+                        reply = editor.exported(path, fields, place.folder)
+                    else:
+                        reply = _told(editor.asked(method, path, fields))
                     place.stdout.write(f"{method} {path} {fields}\n{reply}\n".encode())
             finally:
                 process.send_signal(signal.SIGINT)
@@ -93,20 +101,51 @@ def _link_of(log: Path, process: subprocess.Popen[bytes]) -> tuple[str, str]:
     raise RuntimeError(f"the editor told no link: {log.read_text()}")
 
 
-def _asked(address: str, token: str, method: str, path: str, fields: str) -> str:
-    request = urllib.request.Request(
-        address + path, fields.encode() if method == "POST" else None, method=method
-    )
-    request.add_header("Authorization", f"Bearer {token}")
-    request.add_header("Content-Type", "application/json")
-    try:
-        with urllib.request.urlopen(request, timeout=HANG_S) as answer:
-            data = answer.read()
-    except urllib.error.HTTPError as error:
-        data = error.read()
+@dataclass(frozen=True)
+class _Editor:
+    address: str
+    token: str
+
+    def asked(self, method: str, path: str, fields: str = "") -> bytes:
+        request = urllib.request.Request(
+            self.address + path, fields.encode() if method == "POST" else None, method=method
+        )
+        request.add_header("Authorization", f"Bearer {self.token}")
+        request.add_header("Content-Type", "application/json")
+        try:
+            with urllib.request.urlopen(request, timeout=HANG_S) as answer:
+                return answer.read()
+        except urllib.error.HTTPError as error:
+            return error.read()
+
+    def exported(self, form: str, fields: str, folder: Path) -> str:
+        """Export what is edited, and wait for it."""
+        told = json.dumps({"form": form} | json.loads(fields or "{}"))
+        begun = json.loads(self.asked("POST", "/api/exports", told))
+        until = time.monotonic() + HANG_S
+        while "job" in begun and time.monotonic() < until:
+            jobs = json.loads(self.asked("GET", "/api/jobs"))
+            jobs = jobs if isinstance(jobs, list) else jobs["jobs"]
+            job = next(one for one in jobs if one["id"] == begun["job"])
+            if job["state"] == "running":
+                time.sleep(0.1)
+                continue
+            if job["state"] != "done":
+                return f"{job['state']}: {job['note']}"
+            result = job["result"]
+            data = self.asked("GET", f"/api/exports/files/{result.pop('id')}")
+            (folder / f"exported-{form}-{result['file']}").write_bytes(data)
+            return json.dumps(result, sort_keys=True)
+        return json.dumps(begun)
+
+
+def _told(data: bytes) -> str:
+    """Return a reply as a text: JSON without times, or the sum of an array."""
+    if data[:2] == b"\x1f\x8b":
+        data = gzip.decompress(data)
     if data[:1] in (b"{", b"["):
         return json.dumps(_timeless(json.loads(data)), sort_keys=True)
-    return f"{len(data)} bytes"
+    return f"{len(data)} bytes, {hashlib.sha256(data).hexdigest()}"
 
 
 def _timeless(value: Any) -> Any:
@@ -131,17 +170,20 @@ class Grow:
         source, capture = place.folder / self.source, place.folder / self.capture
         capture.mkdir()
         files = sorted(one for one in source.rglob("*") if one.is_file())
-        stems = sorted({one.name.split(".")[0] for one in files if one.parent != source})
-        early = set(stems[: self.first])
+        frames: dict[str, list[Path]] = {}
         for one in files:
-            if one.parent == source or one.name.split(".")[0] in early:
+            if found := re.match(r"frame-\d+", one.name):
+                frames.setdefault(found[0], []).append(one)
+            else:
                 _copied(one, source, capture)
+        rows = list(frames.values())
+        for one in (one for row in rows[: self.first] for one in row):
+            _copied(one, source, capture)
         process = place.start(self.words.split(), place.stdout, place.stderr)
-        for stem in stems[self.first :]:
+        for row in rows[self.first :]:
             time.sleep(self.every_s)
-            for one in files:
-                if one.parent != source and one.name.split(".")[0] == stem:
-                    _copied(one, source, capture)
+            for one in row:
+                _copied(one, source, capture)
         (capture / "done").touch()
         return ended(process)
 
@@ -157,24 +199,33 @@ def _copied(one: Path, source: Path, target: Path) -> None:
 
 @dataclass(frozen=True)
 class Kill:
-    """Start a command, and kill it when a file is there (and some more seconds have passed)."""
+    """Start a command, and kill it when a file is there that fits a pattern with stars."""
 
     words: str
     file: str
-    after_s: float = 0.0
 
     def act(self, place: Place) -> int:
-        """Do it."""
+        """Do it; 0 where it was killed in time."""
         process = place.start(self.words.split(), place.stdout, place.stderr)
         until = time.monotonic() + HANG_S
         while process.poll() is None and time.monotonic() < until:
-            if (place.folder / self.file).exists():
-                time.sleep(self.after_s)
-                break
-            time.sleep(0.02)
-        process.kill()
-        process.wait()
-        return 0
+            if any(place.folder.glob(self.file)):
+                process.kill()
+                process.wait()
+                return 0
+            time.sleep(0.01)
+        return process.wait()
+
+
+@dataclass(frozen=True)
+class Script:
+    """Run Python against the package, written for the base: ``declared.MODULES`` mends it."""
+
+    text: str
+
+    def act(self, place: Place) -> int:
+        """Do it."""
+        return ended(place.start_script(self.text, place.stdout, place.stderr))
 
 
 # ---- what is laid into a step's folder

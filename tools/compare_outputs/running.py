@@ -12,7 +12,8 @@ import tarfile
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import IO, NamedTuple
 
@@ -54,16 +55,17 @@ class Side:
         """Texts that name this side's folders, and what they are called for comparing."""
         return {str(self.work): "<work>", str(self.code): "<code>"}
 
-    def environment(self) -> dict[str, str]:
-        """Return the environment of its commands: nothing of the user's own settings."""
-        kept = {key: one for key, one in os.environ.items() if not key.startswith("W2M_")}
-        home = self.work / "home"
+    def environment(self, folder: Path) -> dict[str, str]:
+        """Return the environment of a step's commands: nothing of the user's own settings."""
+        mine = ("W2M_GPU_ADAPTER",)
+        kept = {k: one for k, one in os.environ.items() if k[:4] != "W2M_" or k in mine}
+        home = self.work / "home" / folder.name
         return kept | {
             "PYTHONPATH": str(self.code / "src"),
             "PYTHONHASHSEED": "0",
             "PYTHONDONTWRITEBYTECODE": "1",
-            "W2M_FURNITURE": str(home / "no-furniture"),
-            "W2M_FORGE_HOME": str(home / "SceneForge"),
+            "W2M_FURNITURE": str(folder / "no-furniture"),
+            "W2M_FORGE_HOME": str(folder / "SceneForge"),
             "W2M_CACHE_DIR": str(self.work / "cache"),
             "W2M_RCON_PASSWORD": "secret",
             "HOME": str(home),
@@ -83,10 +85,23 @@ class Side:
         """Start a command, given in the words of the base."""
         entry = declared.ENTRY if self.is_base else declared.TREE_ENTRY
         words = words if self.is_base else in_new_words(words)
+        return self._started(["-m", entry, *words], stdout, stderr, cwd)
+
+    def start_script(
+        self, text: str, stdout: IO[bytes], stderr: IO[bytes], cwd: Path
+    ) -> subprocess.Popen[bytes]:
+        """Start Python with a text that was written for the base."""
+        for old, new in declared.MODULES.items() if not self.is_base else ():
+            text = text.replace(old, new)
+        return self._started(["-c", text], stdout, stderr, cwd)
+
+    def _started(
+        self, words: list[str], stdout: IO[bytes], stderr: IO[bytes], cwd: Path
+    ) -> subprocess.Popen[bytes]:
         return subprocess.Popen(
-            [sys.executable, "-m", entry, *words],
+            [sys.executable, *words],
             cwd=cwd,
-            env=self.environment(),
+            env=self.environment(cwd),
             stdin=subprocess.DEVNULL,
             stdout=stdout,
             stderr=stderr,
@@ -203,6 +218,8 @@ def run_steps(
 
     with ThreadPoolExecutor(jobs) as pool:
         for step in _in_order(steps) if side.is_base else wanted:
+            if step.is_given and not side.is_base:
+                continue
             futures[step.name] = pool.submit(work, step)
         return {name: future.result() for name, future in futures.items()}
 
@@ -252,14 +269,12 @@ def _run(side: Side, step: Step) -> Done:
             (logs / f"{number:02d}.stdout").open("wb") as stdout,
             (logs / f"{number:02d}.stderr").open("wb") as stderr,
         ):
-            place = Place(folder, lambda *a: side.start(*a, folder), stdout, stderr)
+            start, start_script = partial(side.start, cwd=folder), partial(
+                side.start_script, cwd=folder
+            )
+            place = Place(folder, start, start_script, stdout, stderr)
             if isinstance(command, str):
                 codes.append(place.command(spelled_out(shlex.split(command), folder)))
             else:
                 codes.append(command.act(place))
     return Done(tuple(codes), time.monotonic() - began)
-
-
-def side_of_base(side: Side) -> Side:
-    """Return the side that gives: the base itself."""
-    return replace(side, given_by=side.work)

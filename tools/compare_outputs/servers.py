@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import json
 import re
+import shlex
 import socket
 import struct
 import threading
@@ -18,6 +19,7 @@ from typing import Any
 from compare_outputs.acting import Place
 
 PASSWORD = "secret"  # Of the console; Side.environment gives it to the command.
+ECHO = "the last line again"
 _POINT = r"(-?\d+) (-?\d+) (-?\d+)"
 
 
@@ -33,7 +35,7 @@ class Console:
     def act(self, place: Place) -> int:
         """Do it."""
         with _GameConsole() as console:
-            code = place.command(self.words.replace("{port}", str(console.port)).split())
+            code = place.command(shlex.split(self.words.replace("{port}", str(console.port))))
         (place.folder / "console.txt").write_text("\n".join(console.told) + "\n")
         return code
 
@@ -115,10 +117,10 @@ def _parts(state: str) -> tuple[str, set[str]]:
 
 @dataclass(frozen=True)
 class Model:
-    """Run commands that ask a model; ``{url}`` in their words is its address.
+    """Run a command that asks a model; ``{url}`` in its words is the model's address.
 
-    replies: what it says, in turn and from the first again. What it was asked is written to
-    ``asked.jsonl``, pictures as their sums.
+    replies: what it says, in turn and from the first again; ``ECHO`` is the last line of what it
+    was asked. What it was asked is added to ``asked.jsonl``, pictures as their sums.
     """
 
     words: str
@@ -128,7 +130,7 @@ class Model:
         """Do it."""
         with _model(self.replies) as (port, asked):
             words = self.words.replace("{url}", f"http://127.0.0.1:{port}/v1")
-            code = place.command(words.split("|") if "|" in words else words.split())
+            code = place.command(shlex.split(words))
         lines = [json.dumps(one, sort_keys=True) + "\n" for one in asked]
         with (place.folder / "asked.jsonl").open("a", encoding="utf-8") as file:
             file.writelines(lines)
@@ -149,6 +151,7 @@ def _model(replies: tuple[str, ...]) -> Iterator[tuple[int, list[Any]]]:
             told = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
             asked.append(_without_pictures(told))
             text = replies[(len(asked) - 1) % len(replies)]
+            text = _last_line(told) if text == ECHO else text
             message = {"role": "assistant", "content": text}
             self.say(
                 {
@@ -181,6 +184,13 @@ def _model(replies: tuple[str, ...]) -> Iterator[tuple[int, list[Any]]]:
         server.shutdown()
         server.server_close()
         thread.join(5)
+
+
+def _last_line(told: dict[str, Any]) -> str:
+    content = told["messages"][-1]["content"]
+    if isinstance(content, list):
+        content = "\n".join(part.get("text", "") for part in content)
+    return content.strip().splitlines()[-1]
 
 
 def _without_pictures(value: Any) -> Any:

@@ -27,15 +27,15 @@ PACKAGE = "world2minecraft"
 # What the program cannot do without, one of a kind.
 NEEDED = (
     f"{PACKAGE}/cli/verbs.py",
-    f"{PACKAGE}/forge/static/index.html",
-    f"{PACKAGE}/forge/static/index.js",
+    f"{PACKAGE}/sceneforge/static/index.html",
+    f"{PACKAGE}/sceneforge/static/index.js",
     f"{PACKAGE}/weights/completion.onnx",
     f"{PACKAGE}/weights/completion.md",
     f"{PACKAGE}/minecraft/data/blocks.json.gz",
     f"{PACKAGE}/minecraft/data/NOTICE-minecraft-data.txt",
-    f"{PACKAGE}/forge/NOTICE-three.txt",
+    f"{PACKAGE}/sceneforge/NOTICE-three.txt",
 )
-UNWANTED = ("node_modules/", "/forge/web/", "tests/", "benchmarks/", ".pyc", ".jar")
+UNWANTED = ("node_modules/", "/sceneforge/web/", "tests/", "benchmarks/", ".pyc", ".jar")
 IN_SDIST = ("LICENSE", "NOTICE", "CITATION.cff", "Makefile", "constraints.txt", "tests/conftest.py")
 
 

@@ -10,36 +10,217 @@ before anything is allocated.
 """
 
 import struct
+import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from world2minecraft.core.errors import DamagedFileError, LimitError
-from world2minecraft.minecraft.compression import MAX_BYTES, pack_gzip, unpack
-from world2minecraft.minecraft.nbt_tags import (
-    BYTE,
-    BYTES,
-    COMPOUND,
-    DOUBLE,
-    END,
-    FLOAT,
-    INT,
-    INTS,
-    LIST,
-    LONG,
-    LONGS,
-    SHORT,
-    STRING,
-    Byte,
-    Float,
-    Long,
-    Short,
-    array_layouts,
-    number_layouts,
+from world2minecraft.core.errors import DamagedFileError, LimitError, UsageError
+
+# The kinds of value in NBT: tags, the classes of the small numbers, how each is packed.
+
+(END, BYTE, SHORT, INT, LONG, FLOAT, DOUBLE, BYTES, STRING, LIST, COMPOUND, INTS, LONGS) = range(13)
+
+
+class Byte(int):
+    """A number of one byte."""
+
+
+class Short(int):
+    """A number of two bytes."""
+
+
+class Long(int):
+    """A number of eight bytes."""
+
+
+class Float(float):
+    """A number in single precision."""
+
+
+def number_layouts(order: str) -> dict[int, tuple[struct.Struct, Any]]:
+    """Return by tag how a number is packed, and what it becomes; ``order`` is ``>`` or ``<``."""
+    kinds = {BYTE: ("b", Byte), SHORT: ("h", Short), INT: ("i", int), LONG: ("q", Long)}
+    kinds |= {FLOAT: ("f", Float), DOUBLE: ("d", float)}
+    return {tag: (struct.Struct(order + code), kind) for tag, (code, kind) in kinds.items()}
+
+
+def array_layouts(order: str) -> dict[int, np.dtype]:
+    """Return by tag how the numbers of an array lie; ``order`` is ``>`` or ``<``."""
+    return {
+        tag: np.dtype(order + code) for tag, code in ((BYTES, "i1"), (INTS, "i4"), (LONGS, "i8"))
+    }
+
+
+# NBT written: a tree becomes bytes. Bedrock's dialect overrides what differs there.
+
+_ARRAY_TAGS = {np.dtype(np.int8): BYTES, np.dtype(np.int32): INTS, np.dtype(np.int64): LONGS}
+_TAG_OF_TYPE: tuple[tuple[type, int], ...] = (
+    (str, STRING),
+    (bool, BYTE),
+    (Byte, BYTE),
+    (Short, SHORT),
+    (Long, LONG),
+    (int, INT),
+    (Float, FLOAT),
+    (float, DOUBLE),
+    (Mapping, COMPOUND),
+    (list, LIST),
+    (tuple, LIST),
 )
-from world2minecraft.minecraft.nbt_writing import write_nbt
+
+
+def write_nbt(root: Mapping[str, Any], name: str = "") -> bytes:
+    """Return the bytes of an NBT tree, keys in the order of the mapping, not compressed.
+
+    Raises:
+        UsageError: a value has no tag, a number does not fit its tag, or a list mixes kinds.
+    """
+    return NbtWriter().root(root, name)
+
+
+class NbtWriter:
+    """The bytes of a tree as they grow; ``write_nbt`` is its use."""
+
+    numbers, arrays = number_layouts(">"), array_layouts(">")
+    uint16, int32 = struct.Struct(">H"), struct.Struct(">i")
+
+    def __init__(self) -> None:
+        self.out = bytearray()
+
+    def root(self, root: Mapping[str, Any], name: str = "") -> bytes:
+        """Return the bytes of a whole tree; see ``write_nbt``."""
+        self.out.append(COMPOUND)
+        self.put_string(name)
+        self.put(COMPOUND, root)
+        return bytes(self.out)
+
+    def encoded(self, text: str) -> bytes:
+        """Return Java's modified UTF-8: a zero as two bytes, other planes as two surrogates."""
+        if text.isascii() and "\0" not in text:
+            return text.encode("ascii")
+        units = np.frombuffer(text.encode("utf-16-le"), "<u2")
+        packed = "".join(map(chr, units.tolist())).encode("utf-8", "surrogatepass")
+        return packed.replace(b"\0", b"\xc0\x80")
+
+    def tag_of_array(self, value: np.ndarray) -> int:
+        """Return the tag of an array."""
+        if value.ndim == 1 and value.dtype in _ARRAY_TAGS:
+            return _ARRAY_TAGS[value.dtype]
+        raise UsageError(f"an array of {value.dtype} with shape {value.shape} has no NBT tag")
+
+    def tag_of(self, value: Any) -> int:
+        """Return the tag of any value."""
+        if isinstance(value, np.ndarray):
+            return self.tag_of_array(value)
+        for kind, tag in _TAG_OF_TYPE:
+            if isinstance(value, kind):
+                return tag
+        raise UsageError(f"a value of type {type(value).__name__} has no NBT tag")
+
+    def put(self, tag: int, value: Any) -> None:
+        """Add a value of the kind ``tag``."""
+        if tag in self.numbers:
+            try:
+                self.out += self.numbers[tag][0].pack(value)
+            except (struct.error, OverflowError) as error:
+                raise UsageError(f"the number {value} does not fit its NBT tag") from error
+        elif tag == STRING:
+            self.put_string(value)
+        elif tag == COMPOUND:
+            self.put_compound(value)
+        elif tag == LIST:
+            self.put_list(value)
+        else:
+            self.put_array(self.arrays[tag], value)
+
+    def put_compound(self, values: Mapping[str, Any]) -> None:
+        """Add values with their names."""
+        for name, held in values.items():
+            kind = self.tag_of(held)
+            self.out.append(kind)
+            self.put_string(name)
+            self.put(kind, held)
+        self.out.append(END)
+
+    def put_array(self, dtype: np.dtype, values: np.ndarray) -> None:
+        """Add an array, its count before it."""
+        self.out += self.int32.pack(len(values))
+        self.out += values.astype(dtype).tobytes()
+
+    def put_list(self, values: Any) -> None:
+        """Add a list of one kind."""
+        kinds = {self.tag_of(value) for value in values}
+        if len(kinds) > 1:
+            raise UsageError("a list in NBT must hold values of one kind")
+        kind = kinds.pop() if kinds else END
+        self.out.append(kind)
+        self.out += self.int32.pack(len(values))
+        for value in values:
+            self.put(kind, value)
+
+    def put_string(self, text: str) -> None:
+        """Add a text."""
+        try:
+            raw = self.encoded(text)
+        except UnicodeError as error:
+            raise UsageError(f"text {text[:40]!r} cannot be written as NBT") from error
+        if len(raw) > 0xFFFF:
+            raise UsageError(f"a text of {len(raw):,} bytes is too long for NBT; at most 65,535")
+        self.out += self.uint16.pack(len(raw))
+        self.out += raw
+
+
+# Gzip and zlib, undone within bounds; gzip written without what differs from run to run.
+
+MAX_BYTES = 136 << 20  # Unpacked: 67 million blocks in two bytes each.
+_AT_ONCE = 1 << 20
+
+
+def unpack(data: bytes, path: str | Path, limit: int = MAX_BYTES) -> bytes:
+    """Undo gzip or zlib where the bytes begin so; other bytes come back as they are.
+
+    Raises:
+        DamagedFileError: the stream is broken. LimitError: it holds more than ``limit`` bytes.
+    """
+    if data[:2] == b"\x1f\x8b":
+        kind, window = "gzip", 31
+    elif len(data) >= 2 and data[0] == 0x78 and (data[0] << 8 | data[1]) % 31 == 0:
+        kind, window = "zlib", 15
+    else:
+        return data
+    stream, parts, rest = zlib.decompressobj(window), [], b""
+    size = at = 0
+    try:
+        while not stream.eof and size <= limit:
+            rest, at = (rest, at) if rest else (data[at : at + _AT_ONCE], at + _AT_ONCE)
+            part = stream.decompress(rest, _AT_ONCE)
+            rest = stream.unconsumed_tail
+            if not part and not rest and at >= len(data):
+                break
+            size += len(part)
+            parts = [*parts, part] if size <= _AT_ONCE else []
+        if size > limit:
+            raise LimitError(path, f"unpacks to more than {limit:,} bytes; at most that is read")
+        if not stream.eof or stream.unused_data or at < len(data):
+            where = "has bytes after its end" if stream.eof else "ends too early"
+            raise DamagedFileError(path, f"its {kind} stream {where}")
+        # Much of it goes into one buffer of its size: one that grows takes twice its memory.
+        return b"".join(parts) if parts or not size else zlib.decompress(data, window, size)
+    except zlib.error as error:
+        raise DamagedFileError(path, f"is no whole {kind} stream ({error})") from error
+
+
+def pack_gzip(data: bytes, level: int = 6) -> bytes:
+    """Return ``data`` as gzip without a time or a name, so that the bytes depend on it alone."""
+    packer = zlib.compressobj(level, zlib.DEFLATED, -15)
+    body = packer.compress(data) + packer.flush()
+    head = b"\x1f\x8b\x08\0\0\0\0\0\0\xff"
+    return head + body + struct.pack("<II", zlib.crc32(data), len(data) & 0xFFFFFFFF)
+
 
 __all__ = [
     "BYTE",

@@ -14,7 +14,7 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.rendering.block_elements import LookSource
 from world2minecraft.rendering.block_models import OwnLooks
-from world2minecraft.rendering.empties_edit import edited_boxes
+from world2minecraft.rendering.empty_space_boxes import edited_boxes
 from world2minecraft.rendering.freestanding_boxes import GuestLists, list_guests, overhanging
 from world2minecraft.rendering.light import edit_light
 from world2minecraft.rendering.scene import BlockScene, bake_model, bake_scene, with_looks

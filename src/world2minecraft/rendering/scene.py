@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.rendering.block_elements import BlockModel, LookSource
 from world2minecraft.rendering.block_models import OwnLooks
-from world2minecraft.rendering.empties import empty_boxes
+from world2minecraft.rendering.empty_space_boxes import empty_boxes
 from world2minecraft.rendering.freestanding_boxes import (
     GuestLists,
     StandingThings,
@@ -24,7 +24,7 @@ from world2minecraft.rendering.freestanding_boxes import (
 )
 from world2minecraft.rendering.light import LightField, light_field
 from world2minecraft.rendering.light.exposure import standing_cells
-from world2minecraft.rendering.light.flood import MOST_REACH
+from world2minecraft.rendering.light.propagation import MOST_REACH
 from world2minecraft.rendering.scene_baking import (
     AIR,
     Baker,

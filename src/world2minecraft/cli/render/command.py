@@ -144,7 +144,7 @@ def draw(
 def _draw_plan(
     plan: Plan, writer: Writer, look: Look, looks: Looks, options: "DrawOptions", progress: Progress
 ) -> None:
-    from world2minecraft.rendering.batch.ahead import SPARE, done_behind
+    from world2minecraft.rendering.batch.streaming import SPARE, done_behind
 
     total = len(plan.shots) * (look.photo_samples if look.photo else 1)
     done = 0

@@ -13,9 +13,17 @@ from typing import Any
 import numpy as np
 
 from world2minecraft.core.errors import UsageError
-from world2minecraft.minecraft.nbt import DEFAULT_LIMITS, NbtLimits, NbtReader
-from world2minecraft.minecraft.nbt_tags import INT, INTS, LIST, array_layouts, number_layouts
-from world2minecraft.minecraft.nbt_writing import NbtWriter
+from world2minecraft.minecraft.nbt import (
+    DEFAULT_LIMITS,
+    INT,
+    INTS,
+    LIST,
+    NbtLimits,
+    NbtReader,
+    NbtWriter,
+    array_layouts,
+    number_layouts,
+)
 
 
 def write_little(root: Mapping[str, Any]) -> bytes:

@@ -126,7 +126,7 @@ class PoolEngine:
 def _started() -> _Hand:
     """Start a worker: a new interpreter on every system, so that all behave alike."""
     # Late: a worker reads this file too, and begins faster without the renderer.
-    from world2minecraft.rendering.batch.hands import deaf_to_interrupts  # noqa: PLC0415
+    from world2minecraft.rendering.batch.workers import deaf_to_interrupts  # noqa: PLC0415
 
     context = get_context("spawn")
     ours, theirs = context.Pipe()

@@ -9,7 +9,7 @@ from multiprocessing.connection import Connection
 from threading import Thread
 from typing import Any
 
-from world2minecraft.rendering.batch.worker import sendable
+from world2minecraft.rendering.batch.workers import sendable
 
 
 @dataclass(frozen=True, eq=False)

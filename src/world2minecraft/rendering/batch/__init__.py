@@ -7,7 +7,7 @@ pictures with many processes. ``render_stream`` draws while what was drawn is wr
 from world2minecraft.rendering.batch.arrays import BATCH_OUTPUTS, BatchArrays, batch_arrays
 from world2minecraft.rendering.batch.drawing import render_batch
 from world2minecraft.rendering.batch.pool import RenderPool
-from world2minecraft.rendering.batch.stream import render_stream
+from world2minecraft.rendering.batch.streaming import render_stream
 
 __all__ = [
     "BATCH_OUTPUTS",

@@ -9,14 +9,15 @@ from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import Camera
 from world2minecraft.rendering.batch.arrays import (
     BatchArrays,
+    ManyPixels,
     Size,
     batch_arrays,
     check_arrays,
     check_batch,
+    draw_poses,
     pixels_of,
     rooms_of,
 )
-from world2minecraft.rendering.batch.kernel import ManyPixels, draw_poses
 from world2minecraft.rendering.free_space import crossed_air
 from world2minecraft.rendering.light import LookLight
 from world2minecraft.rendering.light_parameters import DAY, Paper, lamp_of

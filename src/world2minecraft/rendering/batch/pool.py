@@ -6,14 +6,11 @@ so that memory is bounded however many poses there are. All is taken away again 
 after an error, after Ctrl-C, and when a process dies.
 """
 
-# Not by concurrent.futures: ProcessPoolExecutor sends results through a pipe, pickled, and sets no
-# bound to those that nobody has taken yet; here pictures are copied once, out of a ring of slots.
-
 import pickle
 import weakref
 from collections import deque
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from multiprocessing.connection import wait
 from typing import Any
 
@@ -25,6 +22,7 @@ from world2minecraft.core.types import Camera
 from world2minecraft.rendering.batch.arrays import (
     PICTURE_OUTPUTS,
     BatchArrays,
+    Room,
     check_batch,
     rooms_of,
 )
@@ -35,21 +33,93 @@ from world2minecraft.rendering.batch.drawing import (
     draw_views,
     views_of,
 )
-from world2minecraft.rendering.batch.hands import (
+from world2minecraft.rendering.batch.shared_memory import Block, placed
+from world2minecraft.rendering.batch.workers import (
     PATIENCE_S,
     Hand,
+    Job,
+    Make,
+    Reply,
+    SceneMessage,
+    Task,
     deaf_to_interrupts,
     release,
     started,
 )
-from world2minecraft.rendering.batch.ring import Ring, pictures_of, runs_of
-from world2minecraft.rendering.batch.shared_memory import Block, placed
-from world2minecraft.rendering.batch.worker import Job, Make, Reply, SceneMessage
 from world2minecraft.rendering.light import LookLight
 from world2minecraft.rendering.light_parameters import DAY, Paper, lamp_of
-from world2minecraft.rendering.picture import DEFAULT_OUTPUTS
+from world2minecraft.rendering.picture import DEFAULT_OUTPUTS, Picture
 from world2minecraft.rendering.scene import BlockScene
 from world2minecraft.rendering.scene_tables import SceneTables
+
+# The slots that pictures of a pool come back through, and how poses are cut into tasks.
+
+TASK_PX = 1 << 16  # A task has so many pixels at least: a message takes 0.1 ms.
+MOST_A_TASK = 64  # Pictures.
+
+
+class Ring:
+    """Slots of shared memory, and the tasks that they are for, in the order of their pictures."""
+
+    def __init__(self, slots: int, slot_bytes: int):
+        """Begin with all slots free."""
+        self.free = deque(range(slots))
+        self.taken: dict[int, Task] = {}
+        self.done: dict[int, Reply] = {}
+        self._slot_of: dict[int, int] = {}
+        self._bytes = slot_bytes
+
+    def take(self, first: int, views: Views, rooms: dict[str, Room]) -> Task:
+        """Take a slot for pictures, and return the task to draw them there."""
+        slot = self._slot_of[first] = self.free.popleft()
+        self.taken[first] = Task(first, views, placed(rooms, slot * self._bytes)[0])
+        return self.taken[first]
+
+    def next_reply(self, ordered: bool) -> Reply | None:
+        """Return the reply that is next, where it has come."""
+        if ordered:
+            return self.done.get(next(iter(self.taken), -1))
+        return next(iter(self.done.values()), None)
+
+    def give_back(self, first: int) -> None:
+        """Free the slot of a task."""
+        del self.taken[first], self.done[first]
+        self.free.append(self._slot_of.pop(first))
+
+
+def pictures_of(reply: Reply, ring: Ring, block: Block) -> list[tuple[int, Any]]:
+    """Return what a task made, or copies of its pictures, each with its number."""
+    if reply.made is not None:
+        return list(enumerate(reply.made, reply.first))
+    task = ring.taken[reply.first]
+    arrays = BatchArrays(**{name: block.array(place) for name, place in task.places.items()})
+    numbers = range(len(task.views.poses))
+    return [(reply.first + number, _copied(arrays.picture(number))) for number in numbers]
+
+
+def _copied(picture: Picture) -> Picture:
+    arrays = {one.name: getattr(picture, one.name) for one in fields(picture)}
+    return replace(picture, **{k: v.copy() for k, v in arrays.items() if v is not None})
+
+
+def runs_of(cameras: Sequence[Camera]) -> Iterator[tuple[int, int]]:
+    """Cut poses into tasks: neighbours of one size, more of them where pictures are small."""
+    first = 0
+    while first < len(cameras):
+        size = cameras[first].height_px, cameras[first].width_px
+        most = min(max(TASK_PX // (size[0] * size[1]), 1), MOST_A_TASK)
+        last = first + 1
+        while last < len(cameras) and last - first < most:
+            if (cameras[last].height_px, cameras[last].width_px) != size:
+                break
+            last += 1
+        yield first, last
+        first = last
+
+
+# Not by concurrent.futures: ProcessPoolExecutor sends results through a pipe, pickled, and sets no
+# bound to those that nobody has taken yet; here pictures are copied once, out of a ring of slots.
+
 
 MOST_WORKERS = 256
 WAITING = 2  # Tasks that each worker has, so that it never waits for the next.

@@ -4,7 +4,6 @@
 same words. wgpu comes with the extra ``[gpu]``; nothing here imports it before it is asked for.
 """
 
-from world2minecraft.rendering.gpu.adapters import AdapterInfo, GpuError, list_adapters
 from world2minecraft.rendering.gpu.backend_choice import (
     DEVICES,
     CpuRenderer,
@@ -12,6 +11,7 @@ from world2minecraft.rendering.gpu.backend_choice import (
     choose_device,
     renderer_for,
 )
+from world2minecraft.rendering.gpu.device import AdapterInfo, GpuError, list_adapters
 from world2minecraft.rendering.gpu.renderer import GpuRenderer
 
 __all__ = [

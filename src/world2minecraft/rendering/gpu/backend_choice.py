@@ -13,7 +13,7 @@ import numpy as np
 
 from world2minecraft.core.errors import MissingExtraError, UnknownNameError
 from world2minecraft.core.types import Camera
-from world2minecraft.rendering.gpu.adapters import GpuError, find_adapter, info_of
+from world2minecraft.rendering.gpu.device import GpuError, find_adapter, info_of
 from world2minecraft.rendering.gpu.renderer import GpuRenderer
 from world2minecraft.rendering.light import LookLight
 from world2minecraft.rendering.light_parameters import DAY, Paper

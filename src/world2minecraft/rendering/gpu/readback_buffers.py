@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from world2minecraft.rendering.gpu.adapters import wgpu_module
-from world2minecraft.rendering.gpu.shader import BINDINGS
+from world2minecraft.rendering.gpu.device import BINDINGS, wgpu_module
 from world2minecraft.rendering.gpu.uniforms import (
     PARAMETER_BYTES,
     TONE_BYTES,

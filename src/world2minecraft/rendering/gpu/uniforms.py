@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.rendering.light.background import Background
 from world2minecraft.rendering.light.pixel_light import LitParameters
+from world2minecraft.rendering.light.sky import Background
 from world2minecraft.rendering.light.tone_mapping import ENCODE_STEPS
 from world2minecraft.rendering.ray_caster.shading import Lamp
 from world2minecraft.rendering.scene import BlockScene

@@ -20,9 +20,8 @@ table, ``shade.corner_lights``, in place of the first and third):
 - ``finish(r, g, b, tone)``, three uint8
 """
 
-from world2minecraft.rendering.light.background import Background, background_light
 from world2minecraft.rendering.light.exposure import scene_exposure
-from world2minecraft.rendering.light.field import LightField, light_field
+from world2minecraft.rendering.light.light_field import LightField, light_field
 from world2minecraft.rendering.light.pixel_light import (
     LitParameters,
     direction_shade,
@@ -32,6 +31,7 @@ from world2minecraft.rendering.light.pixel_light import (
 )
 from world2minecraft.rendering.light.relight import edit_light
 from world2minecraft.rendering.light.settings import LookLight
+from world2minecraft.rendering.light.sky import Background, background_light
 from world2minecraft.rendering.light.tone_mapping import Tone, finish
 
 __all__ = [

@@ -9,8 +9,8 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.rules.flood import SHUT, SOLID, steps_of
-from world2minecraft.rendering.light.field import LightField
-from world2minecraft.rendering.light.flood import BRIGHTEST, units
+from world2minecraft.rendering.light.light_field import LightField
+from world2minecraft.rendering.light.propagation import BRIGHTEST, units
 from world2minecraft.rendering.light.settings import LookLight
 
 # The light that surfaces shall have by day, at night under lamps, at night without: a night stays

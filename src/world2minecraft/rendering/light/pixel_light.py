@@ -44,7 +44,7 @@ def lattice_light(light, side, i, j, k, layer_step, p, q):
     """Return ``(sky, block, occluders)`` at a place of a face, bilinear: levels, and 0 to 3.
 
     Args:
-        light: uint16 [3, X + 2, Y + 2, Z + 2], see ``rendering.light.lattice``.
+        light: uint16 [3, X + 2, Y + 2, Z + 2], see ``rendering.light.light_field``.
         side: 0 to 5, the face's normal: -x +x -y +y -z +z.
         i: the cell; ``j`` and ``k`` alike. It lies in the volume.
         j: see ``i``.

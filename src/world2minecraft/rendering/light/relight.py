@@ -8,10 +8,19 @@ import numpy as np
 
 from world2minecraft.core.jit import njit
 from world2minecraft.minecraft.rules.flood import spread, steps_of
-from world2minecraft.rendering.light.field import MOST_STATES, LightField
-from world2minecraft.rendering.light.flood import BRIGHTEST, enters, falls_into, units
-from world2minecraft.rendering.light.lattice import fill_lattice, quarters
-from world2minecraft.rendering.light.passage import light_rows
+from world2minecraft.rendering.light.light_field import (
+    MOST_STATES,
+    LightField,
+    fill_lattice,
+    quarters,
+)
+from world2minecraft.rendering.light.propagation import (
+    BRIGHTEST,
+    enters,
+    falls_into,
+    light_rows,
+    units,
+)
 
 
 def edit_light(

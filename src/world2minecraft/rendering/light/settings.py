@@ -5,9 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from world2minecraft.rendering.light.background import Background
-from world2minecraft.rendering.light.hours import Sky, sky_at
 from world2minecraft.rendering.light.pixel_light import SCREEN_MOST, LitParameters
+from world2minecraft.rendering.light.sky import Background, Sky, sky_at
 from world2minecraft.rendering.light.tone_mapping import (
     SCREEN_POWER,
     Tone,

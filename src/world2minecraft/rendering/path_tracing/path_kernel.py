@@ -8,26 +8,31 @@ densities. Glass is passed, tinting what lies behind, or mirrors where it is see
 import numpy as np
 
 from world2minecraft.core.jit import inlined, lean
-from world2minecraft.rendering.light.background import background_light
+from world2minecraft.rendering.light.sky import background_light
 from world2minecraft.rendering.path_tracing.film import add_sample, keep_middle, luminance
 from world2minecraft.rendering.path_tracing.light_sampling import (
     aim_at_lamp,
     density_of_aim,
     lamp_row,
 )
-from world2minecraft.rendering.path_tracing.path import GLOSS, SPREAD, UNDECIDED, put
 from world2minecraft.rendering.path_tracing.rng import mixed, pair
-from world2minecraft.rendering.path_tracing.scatter import (
+from world2minecraft.rendering.path_tracing.scattering import (
+    GLOSS,
     SHARP_WIDTH,
+    SPREAD,
+    UNDECIDED,
     follow_gloss,
     follow_matt,
+    glass_texel,
     gloss_of,
+    is_glass,
+    meet_surface,
     pane_mirror,
+    put,
     set_lobes,
     width_of,
 )
 from world2minecraft.rendering.path_tracing.sky_light import lighting_sky, towards_sun
-from world2minecraft.rendering.path_tracing.surface import glass_texel, is_glass, meet_surface
 from world2minecraft.rendering.ray_caster.ray import SOLID, begin, first_hit, ray_of_pixel, steep
 from world2minecraft.rendering.scene_tables import NO_FACE
 

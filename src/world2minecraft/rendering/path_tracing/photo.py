@@ -21,8 +21,8 @@ from world2minecraft.rendering.path_tracing.develop import (
 )
 from world2minecraft.rendering.path_tracing.emitters import Lamps, lamps_of
 from world2minecraft.rendering.path_tracing.film import Film, new_film
-from world2minecraft.rendering.path_tracing.path import new_path
 from world2minecraft.rendering.path_tracing.path_kernel import trace_rows
+from world2minecraft.rendering.path_tracing.scattering import new_path
 from world2minecraft.rendering.path_tracing.sky_light import sky_light
 from world2minecraft.rendering.picture import MAX_PIXELS, Picture, render_volume
 from world2minecraft.rendering.scene import BlockScene

@@ -1,6 +1,6 @@
 """The sun and the sky as sources of light, from the hour that a ``LookLight`` names.
 
-The sky that is seen is the one of ``rendering.light.background``; the sky that lights is the same,
+The sky that is seen is the one of ``rendering.light.sky``; the sky that lights is the same,
 each channel scaled so that open ground in the shade gets what the hour says.
 """
 
@@ -9,14 +9,14 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.jit import inlined
-from world2minecraft.rendering.light.background import (
+from world2minecraft.rendering.light.settings import LookLight
+from world2minecraft.rendering.light.sky import (
     DISC,
     DISC_COSINE,
     HALO,
     Background,
     background_light,
 )
-from world2minecraft.rendering.light.settings import LookLight
 
 SUN = 3.0  # The sun beside the sky's shade: on a clear day three to five times as much.
 SUN_COSINE = 0.99985  # Of its disc's radius, 1 degree: twice the true one, for soft shadows.

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 
 from world2minecraft.core.jit import inlined, inner, inner_call, lean
-from world2minecraft.rendering.light.background import Background, background_light
 from world2minecraft.rendering.light.pixel_light import (
     LitParameters,
     direction_shade,
@@ -17,6 +16,7 @@ from world2minecraft.rendering.light.pixel_light import (
     lit_colour,
     to_linear,
 )
+from world2minecraft.rendering.light.sky import Background, background_light
 from world2minecraft.rendering.light.tone_mapping import Tone, finish
 from world2minecraft.rendering.ray_caster.ray import begin, carried, first_hit, is_clear, steep
 from world2minecraft.rendering.scene_tables import (

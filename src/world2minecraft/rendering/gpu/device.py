@@ -1,20 +1,49 @@
-"""Which graphics card draws: found by wgpu, which is imported only when someone asks.
-
-A software adapter draws on the CPU, slower than our own kernel; it is taken only by name, for
-tests: ``W2M_GPU_ADAPTER=software``, or any part of an adapter's name.
-"""
+"""A device with the compiled shader: made once for each adapter of a process."""
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
+from importlib.resources import files
 from importlib.util import find_spec
 from typing import Any
 
+import numpy as np
+
 from world2minecraft.core.errors import MissingExtraError, UsageError
+from world2minecraft.rendering.gpu.scene_buffers import LAYOUT, bytes_of
+from world2minecraft.rendering.gpu.uniforms import AT_CORNERS, AT_ENCODE, struct_text
+from world2minecraft.rendering.scene import BlockScene
+
+# The shader's text: the parts of this folder, and the constants that Python knows.
+
+PARTS = ("rays", "elements", "shade", "picture")
+# In the order of their bindings.
+BINDINGS = ("parameters", "cells", "light", "tables", "texels", "labels", "tone", "views", "out")
+_TYPES = {"cells": "i32", "views": "View"}
+
+
+def shader_text() -> str:
+    """Return the whole shader, WGSL."""
+    folder = files("world2minecraft.rendering.gpu")
+    places = LAYOUT | {"AT_ENCODE": AT_ENCODE, "AT_CORNERS": AT_CORNERS}
+    constants = "".join(f"const {name}: u32 = {value}u;\n" for name, value in places.items())
+    bindings = "@group(0) @binding(0) var<uniform> P: Params;\n"
+    for place, name in enumerate(BINDINGS[1:], 1):
+        access = "read_write" if name == "out" else "read"
+        kind = f"array<{_TYPES.get(name, 'u32')}>"
+        bindings += f"@group(0) @binding({place}) var<storage, {access}> {name}: {kind};\n"
+    parts = [(folder / f"{name}.wgsl").read_text(encoding="utf-8") for name in PARTS]
+    return "\n".join([constants, struct_text(), bindings, *parts])
+
+
+# Which graphics card draws: found by wgpu, which is imported only when someone asks.
+#
+# A software adapter draws on the CPU, slower than our own kernel; it is taken only by name, for
+# tests: ``W2M_GPU_ADAPTER=software``, or any part of an adapter's name.
 
 VARIABLE = "W2M_GPU_ADAPTER"
 SOFTWARE = "software"
@@ -134,3 +163,77 @@ def _rank(adapter: Any) -> tuple[bool, int, int]:
     kind = adapter.info.get("adapter_type", "Unknown")
     place = _ORDER.index(kind) if kind in _ORDER else len(_ORDER)
     return info_of(adapter).is_software, place, BACKENDS.index(_backend(adapter))
+
+
+@dataclass(frozen=True, eq=False)
+class Engine:
+    """A wgpu device and its pipeline."""
+
+    name: str
+    device: Any
+    pipeline: Any
+
+    def check_fits(self, scene: BlockScene) -> None:
+        """Say what does not fit.
+
+        Raises:
+            GpuError: a buffer of the scene is larger than the device takes.
+        """
+        most = min(
+            self.device.limits["max-storage-buffer-binding-size"],
+            self.device.limits["max-buffer-size"],
+        )
+        for name, size in bytes_of(scene).items():
+            if size > most:
+                shape = " x ".join(map(str, scene.tables.space.shape))
+                raise GpuError(
+                    f"a world of {shape} blocks is too large for {self.name}: its {name} needs "
+                    f"{size / 1e6:,.0f} MB in one piece, and {most / 1e6:,.0f} MB is the most; "
+                    "use --device cpu, or a smaller --box"
+                )
+
+    def upload(self, arrays: Mapping[str, np.ndarray]) -> dict[str, Any]:
+        """Copy arrays to the GPU, each into a buffer of its own.
+
+        Raises:
+            GpuError: its memory is full.
+        """
+        usage = wgpu_module().BufferUsage.STORAGE
+        try:
+            return {
+                name: self.device.create_buffer_with_data(
+                    data=np.ascontiguousarray(array), usage=usage
+                )
+                for name, array in arrays.items()
+            }
+        except failures() as error:
+            raise GpuError(
+                f"{self.name} could not take the world: {error}; use --device cpu"
+            ) from error
+
+
+def engine_for(adapter: Any) -> Engine:
+    """Return the engine of a wgpu adapter; the same one as long as its device works."""
+    key = id(adapter)
+    if key not in _ENGINES:
+        device = open_device(adapter)
+        module = device.create_shader_module(code=shader_text())
+        pipeline = device.create_compute_pipeline(
+            layout="auto", compute={"module": module, "entry_point": "main"}
+        )
+        _ENGINES[key] = Engine(info_of(adapter).name, device, pipeline)
+    return _ENGINES[key]
+
+
+def forget(engine: Engine) -> None:
+    """Forget an engine whose device is lost, so that the next one is new."""
+    for key in [key for key, value in _ENGINES.items() if value is engine]:
+        del _ENGINES[key]
+
+
+def failures() -> tuple[type[Exception], ...]:
+    """Return what wgpu raises where a device is lost or its memory is full."""
+    return RuntimeError, wgpu_module().GPUError
+
+
+_ENGINES: dict[int, Engine] = {}

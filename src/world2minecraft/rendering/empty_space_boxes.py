@@ -3,7 +3,126 @@
 import numpy as np
 
 from world2minecraft.core.jit import njit
-from world2minecraft.rendering.empties import MOST_CELLS, empty_boxes
+from world2minecraft.rendering.grid_traversal import fill_distances
+
+# Empty boxes: the air of a grid as large boxes that a ray crosses in one step each.
+#
+# Every cell of air belongs to a box of air that holds it, as large as could be found; boxes may
+# overlap. A ray crosses a furnished room in two or three steps, however fine the blocks are, and a
+# bundle of rays that leaves a box by one of its faces can have met nothing inside it.
+
+MOST_CELLS = 96  # A side; a box of the open sky need not be larger.
+_AIR = 0  # What ``solid`` holds for air; other values are taken over as they are.
+
+
+def empty_boxes(kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cover the air of a grid by boxes.
+
+    Args:
+        kinds: int8 [X, Y, Z], ``FULL``, ``BOXES`` or 0 for air.
+
+    Returns:
+        ``space`` int32 [X, Y, Z] and ``bounds`` int16 [V, 6], as ``SceneTables`` says; there is
+        always one box at least, which may be of no cell's.
+    """
+    kinds = np.ascontiguousarray(kinds)
+    reach = (kinds == _AIR).astype(np.uint8)
+    fill_distances(reach)
+    order = np.argsort(255 - reach.ravel(), kind="stable").astype(np.int32)
+    order = order[: int(np.count_nonzero(reach))]  # Cells of air, the roomiest first.
+    return _cover(kinds, reach, order, _counts(kinds))
+
+
+@njit
+def _counts(kinds):
+    """Return how much is no air below each corner: int32 [X + 1, Y + 1, Z + 1]."""
+    nx, ny, nz = kinds.shape
+    total = np.zeros((nx + 1, ny + 1, nz + 1), np.int32)
+    for i in range(nx):
+        for j in range(ny):
+            row = 0
+            for k in range(nz):
+                row += 1 if kinds[i, j, k] != _AIR else 0
+                below = total[i, j + 1, k + 1] + total[i + 1, j, k + 1] - total[i, j, k + 1]
+                total[i + 1, j + 1, k + 1] = below + row
+    return total
+
+
+@njit
+def _filled(total, x0, y0, z0, x1, y1, z1):
+    return (
+        total[x1, y1, z1] - total[x0, y1, z1] - total[x1, y0, z1] - total[x1, y1, z0]
+        + total[x0, y0, z1] + total[x0, y1, z0] + total[x1, y0, z0] - total[x0, y0, z0]
+    )  # fmt: skip
+
+
+@njit
+def _cover(kinds, reach, order, total):
+    nx, ny, nz = kinds.shape
+    space = np.empty((nx, ny, nz), np.int32)
+    for i in range(nx):
+        for j in range(ny):
+            for k in range(nz):
+                space[i, j, k] = kinds[i, j, k] if kinds[i, j, k] != _AIR else -9
+    bounds = np.zeros((256, 6), np.int16)
+    volumes = np.zeros(256, np.int64)
+    count = 0
+    box = np.zeros(6, np.int64)
+    for flat in order:
+        i, j, k = flat // (ny * nz), flat // nz % ny, flat % nz
+        if space[i, j, k] >= 0:
+            continue
+        _around(box, i, j, k, int(reach[i, j, k]) - 1, kinds.shape)
+        _grow(box, total, kinds.shape)
+        if count == len(bounds):
+            bounds = np.concatenate((bounds, np.zeros_like(bounds)))
+            volumes = np.concatenate((volumes, np.zeros_like(volumes)))
+        bounds[count] = box
+        volumes[count] = (box[3] - box[0]) * (box[4] - box[1]) * (box[5] - box[2])
+        _claim(space, volumes, box, count)
+        count += 1
+    return space, bounds[: max(count, 1)].copy()
+
+
+@njit
+def _around(box, i, j, k, reach, shape):
+    """Set a box to the cells within ``reach`` of a cell, which are air."""
+    reach = min(reach, MOST_CELLS // 2)
+    for axis in range(3):
+        at = i if axis == 0 else (j if axis == 1 else k)
+        box[axis] = max(at - reach, 0)
+        box[axis + 3] = min(at + reach + 1, shape[axis])
+
+
+@njit
+def _grow(box, total, shape):
+    """Move a box's faces outward, in turn, as long as it stays air."""
+    grew = True
+    while grew:
+        grew = False
+        for face in range(6):
+            axis = face % 3
+            step = 1 if face > 2 else -1
+            new = box[face] + step
+            if new < 0 or new > shape[axis] or box[axis + 3] - box[axis] >= MOST_CELLS:
+                continue
+            old = box[face]
+            box[face] = new
+            if _filled(total, box[0], box[1], box[2], box[3], box[4], box[5]):
+                box[face] = old
+            else:
+                grew = True
+
+
+@njit
+def _claim(space, volumes, box, row):
+    """Give a box the cells within it that have none, or a smaller one."""
+    for i in range(box[0], box[3]):
+        for j in range(box[1], box[4]):
+            for k in range(box[2], box[5]):
+                if space[i, j, k] < 0 or volumes[space[i, j, k]] < volumes[row]:
+                    space[i, j, k] = row
+
 
 _ORPHAN = -9  # Air that has no box for a moment.
 _MOST_GROWTH = 4  # A table of boxes that grew so many times is made anew.

@@ -6,24 +6,156 @@ the faces behind it.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.displays import display_cubes
 from world2minecraft.rendering.atlas import Atlas, to_srgb
 from world2minecraft.rendering.block_elements import BlockModel, LookSource
 from world2minecraft.rendering.block_models import OwnLooks
+from world2minecraft.rendering.cutaway import (
+    without_ceiling,
+    without_near_walls,
+    without_partitions,
+)
 from world2minecraft.rendering.freestanding_boxes import standing_things
-from world2minecraft.rendering.light.field import light_field
-from world2minecraft.rendering.light.flood import MOST_REACH
-from world2minecraft.rendering.mesh.cuts import cuts_of
-from world2minecraft.rendering.mesh.lit import OPEN, light_at
-from world2minecraft.rendering.mesh.merge import merged
+from world2minecraft.rendering.light.light_field import BLOCK_SHIFT, COUNT_SHIFT, light_field
+from world2minecraft.rendering.light.propagation import MOST_REACH
 from world2minecraft.rendering.mesh.quads import INSIDE, Quads, covered, joined, quads_of
 from world2minecraft.rendering.scene import bake_model
 from world2minecraft.rendering.scene_baking import Baker, joins, kind_of, models_of
 from world2minecraft.rendering.scene_tables import ABSOLUTE, FULL
+
+# Faces of full cubes that lie side by side and look alike become one quad.
+
+# For each side, the two axes along it.
+ALONG = np.array([[1, 2], [1, 2], [0, 2], [0, 2], [0, 1], [0, 1]])
+
+
+class Rectangles(NamedTuple):
+    """R rectangles of unit faces: the lowest cell of each, and how far it goes on."""
+
+    first: np.ndarray  # int64 [R], the row of the face in its lowest cell
+    length: np.ndarray  # int64 [R, 3], cells along x, y and z
+
+
+def merged(cells: np.ndarray, side: np.ndarray, look: np.ndarray) -> Rectangles:
+    """Join unit faces along one of their axes, and what that gives along the other.
+
+    Args:
+        cells: int [N, 3].
+        side: int [N], 0 to 5.
+        look: int [N]; only faces of one look are joined, and none whose look is below 0.
+    """
+    one, two = (
+        cells[np.arange(len(side)), ALONG[side, 0]],
+        cells[np.arange(len(side)), ALONG[side, 1]],
+    )
+    plane = cells[np.arange(len(side)), side // 2]
+    first, run = _runs([side, plane, look, one, two], look >= 0)
+    keys = [side[first], plane[first], look[first], two[first], run, one[first]]
+    again, lines = _runs(keys, look[first] >= 0)
+    rows = first[again]
+    length = np.ones((len(rows), 3), np.int64)
+    at = np.arange(len(rows))
+    length[at, ALONG[side[rows], 0]] = lines
+    length[at, ALONG[side[rows], 1]] = run[again]
+    return Rectangles(rows, length)
+
+
+def _runs(keys: list[np.ndarray], may: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Join rows equal in all keys but the last, which counts up by one; return first and number."""
+    if not len(keys[0]):
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    order = np.lexsort(keys[::-1])
+    ordered = [key[order] for key in keys]
+    goes_on = may[order][1:].copy()
+    for key in ordered[:-1]:
+        goes_on &= key[1:] == key[:-1]
+    goes_on &= ordered[-1][1:] == ordered[-1][:-1] + 1
+    starts = np.flatnonzero(np.concatenate([[True], ~goes_on]))
+    return order[starts], np.diff(starts, append=len(order))
+
+
+# What is taken away so that one looks into a room: a bit for each way to cut it open.
+
+# Bits 0 to 3: the walls near an eye that stands towards (block x, block z) of these signs.
+CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))
+CEILING, PARTITIONS = 1 << 4, 1 << 5
+
+
+def cuts_of(volume: BlockVolume) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cuts that take each block away, and each display entity.
+
+    Bits 0 to 3 are the near walls of ``CORNERS``, bit 4 the ceiling and all above it, bit 5 the
+    upper parts of walls between rooms.
+
+    Returns:
+        uint8 [X, Y, Z], and uint8 for each of ``display_cubes`` of the volume.
+    """
+    has_floor = bool((volume.semantic == SemanticClass.FLOOR).any())  # Else all would be outside.
+    ways = [without_near_walls(volume, *corner) if has_floor else volume for corner in CORNERS]
+    ways += [without_ceiling(volume), without_partitions(volume)]
+    blocks = np.zeros(volume.states.shape, np.uint8)
+    things = np.zeros(len(display_cubes(volume.entities)), np.uint8)
+    for bit, cut in enumerate(ways):
+        blocks |= ((cut.states != volume.states).astype(np.uint8)) << bit
+        kept = {id(entity) for entity in cut.entities}
+        gone = [id(one) not in kept for one in volume.entities if display_cubes((one,))]
+        things |= np.array(gone, np.uint8) << bit
+    return blocks, things
+
+
+# The light at the corners of quads: what rays read of the light lattice, at given places.
+
+_NEAR_EDGE = 1e-3  # Blocks: a face so near its cell's boundary is lit from beyond it.
+OPEN = np.array([60, 0, 0], np.uint8)  # Daylight and free corners: faces that a cut lays bare.
+
+
+def light_at(
+    lattice: np.ndarray, cells: np.ndarray, facing: np.ndarray, points: np.ndarray
+) -> np.ndarray:
+    """Return sky light, block light (quarters of a level, 0 to 60) and occluders (0 to 240 for 3).
+
+    Args:
+        lattice: uint16 [3, X + 2, Y + 2, Z + 2], see ``rendering.light.light_field``.
+        cells: int [N, 3], the cell of each point.
+        facing: int [N], the side that the face looks to.
+        points: float64 [N, 3], in coordinates of the cell, 0 to 1.
+
+    Returns:
+        uint8 [N, 3].
+    """
+    axis, sign = facing // 2, np.where(facing % 2, 1, -1)
+    rows = np.arange(len(points))
+    along = points[rows, axis]
+    on_rim = np.where(sign > 0, along > 1 - _NEAR_EDGE, along < _NEAR_EDGE)
+    first, second = np.array([1, 0, 0])[axis], np.array([2, 2, 1])[axis]
+    p = np.clip(points[rows, first], 0, 1)[:, None]
+    q = np.clip(points[rows, second], 0, 1)[:, None]
+    base = cells.copy()
+    base[rows, axis] += 1 + on_rim * sign
+    corners = []
+    for a, b in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        at = base.copy()
+        at[rows, first] += a
+        at[rows, second] += b
+        at = np.clip(at, 0, np.array(lattice.shape[1:]) - 1)  # What stands free may be outside.
+        corners.append(_parts(lattice[axis, at[:, 0], at[:, 1], at[:, 2]]))
+    one, two, three, four = corners
+    mixed = (1 - p) * ((1 - q) * one + q * two) + p * ((1 - q) * three + q * four)
+    return (mixed * [1, 1, 80] + 0.5).astype(np.uint8)
+
+
+def _parts(words: np.ndarray) -> np.ndarray:
+    """Return float64 [N, 3] of the lattice's words."""
+    return np.stack([words & 63, (words >> BLOCK_SHIFT) & 63, words >> COUNT_SHIFT], axis=1).astype(
+        np.float64
+    )
+
 
 NO_STATE = NO_COVER = 65_535
 

@@ -1,0 +1,154 @@
+"""The light of one volume: sky light, block light and the lattice that pictures read."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from world2minecraft.core.jit import njit
+from world2minecraft.minecraft.rules.flood import SOLID, with_margin
+from world2minecraft.rendering.light.propagation import (
+    flood_block,
+    flood_sky,
+    light_rows,
+    whole_reach,
+)
+
+# The light lattice: for every corner of every layer of cells, the light that a face shows there.
+#
+# ``lattice`` uint16 [3, X + 2, Y + 2, Z + 2]: for axis 0, entry [0, i + 1, y, z] belongs to the layer
+# of cells x = i (from -1 to X) and to the corner (y, z) in it, between the four cells (i, y - 1 to y,
+# z - 1 to z); axis 1 has [1, x, j + 1, z], axis 2 [2, x, y, k + 1]. A face at its cell's boundary
+# reads the layer in front, one inside its cell the cell's own.
+#
+# Bits 0 to 5 hold sky light in quarters of a level, 0 to 60: the mean over those of the four cells
+# that are not solid. Bits 6 to 11 hold block light alike. Bits 12 and 13 count the solid ones, 0 to
+# 3, but two that touch only at the corner count 3, because they leave nothing between them.
+
+BLOCK_SHIFT, COUNT_SHIFT = 6, 12
+_ONE, _BLOCK = 1 << 20, 1 << 10  # A packed cell: one, block light, sky light; 0 where solid.
+
+
+def quarters(reach: float) -> np.ndarray:
+    """Return uint16 [5, 1024]: quarters of a level by the number of cells and their sum."""
+    sums = np.arange(1024)
+    table = np.zeros((5, 1024), np.uint16)
+    for count in range(1, 5):
+        table[count] = np.minimum(np.floor(sums * 4 / (count * reach) + 0.5), 60)
+    return table
+
+
+@njit
+def fill_lattice(lattice, sky, block, kinds, words, table, low, high):
+    """Fill in the corners of all layers that the cells ``low`` to ``high`` touch.
+
+    Args:
+        lattice: uint16 [3, X + 2, Y + 2, Z + 2], changed in place.
+        sky: uint8 [X + 2, Y + 2, Z + 2], with its margin; ``block``, ``kinds`` alike.
+        block: uint8, block light.
+        kinds: uint16, rows of ``words``.
+        words: uint32 [K].
+        table: what ``quarters`` returns.
+        low: int64 [3], the first cell with the margin counted (the whole begins at 0, 0, 0).
+        high: int64 [3], past the last one (the whole ends at X + 2, Y + 2, Z + 2).
+    """
+    shape = np.array(sky.shape)
+    first, last = np.maximum(low - 1, 0), np.minimum(high + 1, shape)
+    size = last - first
+    packed = np.empty((size[0], size[1], size[2]), np.uint32)
+    for x in range(size[0]):
+        for y in range(size[1]):
+            for z in range(size[2]):
+                a, b, c = x + first[0], y + first[1], z + first[2]
+                solid = words[kinds[a, b, c]] & SOLID != 0
+                lit = np.uint32(_ONE + block[a, b, c] * _BLOCK + sky[a, b, c])
+                packed[x, y, z] = np.uint32(0) if solid else lit
+    for axis in range(3):
+        step_p, step_q = (1 if axis == 0 else 0), (2 if axis < 2 else 1)
+        ends = size.copy()
+        ends[step_p] -= 1
+        ends[step_q] -= 1
+        px, py = (1, 0) if step_p == 0 else (0, 1)
+        qy, qz = (1, 0) if step_q == 1 else (0, 1)
+        for x in range(ends[0]):
+            for y in range(ends[1]):
+                for z in range(ends[2]):
+                    lattice[axis, x + first[0], y + first[1], z + first[2]] = _corner(
+                        packed[x, y, z], packed[x, y + qy, z + qz],
+                        packed[x + px, y + py, z], packed[x + px, y + py + qy, z + qz], table,
+                    )  # fmt: skip
+
+
+@njit
+def _corner(a, b, c, d, table):
+    """Return the entry of a corner between the packed cells a b (lower row) and c d."""
+    total = a + b + c + d
+    count = total >> np.uint32(20)
+    solid = 4 - np.int64(count)
+    if solid == 4 or (solid == 2 and ((a == 0 and d == 0) or (b == 0 and c == 0))):
+        solid = 3
+    sky, block = table[count, total & 1023], table[count, (total >> np.uint32(10)) & 1023]
+    return sky | (block << BLOCK_SHIFT) | (solid << COUNT_SHIFT)
+
+
+MOST_STATES = 65_535
+
+
+@dataclass(eq=False)
+class LightField:
+    """Light of a volume, kept up to date by ``relight.edit_light``.
+
+    Arrays in the grid have one cell of open air around them: cell (x, y, z) is at [x + 1, y + 1,
+    z + 1]. Light counts in 1 / ``reach`` levels.
+    """
+
+    kinds: np.ndarray  # uint16 [X + 2, Y + 2, Z + 2]: 1 + the state's index, 0 around the volume
+    words: np.ndarray  # uint32 [P + 1], see minecraft.rules.flood
+    gives: np.ndarray  # uint8 [P + 1], levels
+    sky: np.ndarray  # uint8 [X + 2, Y + 2, Z + 2]
+    block: np.ndarray  # uint8 [X + 2, Y + 2, Z + 2]
+    lattice: np.ndarray  # uint16 [3, X + 2, Y + 2, Z + 2], see render.light.lattice
+    reach: float = 1.0
+    hidden_lamps: bool = True
+
+    @property
+    def sky_light(self) -> np.ndarray:
+        """Sky light without the margin, a view of uint8 [X, Y, Z]."""
+        return self.sky[1:-1, 1:-1, 1:-1]
+
+    @property
+    def block_light(self) -> np.ndarray:
+        """Block light without the margin, a view of uint8 [X, Y, Z]."""
+        return self.block[1:-1, 1:-1, 1:-1]
+
+
+def light_field(
+    states: np.ndarray,
+    palette: tuple[str, ...],
+    reach: float = 1.0,
+    *,
+    hidden_lamps: bool = True,
+) -> LightField:
+    """Return the light of a volume.
+
+    Args:
+        states: uint16 [X, Y, Z], indices of ``palette``.
+        palette: block states.
+        reach: how many blocks light goes for each level that it loses, 1 to 16, to a fifteenth;
+            1 is the game's.
+        hidden_lamps: whether the game's invisible light blocks shine. A room that is full of them,
+            so that no monsters come, looks natural by its windows and lamps alone.
+
+    Raises:
+        ValueError: the reach is out of range, or the palette has over 65,535 states.
+    """
+    if len(palette) > MOST_STATES:
+        raise ValueError(f"a palette may have {MOST_STATES:,} states, not {len(palette):,}")
+    reach = whole_reach(reach)
+    words, gives = light_rows(palette, hidden_lamps)
+    kinds = with_margin(states.astype(np.uint16) + np.uint16(1), 0)
+    sky = flood_sky(kinds, words, reach)
+    block = flood_block(kinds, words, gives, reach)
+    lattice = np.zeros((3, *kinds.shape), np.uint16)
+    low, high = np.zeros(3, np.int64), np.array(kinds.shape, np.int64)
+    fill_lattice(lattice, sky, block, kinds, words, quarters(reach), low, high)
+    return LightField(kinds, words, gives, sky, block, lattice, reach, hidden_lamps)
